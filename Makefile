@@ -1,0 +1,31 @@
+# The front door. Parameters live in edp/core/parameters.idp, scenes in orchestrate/scenes/*.toml.
+# ARGS is handed on:  make disc-normal ARGS="--set speed=4 --out results/slow"
+PYTHON := .venv/bin/python
+READY := .venv/.ready
+
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+.PHONY: help setup disc-normal test stress bench refine clean
+
+help: ## list the targets
+	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 24
+
+setup: $(READY) ## install what is missing: FreeFem++, system libraries, .venv with the pinned packages
+$(READY): pyproject.toml orchestrate/setup.sh orchestrate/probe.edp
+	@orchestrate/setup.sh
+	@touch $@
+
+disc-normal: $(READY) ## a disc falls normally on a rigid plane (paper, sections 3.1 and 3.3)
+	@$(PYTHON) -m orchestrate run $@ $(ARGS)
+
+test: $(READY) ## run all tests
+	@$(PYTHON) -m pytest -q tests $(ARGS)
+
+stress bench refine: $(READY)
+	@$(PYTHON) -m orchestrate $@ $(ARGS)
+stress: ## run hard parameter sets and report which of them hold
+bench: ## time the program, at equal error
+refine: ## refine mesh and step, report the observed convergence
+
+clean: ## remove all results (keeps .venv)
+	@find results -mindepth 1 ! -name README.md -delete

@@ -1,0 +1,30 @@
+"""Expected failures: one line for the user and an exit code (the table in the run contract)."""
+
+
+class Failure(Exception):
+    """A failure that the user can act on. `code` is the exit code: 11 step, 12 material, 1 anything else."""
+
+    def __init__(self, message: str, code: int = 1):
+        super().__init__(message)
+        self.code = code
+
+
+class BadInput(Failure):
+    """A parameter, scene file or mesh that cannot be used."""
+
+    def __init__(self, message: str):
+        super().__init__(message, 10)
+
+
+class NotInstalled(Failure):
+    """FreeFem++ (or a library) missing, too old or without a plugin it needs."""
+
+    def __init__(self, message: str):
+        super().__init__(message, 13)
+
+
+class Unreadable(Failure):
+    """A result folder that cannot be read or is not ours."""
+
+    def __init__(self, message: str):
+        super().__init__(message, 14)

@@ -1,0 +1,160 @@
+"""Meshes: a disc (or half of it) graded towards its contact arc, made by gmsh, written as FreeFEM's own .msh.
+
+Boundary labels: 1 = the free outer boundary (the circle), 2 = the symmetry axis x = 0. The triangles are straight;
+the FreeFEM side curves the boundary. The lowest point of the disc touches the plane y = 0.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cache
+from importlib import metadata
+from pathlib import Path
+
+import numpy as np
+
+from .failure import BadInput, NotInstalled
+
+FREE, AXIS = 1, 2          # boundary labels
+GROWTH = 0.3               # element size gained per length of distance from the contact arc
+MOST_EDGES = 20_000        # along the contact arc; more than that is a slip of the pen
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """points (n, 2) in m, triangles (t, 3) counter-clockwise, edges (e, 2) of the boundary, their labels (e,)."""
+
+    points: np.ndarray
+    triangles: np.ndarray
+    edges: np.ndarray
+    labels: np.ndarray
+
+
+def sizes_from_accuracy(accuracy: float, radius: float) -> tuple[float, float]:
+    """(mesh_size, contact_mesh_size) in m for a relative accuracy.
+
+    CALIBRATION: a first guess, radius/8 and radius/25 at 5e-3, with the error taken as quadratic in the size.
+    """
+    scale = math.sqrt(accuracy / 5e-3)
+    return min(radius / 8 * scale, radius / 2), min(radius / 25 * scale, radius / 4)
+
+
+def resolve_sizes(mesh_size: float, contact_mesh_size: float, accuracy: float, radius: float) -> tuple[float, float]:
+    """Both sizes in m, where 0 means "from accuracy"; BadInput where the two do not fit each other or the disc."""
+    bulk, contact = sizes_from_accuracy(accuracy, radius)
+    if mesh_size > radius:
+        raise BadInput(f"mesh_size: {mesh_size:g} is larger than the radius {radius:g}")
+    if mesh_size and contact_mesh_size > mesh_size:
+        raise BadInput(f"contact_mesh_size: {contact_mesh_size:g} is larger than mesh_size {mesh_size:g}")
+    if contact_mesh_size > radius:
+        raise BadInput(f"contact_mesh_size: {contact_mesh_size:g} is larger than the radius {radius:g}")
+    mesh_size = mesh_size or max(bulk, contact_mesh_size)
+    contact_mesh_size = contact_mesh_size or min(contact, mesh_size)
+    if contact_mesh_size * MOST_EDGES < radius:
+        raise BadInput(f"contact_mesh_size: {contact_mesh_size:g} is too small for the radius {radius:g} "
+                       f"(accepted: from {radius / MOST_EDGES:g})")
+    return mesh_size, contact_mesh_size
+
+
+@cache
+def gmsh_version() -> str:
+    """The version of the gmsh package."""
+    return metadata.version("gmsh")
+
+
+def disc(radius: float, mesh_size: float, contact_mesh_size: float, half: bool, contact_angle: float = 45.0) -> Mesh:
+    """A disc, or its half x >= 0, centre (0, radius), all lengths in m.
+
+    The size is contact_mesh_size along the lowest arc of +-contact_angle degrees (seen from the centre) and grows
+    linearly to mesh_size away from it. Vertices of the circle and of the axis lie on them to rounding.
+    """
+    try:
+        import gmsh
+    except OSError as error:
+        raise NotInstalled(f"gmsh does not load ({error}); run: make setup") from None
+    unit = 1.0 / radius    # meshed at radius 1: gmsh's tolerances are absolute
+    gmsh.initialize([], readConfigFiles=False, interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.option.setNumber("Mesh.Algorithm", 6)   # frontal Delaunay: the best triangles
+        for source in ("FromPoints", "FromCurvature", "ExtendFromBoundary"):
+            gmsh.option.setNumber(f"Mesh.MeshSize{source}", 0)
+        arcs, axis = _outline(gmsh.model.geo, half, math.radians(contact_angle))
+        gmsh.model.geo.addPlaneSurface([gmsh.model.geo.addCurveLoop(arcs + axis)])
+        gmsh.model.geo.synchronize()
+        contact_arcs = arcs[:1] if half else [arcs[0], arcs[-1]]
+        _grade(gmsh.model.mesh.field, contact_arcs, mesh_size * unit, contact_mesh_size * unit, contact_angle)
+        gmsh.model.mesh.generate(2)
+        tags, coordinates, _ = gmsh.model.mesh.getNodes()
+        _, triangle_tags = gmsh.model.mesh.getElementsByType(2)
+        pieces = [(label, gmsh.model.mesh.getElementsByType(1, curve)[1].reshape(-1, 2))
+                  for label, curves in ((FREE, arcs), (AXIS, axis)) for curve in curves]
+    finally:
+        gmsh.finalize()
+
+    # Number the vertices that a triangle uses from 0 (gmsh also keeps the centre of the arcs).
+    used, triangles = np.unique(triangle_tags, return_inverse=True)
+    row = np.empty(int(tags.max()) + 1, dtype=int)
+    row[tags] = np.arange(len(tags))
+    points = coordinates.reshape(-1, 3)[row[used], :2]
+    edges = np.searchsorted(used, np.vstack([nodes for _, nodes in pieces]))
+    labels = np.concatenate([np.full(len(nodes), label) for label, nodes in pieces])
+
+    circle = np.unique(edges[labels == FREE])
+    points[circle] /= np.linalg.norm(points[circle], axis=1, keepdims=True)
+    points[np.unique(edges[labels == AXIS]), 0] = 0.0
+    points = radius * (points + (0.0, 1.0))
+    return Mesh(points, _counter_clockwise(points, triangles.reshape(-1, 3)), edges, labels)
+
+
+def _outline(geo, half: bool, contact_angle: float) -> tuple[list[int], list[int]]:
+    """Arcs of the unit circle, counter-clockwise from its lowest point, and the axis; as curves of gmsh."""
+    def point(angle):   # measured from the lowest point
+        return geo.addPoint(math.sin(angle), -math.cos(angle), 0)
+
+    centre, bottom, top = geo.addPoint(0, 0, 0), point(0.0), point(math.pi)
+    corners = [bottom, point(contact_angle), top]
+    if not half:
+        corners += [point(-contact_angle), bottom]
+    arcs = [geo.addCircleArc(a, centre, b) for a, b in zip(corners, corners[1:])]
+    return arcs, [geo.addLine(top, bottom)] if half else []
+
+
+def _grade(field, contact_arcs: list[int], bulk: float, contact: float, contact_angle: float) -> None:
+    """Element size `contact` on the arcs, growing linearly with the distance from them up to `bulk`."""
+    distance, size = field.add("Distance"), field.add("Threshold")
+    field.setNumbers(distance, "CurvesList", contact_arcs)
+    field.setNumber(distance, "Sampling", math.ceil(2 * math.radians(contact_angle) / contact))
+    for name, value in dict(InField=distance, SizeMin=contact, SizeMax=bulk, DistMin=0,
+                            DistMax=max(bulk - contact, 1e-9) / GROWTH).items():
+        field.setNumber(size, name, value)
+    field.setAsBackgroundMesh(size)
+
+
+def _counter_clockwise(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    a, b, c = (points[triangles[:, k]] for k in range(3))
+    clockwise = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) < (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+    return np.where(clockwise[:, None], triangles[:, [0, 2, 1]], triangles)
+
+
+def write(mesh: Mesh, path: Path) -> None:
+    """Writes FreeFEM's 2D .msh: counts; x y label; v1 v2 v3 region; v1 v2 label; vertices count from 1."""
+    point_labels = np.zeros(len(mesh.points), dtype=int)
+    for label in (AXIS, FREE):   # the ends of the axis belong to the free boundary too
+        point_labels[mesh.edges[mesh.labels == label]] = label
+    with open(path, "w") as file:
+        file.write(f"{len(mesh.points)} {len(mesh.triangles)} {len(mesh.edges)}\n")
+        file.writelines(f"{x:.17g} {y:.17g} {label}\n" for (x, y), label in zip(mesh.points, point_labels))
+        file.writelines(f"{a} {b} {c} 0\n" for a, b, c in mesh.triangles + 1)
+        file.writelines(f"{a} {b} {label}\n" for (a, b), label in zip(mesh.edges + 1, mesh.labels))
+
+
+def read(path: Path) -> Mesh:
+    """Reads what `write` writes; BadInput where the file is not such a mesh."""
+    try:
+        words = path.read_text().split()
+        n, t, e = map(int, words[:3])
+        points, triangles, edges = np.split(np.array(words[3:], dtype=float), [3 * n, 3 * n + 4 * t])
+        points, triangles, edges = points.reshape(n, 3), triangles.reshape(t, 4), edges.reshape(e, 3)
+    except (OSError, ValueError) as error:
+        raise BadInput(f"mesh: {path} is not a 2D mesh of FreeFEM: {error}") from None
+    return Mesh(points[:, :2], triangles[:, :3].astype(int) - 1, edges[:, :2].astype(int) - 1, edges[:, 2].astype(int))

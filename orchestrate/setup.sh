@@ -1,0 +1,74 @@
+#!/usr/bin/env bash
+# Installs what is missing and nothing else: FreeFem++ with its plugins, OpenBLAS, the libraries that
+# gmsh's wheel needs, and a .venv with the packages that pyproject.toml pins. For Debian and Ubuntu.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+say() { echo "setup: $*" >&2; }
+stop() { say "$*"; exit 1; }
+PATH=$PATH:/sbin:/usr/sbin
+libraries=$(ldconfig -p)
+has_library() { [[ $libraries == *"$1"* ]]; }
+freefem=${FREEFEM:-FreeFem++}
+probe() { answer=$("$freefem" -nw -ne -v 0 orchestrate/probe.edp </dev/null 2>&1) && [[ $answer == *version* ]]; }
+
+find_python() {   # the first python that is new enough and can make a venv
+  local candidate
+  for candidate in python3 python3.14 python3.13 python3.12 python3.11 /usr/bin/python3; do
+    if "$candidate" -c 'import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; then
+      echo "$candidate"; return
+    fi
+  done
+  return 1
+}
+
+missing=()
+command -v "$freefem" >/dev/null || missing+=(freefem++ libfreefem++)
+probe || compgen -G '/usr/lib/freefem++/*.so' >/dev/null || missing+=(libfreefem++)
+has_library libopenblas.so || missing+=(libopenblas0-pthread)
+[ -x .venv/bin/python ] || find_python >/dev/null || missing+=(python3 python3-venv)
+while read -r library package; do
+  has_library "$library" || missing+=("$package")
+done <<'LIBRARIES'
+libGL.so.1          libgl1
+libGLU.so.1         libglu1-mesa
+libX11.so.6         libx11-6
+libXcursor.so.1     libxcursor1
+libXext.so.6        libxext6
+libXfixes.so.3      libxfixes3
+libXft.so.2         libxft2
+libXinerama.so.1    libxinerama1
+libXrender.so.1     libxrender1
+libfontconfig.so.1  libfontconfig1
+libgomp.so.1        libgomp1
+LIBRARIES
+
+if [ ${#missing[@]} -gt 0 ]; then
+  root=""
+  if [ "$(id -u)" != 0 ]; then
+    root=$(command -v sudo) || stop "cannot install without root or sudo; as root run: apt-get install ${missing[*]}"
+  fi
+  command -v apt-get >/dev/null || stop "no apt-get here; install by other means: ${missing[*]}"
+  say "installing ${missing[*]}"
+  export DEBIAN_FRONTEND=noninteractive
+  $root apt-get update -qq
+  wanted=()   # where the plugins come with freefem++ itself there is no libfreefem++
+  for package in "${missing[@]}"; do
+    if [ "$package" != libfreefem++ ] || apt-cache show "$package" >/dev/null 2>&1; then wanted+=("$package"); fi
+  done
+  $root apt-get install -y -qq --no-install-recommends "${wanted[@]}" </dev/null >&2
+fi
+
+# Debian's FreeFem++ looks for its plugins in a folder that does not exist.
+if ! probe; then
+  line='loadpath += "/usr/lib/freefem++"'
+  grep -qsF "$line" ~/.freefem++.pref || echo "$line" >> ~/.freefem++.pref
+  probe || stop "FreeFem++ does not run orchestrate/probe.edp: ${answer//$'\n'/ | }"
+  say "FreeFem++ did not find its plugins: added  $line  to ~/.freefem++.pref"
+fi
+
+[ -x .venv/bin/python ] || "$(find_python)" -m venv .venv || stop "no python >= 3.11 with venv found; apt-get install python3 python3-venv"
+.venv/bin/python -c 'import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["dependencies"], sep="\n")' \
+  | .venv/bin/python -m pip install -q --disable-pip-version-check -r /dev/stdin
+.venv/bin/python -c 'import gmsh, matplotlib.pyplot'   # they load, and matplotlib's font list is made now, not in the first run
+say "ready"

@@ -1,0 +1,120 @@
+"""The meshes that the scenes run on."""
+
+import numpy as np
+import pytest
+
+from orchestrate import mesh
+from orchestrate.failure import BadInput
+
+CASES = [
+    pytest.param((0.05, 0.05 / 8, 0.05 / 25, True), id="half, default size"),
+    pytest.param((0.05, 0.05 / 8, 0.05 / 25, False), id="full, default size"),
+    pytest.param((0.05, 0.02, 0.01, True), id="half, very coarse"),
+    pytest.param((0.05, 0.004, 0.0002, True), id="half, 0.2 mm at the contact"),
+    pytest.param((0.05, 0.003, 0.003, False), id="full, uniform"),
+    pytest.param((0.5, 0.06, 0.0006, False), id="full, size ratio 100"),
+]
+
+
+def twice_areas(m: mesh.Mesh) -> np.ndarray:
+    a, b, c = (m.points[m.triangles[:, k]] for k in range(3))
+    return (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+
+
+def smallest_angle(m: mesh.Mesh) -> float:
+    corners = m.points[m.triangles]
+    angles = []
+    for k in range(3):
+        u, v = corners[:, (k + 1) % 3] - corners[:, k], corners[:, (k + 2) % 3] - corners[:, k]
+        angles.append(np.arccos((u * v).sum(1) / np.linalg.norm(u, axis=1) / np.linalg.norm(v, axis=1)))
+    return float(np.degrees(np.min(angles)))
+
+
+@pytest.fixture(scope="module", params=CASES)
+def case(request):
+    return *request.param, mesh.disc(*request.param)
+
+
+def test_triangles_are_sound(case):
+    """Every triangle is counter-clockwise and has no angle below 20 degrees."""
+    *_, m = case
+    assert twice_areas(m).min() > 0
+    assert smallest_angle(m) > 20
+
+
+def test_triangles_fill_the_polygon(case):
+    """The triangles add up to the polygon that the labelled boundary edges enclose, and nothing is used twice."""
+    *_, m = case
+    a, b = m.points[m.edges[:, 0]], m.points[m.edges[:, 1]]
+    enclosed = abs((a[:, 0] * b[:, 1] - b[:, 0] * a[:, 1]).sum())
+    assert twice_areas(m).sum() == pytest.approx(enclosed, rel=1e-12)
+    assert set(m.triangles.flat) == set(range(len(m.points)))
+
+
+def test_every_boundary_edge_has_its_label(case):
+    """The edges that belong to one triangle are exactly the labelled ones: 1 on the circle, 2 on the axis x = 0."""
+    radius, _, _, half, m = case
+    sides = np.sort(np.vstack([m.triangles[:, [0, 1]], m.triangles[:, [1, 2]], m.triangles[:, [2, 0]]]), axis=1)
+    unique, count = np.unique(sides, axis=0, return_counts=True)
+    assert set(map(tuple, unique[count == 1])) == set(map(tuple, np.sort(m.edges, axis=1)))
+    assert count.max() == 2
+    distance = np.hypot(m.points[:, 0], m.points[:, 1] - radius)
+    assert abs(distance[m.edges[m.labels == mesh.FREE]] - radius).max() < 1e-12
+    assert set(m.labels) == ({mesh.FREE, mesh.AXIS} if half else {mesh.FREE})
+    if half:
+        assert (m.points[m.edges[m.labels == mesh.AXIS], 0] == 0).all()
+        assert m.points[:, 0].min() == 0
+
+
+def test_sizes_are_as_asked(case):
+    """Edges near the lowest point have the contact size, edges at the top the bulk size, to 40 per cent."""
+    radius, bulk, contact, _, m = case
+    ends = m.points[m.edges[m.labels == mesh.FREE]]
+    length, height = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1), ends[:, :, 1].mean(1)
+    assert length[height < 0.2 * radius].mean() == pytest.approx(contact, rel=0.4)
+    assert length[height > 1.8 * radius].mean() == pytest.approx(bulk, rel=0.4)
+    assert np.hypot(*m.points.T).min() == 0   # the lowest point is a vertex, on the plane
+
+
+def test_file_keeps_every_digit(tmp_path):
+    """A mesh reads back from FreeFEM's format as it was written."""
+    m = mesh.disc(0.05, 0.01, 0.004, True)
+    mesh.write(m, tmp_path / "m.msh")
+    back = mesh.read(tmp_path / "m.msh")
+    for name in ("points", "triangles", "edges", "labels"):
+        assert np.array_equal(getattr(m, name), getattr(back, name)), name
+
+
+def test_same_input_same_mesh():
+    """The mesh depends on its input alone."""
+    first, second = (mesh.disc(0.05, 0.01, 0.002, True) for _ in range(2))
+    assert np.array_equal(first.points, second.points)
+
+
+@pytest.mark.parametrize("sizes, words", [
+    ((0.001, 0.002), "contact_mesh_size: 0.002 is larger than mesh_size 0.001"),
+    ((0.06, 0.0), "mesh_size: 0.06 is larger than the radius 0.05"),
+    ((0.0, 0.06), "contact_mesh_size: 0.06 is larger than the radius 0.05"),
+    ((0.0, 1e-9), "too small"),
+])
+def test_sizes_that_do_not_fit_are_named(sizes, words):
+    """Sizes that contradict each other or the disc are bad input, named with the limit."""
+    with pytest.raises(BadInput, match=words):
+        mesh.resolve_sizes(*sizes, accuracy=5e-3, radius=0.05)
+
+
+def test_sizes_follow_the_accuracy():
+    """A size of 0 comes from the accuracy, and a given size is kept with the other one fitted to it."""
+    bulk, contact = mesh.resolve_sizes(0, 0, 5e-3, 0.05)
+    finer_bulk, finer_contact = mesh.resolve_sizes(0, 0, 5e-4, 0.05)
+    assert finer_bulk < bulk and finer_contact < contact < bulk
+    assert mesh.resolve_sizes(1e-3, 0, 5e-3, 0.05) == (1e-3, 1e-3)
+    assert mesh.resolve_sizes(0, 1e-2, 5e-3, 0.05) == (1e-2, 1e-2)
+
+
+@pytest.mark.parametrize("text", ["", "1 2", "3 1 3\n0 0 x", "$MeshFormat\n2.2 0 8"])
+def test_foreign_mesh_file_is_bad_input(tmp_path, text):
+    """A file that is not a FreeFEM mesh is bad input that names the file."""
+    (tmp_path / "m.msh").write_text(text)
+    with pytest.raises(BadInput, match="m.msh"):
+        mesh.read(tmp_path / "m.msh")
