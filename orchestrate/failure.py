@@ -1,8 +1,16 @@
 """Expected failures: one line for the user and an exit code (the table in the run contract)."""
 
 
+from pathlib import Path
+
+
 class Failure(Exception):
-    """A failure that the user can act on. `code` is the exit code: 11 step, 12 material, 1 anything else."""
+    """A failure that the user can act on. `code` is the exit code: 11 step, 12 material, 1 anything else.
+
+    `folder` is where the files of a failed run were kept.
+    """
+
+    folder: Path | None = None
 
     def __init__(self, message: str, code: int = 1):
         super().__init__(message)

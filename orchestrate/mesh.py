@@ -5,6 +5,10 @@ the FreeFEM side curves the boundary. The lowest point of the disc touches the p
 """
 
 import math
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
 from importlib import metadata
@@ -67,13 +71,8 @@ def disc(radius: float, mesh_size: float, contact_mesh_size: float, half: bool, 
     The size is contact_mesh_size along the lowest arc of +-contact_angle degrees (seen from the centre) and grows
     linearly to mesh_size away from it. Vertices of the circle and of the axis lie on them to rounding.
     """
-    try:
-        import gmsh
-    except OSError as error:
-        raise NotInstalled(f"gmsh does not load ({error}); run: make setup") from None
     unit = 1.0 / radius    # meshed at radius 1: gmsh's tolerances are absolute
-    gmsh.initialize([], readConfigFiles=False, interruptible=False)
-    try:
+    with _gmsh() as gmsh:
         gmsh.option.setNumber("General.Terminal", 0)
         gmsh.option.setNumber("Mesh.Algorithm", 6)   # frontal Delaunay: the best triangles
         for source in ("FromPoints", "FromCurvature", "ExtendFromBoundary"):
@@ -88,8 +87,6 @@ def disc(radius: float, mesh_size: float, contact_mesh_size: float, half: bool, 
         _, triangle_tags = gmsh.model.mesh.getElementsByType(2)
         pieces = [(label, gmsh.model.mesh.getElementsByType(1, curve)[1].reshape(-1, 2))
                   for label, curves in ((FREE, arcs), (AXIS, axis)) for curve in curves]
-    finally:
-        gmsh.finalize()
 
     # Number the vertices that a triangle uses from 0 (gmsh also keeps the centre of the arcs).
     used, triangles = np.unique(triangle_tags, return_inverse=True)
@@ -104,6 +101,24 @@ def disc(radius: float, mesh_size: float, contact_mesh_size: float, half: bool, 
     points[np.unique(edges[labels == AXIS]), 0] = 0.0
     points = radius * (points + (0.0, 1.0))
     return Mesh(points, _counter_clockwise(points, triangles.reshape(-1, 3)), edges, labels)
+
+
+@contextmanager
+def _gmsh() -> Iterator:
+    """The module gmsh, started and ended; NotInstalled where a system library is missing."""
+    try:
+        import gmsh
+    except OSError as error:
+        raise NotInstalled(f"gmsh does not load ({error}); run: make setup") from None
+    handlers = {number: signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGPIPE)}
+    gmsh.initialize([], readConfigFiles=False, interruptible=False)
+    if threading.current_thread() is threading.main_thread():
+        for number, handler in handlers.items():   # gmsh sets them back to their defaults
+            signal.signal(number, handler)
+    try:
+        yield gmsh
+    finally:
+        gmsh.finalize()
 
 
 def _outline(geo, half: bool, contact_angle: float) -> tuple[list[int], list[int]]:

@@ -1,0 +1,103 @@
+"""Command line: python -m orchestrate run|list|parameters|figures|stress|bench|refine."""
+
+import argparse
+import importlib
+import os
+import signal
+import sys
+from pathlib import Path
+
+from .failure import BadInput, Failure
+
+OWN_MAIN = ("stress", "bench", "refine")   # modules with a main(argv) of their own, loaded when asked for
+
+
+def main(argv: list[str]) -> int:
+    """The exit code of the command; see the table in the run contract."""
+    signal.signal(signal.SIGTERM, _stop)
+    signal.signal(signal.SIGHUP, _stop)
+    try:
+        if argv[:1] and argv[0] in OWN_MAIN:
+            return importlib.import_module(f"{__package__}.{argv[0]}").main(argv[1:]) or 0
+        options = _parser().parse_args(argv)
+        options.command(options)
+        return 0
+    except Failure as failure:
+        print(f"ffimpact: {failure}", file=sys.stderr)
+        if failure.folder:
+            print(f"files of the failed run: {os.path.relpath(failure.folder)}")
+        return failure.code
+    except KeyboardInterrupt:
+        print("ffimpact: interrupted", file=sys.stderr)
+        return 130
+    except BrokenPipeError:   # the reader of our output left
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+
+
+def _stop(number: int, frame) -> None:
+    sys.exit(128 + number)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python -m orchestrate", description="Impact of nonlinear deformable bodies.",
+                                     epilog="More commands, each with its own --help: " + ", ".join(OWN_MAIN))
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+
+    command = commands.add_parser("run", help="run a scene, or reuse its finished result")
+    command.add_argument("scene", metavar="SCENE", help="a built-in scene (see list) or the path of a TOML file")
+    command.add_argument("--set", metavar="NAME=VALUE", action="append", default=[], help="set a parameter (see parameters)")
+    command.add_argument("--out", metavar="DIR", type=Path, help="the result folder (default: results/SCENE)")
+    command.add_argument("--mesh", metavar="FILE", type=Path, help="a mesh in FreeFEM's .msh format, instead of our own")
+    command.add_argument("--force", action="store_true", help="run again even if the result is there")
+    command.add_argument("--quiet", action="store_true", help="no progress, no report")
+    command.set_defaults(command=_run)
+
+    command = commands.add_parser("list", help="list the built-in scenes")
+    command.set_defaults(command=_list)
+    command = commands.add_parser("parameters", help="list the parameters: default, unit, what is accepted")
+    command.set_defaults(command=_parameters)
+    command = commands.add_parser("figures", help="draw the figures of a result folder again")
+    command.add_argument("folder", metavar="DIR", type=Path)
+    command.set_defaults(command=_figures)
+    return parser
+
+
+def _run(options: argparse.Namespace) -> None:
+    from . import report, run, scene
+    result = run.run(scene.load(options.scene), _overrides(options.set), options.out, mesh_file=options.mesh,
+                     force=options.force, progress=not options.quiet and sys.stderr.isatty())
+    if not options.quiet:
+        print(report.report(result))
+
+
+def _overrides(texts: list[str]) -> dict[str, str]:
+    pairs = [text.partition("=") for text in texts]
+    for name, equals, value in pairs:
+        if not (name and equals and value):
+            raise BadInput(f"--set: '{name}{equals}{value}' is not of the form name=value")
+    return {name.strip(): value.strip() for name, _, value in pairs}
+
+
+def _list(options: argparse.Namespace) -> None:
+    from . import scene
+    for name in scene.built_in():
+        print(f"{name:<20}{scene.load(name).title}")
+
+
+def _parameters(options: argparse.Namespace) -> None:
+    from . import parameters
+    for name in parameters.names():
+        p = parameters.table()[name]
+        default = p.default if p.kind == "word" else f"{p.default:g}"
+        print(f"{name:<19}{default:<16}{p.unit:<9}{p.help}; accepted: {p.accepted}")
+
+
+def _figures(options: argparse.Namespace) -> None:
+    from . import figures
+    for path in figures.draw(options.folder):
+        print(path)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

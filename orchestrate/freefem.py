@@ -1,0 +1,89 @@
+"""FreeFem++: find it, check it, run one process and reap it whatever happens."""
+
+import ctypes
+import os
+import re
+import shutil
+import signal
+import subprocess
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from .failure import NotInstalled
+from .parameters import ROOT
+
+OLDEST = (4, 9)                          # the version in the banner; Debian's 4.11 calls itself 4.9
+DEBIAN_PLUGINS = "/usr/lib/freefem++"    # where Debian puts the plugins, and its FreeFem++ does not look
+PROBE = ROOT / "orchestrate/probe.edp"
+HOW = "run: make setup   (or: apt-get install freefem++ libfreefem++)"
+
+Progress = Callable[[float, str, str], None]   # fraction in [0, 1], t, steps
+
+
+@dataclass(frozen=True)
+class FreeFem:
+    """A FreeFem++ that runs our scripts: its path, its version and the environment it needs."""
+
+    command: str
+    version: str
+    environment: dict[str, str]
+
+
+def find() -> FreeFem:
+    """$FREEFEM or FreeFem++ on the PATH, probed; NotInstalled when missing, too old or without its plugins."""
+    wanted = os.environ.get("FREEFEM", "FreeFem++")
+    command = shutil.which(wanted)
+    if not command:
+        raise NotInstalled(f"{wanted} not found; {HOW}")
+    environment = os.environ | {"OPENBLAS_NUM_THREADS": "1"}
+    version = _probe(command, environment)
+    if not version and "FF_LOADPATH" not in environment:
+        environment["FF_LOADPATH"] = DEBIAN_PLUGINS
+        version = _probe(command, environment)
+    if not version:
+        raise NotInstalled(f"{command} lacks its plugin Element_QF or does not start; {HOW}")
+    if tuple(map(int, version.split(".")[:2])) < OLDEST:
+        raise NotInstalled(f"{command} is version {version}, needed is {OLDEST[0]}.{OLDEST[1]} or newer; {HOW}")
+    return FreeFem(command, version, environment)
+
+
+def _probe(command: str, environment: dict[str, str]) -> str | None:
+    """The version, if the plugins load."""
+    try:
+        answer = subprocess.run([command, "-nw", "-ne", "-v", "0", PROBE], env=environment, stdin=subprocess.DEVNULL,
+                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT, errors="replace", timeout=60).stdout
+    except (OSError, subprocess.TimeoutExpired):
+        return None
+    match = re.search(r"^version (\d+\.\d+\S*)", answer, re.MULTILINE)
+    return match and match[1]
+
+
+def run(freefem: FreeFem, script: str, flags: list[str], log: Path, progress: Progress | None = None) -> int:
+    """Runs edp/<script>.edp with its output in `log`; the exit code, negative for a signal.
+
+    The child has a process group of its own, is killed when this function is left in any way, and by the kernel
+    when this process dies. Lines "progress <fraction> t=<time> steps=<n>" go to `progress` as well.
+    """
+    command = [freefem.command, "-nw", "-ne", "-v", "0", f"edp/{script}.edp", *flags]
+    with open(log, "w") as file, subprocess.Popen(
+            command, cwd=ROOT, env=freefem.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT, text=True, errors="replace", process_group=0,
+            preexec_fn=_die_with_parent) as child:
+        try:
+            for line in child.stdout:
+                file.write(line)
+                if progress and (match := re.match(r"progress (\S+) t=(\S+) steps=(\S+)", line)):
+                    progress(float(match[1]), match[2], match[3])
+            return child.wait()
+        finally:
+            if child.poll() is None:
+                os.killpg(child.pid, signal.SIGKILL)
+                child.wait()
+
+
+_libc = ctypes.CDLL(None)
+
+
+def _die_with_parent() -> None:
+    _libc.prctl(1, signal.SIGKILL)   # PR_SET_PDEATHSIG

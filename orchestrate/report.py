@@ -1,0 +1,90 @@
+"""What a finished run is told in: its key figures, beside the published numbers of the same scene."""
+
+import os
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+
+from .parameters import Value
+from .run import RunResult
+
+REFERENCE = Path(__file__).resolve().parent / "reference"
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A row of the report: a key of summary.json, its name for the reader, the factor from SI and the unit shown."""
+
+    key: str
+    label: str
+    unit: str = ""
+    factor: float = 1.0
+    digits: str = ".4g"
+
+    def text(self, value: float) -> str:
+        return f"{self.factor * value:{self.digits}} {self.unit}".rstrip()
+
+    def beside(self, number: dict) -> str:
+        """A published number, its error bar where it has one, and where it comes from."""
+        error = f" ± {self.factor * number['error']:.1g}" if "error" in number else ""
+        source = "; ".join(number[key] for key in ("source", "note") if key in number)
+        return f"{self.factor * number['value']:{self.digits}}{error} ({source})"
+
+
+def rows(per_metre: bool) -> list[Quantity]:
+    """The key figures; in plane strain forces, impulses and energies are per metre of thickness."""
+    per = "/m" if per_metre else ""
+    return [
+        Quantity("contact_time", "contact time", "ms", 1e3),
+        Quantity("contact_intervals", "contact intervals", digits=".0f"),
+        Quantity("peak_force", "peak force", f"kN{per}", 1e-3),
+        Quantity("impulse", "impulse", f"N s{per}", digits=".5g"),
+        Quantity("rebound_vx", "rebound velocity, x", "m/s"),
+        Quantity("rebound_vy", "rebound velocity, y", "m/s"),
+        Quantity("energy_initial", "energy at the start", f"J{per}"),
+        Quantity("vibration_energy", "left in vibration", f"J{per}"),
+        Quantity("friction_work", "lost to friction", f"J{per}"),
+        Quantity("energy_drift", "energy drift", "of the start", digits=".1e"),
+        Quantity("max_penetration", "largest penetration", "mm", 1e3, ".3g"),
+        Quantity("min_jacobian", "smallest det F", digits=".3f"),
+        Quantity("min_stretch", "smallest stretch", digits=".3f"),
+        Quantity("breakdown_time", "material broke down at", "ms", 1e3),
+        Quantity("steps", "steps", digits=".0f"),
+        Quantity("dofs", "degrees of freedom", digits=".0f"),
+        Quantity("wall_seconds", "wall time", "s", digits=".2f"),
+    ]
+
+
+def references(script: str, scene: dict[str, Value]) -> dict[str, list[dict]]:
+    """Published numbers whose conditions this scene meets: by key of summary.json, each {value, [error], source, [note]}."""
+    found: dict[str, list[dict]] = {}
+    for path in sorted(REFERENCE.glob("*.toml")):
+        for run in tomllib.loads(path.read_text()).get("run", []):
+            if run["script"] == script and all(scene.get(name) == value for name, value in run["when"].items()):
+                for key, number in run["numbers"].items():
+                    found.setdefault(key, []).append(number | {k: run[k] for k in ("source", "note") if k in run})
+    return found
+
+
+def report(result: RunResult) -> str:
+    """The key figures of a run as a table of text, what was skipped, and where the pictures are."""
+    summary, scene = result.summary, result.scene
+    script = summary["provenance"]["script"]
+    known = references(script, scene)
+    place = Path(os.path.relpath(result.folder))
+    lines = [f"{place}: " + ("finished earlier, same scene and code" if result.reused else "finished"),
+             f"{scene['law']}, nu = {scene['nu']:g}, {scene['speed']:g} m/s, angle {scene['angle']:g} degrees, "
+             f"penalty {scene['penalty']:g}"]
+    for quantity in rows(per_metre=not script.startswith("ball")):
+        value = summary.get(quantity.key)
+        if value is None or (value == 0 and quantity.key in ("friction_work", "rebound_vx")):
+            continue
+        beside = [quantity.beside(number) for number in known.get(quantity.key, [])] or [""]
+        lines.append(f"  {quantity.label:<24}{quantity.text(value):<18}{beside[0]}".rstrip())
+        lines += [f"  {'':<42}{more}" for more in beside[1:]]
+    if summary.get("skipped"):
+        lines.append(f"  {'skipped':<24}{', '.join(summary['skipped'])}")
+    pictures = sorted((result.folder / "figures").glob("*.png"))
+    if pictures:
+        lines.append(f"  {'figures':<24}" + " ".join(str(place / "figures" / p.name) for p in pictures))
+    return "\n".join(lines)

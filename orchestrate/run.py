@@ -1,0 +1,315 @@
+"""One scene, one run, one folder: the run contract.
+
+A run happens in the folder DIR.part. Finished, it takes DIR's place by rename, complete: a folder with summary.json is
+a finished run. Interrupted, it leaves nothing. Failed, its files stay for a look (log.txt, history.csv, scene.toml,
+failure.json), in DIR, or in DIR.failed where DIR holds an earlier finished run, which is not lost.
+"""
+
+import fcntl
+import hashlib
+import json
+import math
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tomllib
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from . import freefem, mesh
+from .failure import BadInput, Failure, Unreadable
+from .parameters import ROOT, Value
+from .scene import Scene
+
+FAILURES = {10: "bad input", 11: "step failed", 12: "material broke down", 13: "not installed", 14: "unreadable"}
+
+
+@dataclass(frozen=True)
+class RunResult:
+    """A finished run. `reused`: it was there already."""
+
+    folder: Path
+    summary: dict
+    reused: bool
+
+    @cached_property
+    def history(self) -> dict[str, np.ndarray]:
+        """The columns of history.csv, each (steps,), SI units."""
+        return read_history(self.folder)
+
+    @cached_property
+    def scene(self) -> dict[str, Value]:
+        """Every parameter as used."""
+        return read_scene(self.folder)
+
+
+def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | None = None, *,
+        mesh_file: Path | None = None, force: bool = False, progress: bool = False, pictures: bool = True) -> RunResult:
+    """Runs `scene` with some parameters overridden in the folder `out` (default results/<scene>), or reuses it.
+
+    Raises Failure with the exit code of the run contract. `force` runs again even if the folder is up to date.
+    """
+    scene = scene.override(overrides or {})
+    folder = (out or ROOT / "results" / scene.name).resolve()
+    finished = _finished(folder, force)
+    if mesh_file:
+        mesh_file = mesh_file.resolve()
+        mesh.read(mesh_file)
+    else:
+        scene = _with_mesh_sizes(scene)
+    code = code_hash()
+    if finished and not force and _same(folder, finished, scene, mesh_file, code):
+        return RunResult(folder, finished, reused=True)
+
+    program = freefem.find()
+    with _staging(folder) as stage:
+        if mesh_file:
+            shutil.copy(mesh_file, stage / "mesh.msh")
+        else:
+            values = scene.values
+            mesh.write(mesh.disc(values["radius"], values["mesh_size"], values["contact_mesh_size"], _is_half(values)),
+                       stage / "mesh.msh")
+        (stage / "fields").mkdir()
+        provenance = {"script": scene.script, "git": _git(), "code": code, "freefem": program.version,
+                      "gmsh": None if mesh_file else mesh.gmsh_version(), "mesh": _sha256(stage / "mesh.msh")}
+        flags = [text for name, value in scene.values.items() for text in (f"-{name}", str(value))]
+        flags += ["-mesh", str(stage / "mesh.msh"), "-out", str(stage)]
+        with _progress_line(scene.name) if progress else nullcontext() as show:
+            exit_code = freefem.run(program, scene.script, flags, stage / "log.txt", show)
+        if not any((stage / "fields").iterdir()):
+            (stage / "fields").rmdir()
+        try:
+            _check(stage, exit_code)
+        except Failure as failure:
+            kept = _failed(folder) if finished else folder
+            _keep_failed(stage, failure, provenance)
+            _replace(stage, kept)
+            failure.folder = kept
+            raise
+        _finish(stage, provenance, pictures)
+        _replace(stage, folder)
+    return RunResult(folder, read_summary(folder), reused=False)
+
+
+# ---- what is in a folder
+
+def read_history(folder: Path) -> dict[str, np.ndarray]:
+    """The columns of history.csv by name, each (steps,); Unreadable when it is missing or no table of numbers."""
+    path = folder / "history.csv"
+    try:
+        with open(path) as file:
+            columns = file.readline().strip().split(",")
+            rows = np.loadtxt(file, delimiter=",", ndmin=2)
+        return dict(zip(columns, rows.T, strict=True))
+    except (OSError, ValueError) as error:
+        raise Unreadable(f"{path} cannot be read: {_why(error)}") from None
+
+
+def read_scene(folder: Path) -> dict[str, Value]:
+    """scene.toml: every parameter as used."""
+    try:
+        return tomllib.loads((folder / "scene.toml").read_text())
+    except (OSError, ValueError) as error:
+        raise Unreadable(f"{folder / 'scene.toml'} cannot be read: {_why(error)}") from None
+
+
+def read_summary(folder: Path) -> dict:
+    """summary.json of a finished run."""
+    try:
+        summary = json.loads((folder / "summary.json").read_text())
+        if summary["status"] != "ok":
+            raise ValueError(f"status is {summary['status']!r}")
+        return summary
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise Unreadable(f"{folder / 'summary.json'} cannot be read: {_why(error)}") from None
+
+
+def _why(error: Exception) -> str:
+    return getattr(error, "strerror", None) or f"{type(error).__name__}: {error}"
+
+
+# ---- reuse
+
+def code_hash() -> str:
+    """sha256 over what decides a result besides the scene: the FreeFEM scripts and the mesh generator."""
+    files = sorted(path for path in (ROOT / "edp").rglob("*") if path.suffix in (".edp", ".idp"))
+    digest = hashlib.sha256()
+    for path in [*files, ROOT / "orchestrate/mesh.py"]:
+        digest.update(f"{path.relative_to(ROOT)}\n".encode() + path.read_bytes())
+    return digest.hexdigest()
+
+
+def _failed(folder: Path) -> Path:
+    return folder.with_name(folder.name + ".failed")
+
+
+def _finished(folder: Path, force: bool) -> dict | None:
+    """The summary of the finished run in `folder`, None if there is none; Unreadable if the folder is not ours."""
+    for path in (folder, _failed(folder)):
+        if path.exists() and not path.is_dir():
+            raise Unreadable(f"{path} is a file; choose another --out")
+        if path.exists() and any(path.iterdir()) and not {"scene.toml", "failure.json"} & set(os.listdir(path)):
+            raise Unreadable(f"{path} has files of others in it and no scene.toml; choose another --out")
+    if not (folder / "summary.json").exists():
+        return None
+    try:
+        return read_summary(folder)
+    except Unreadable as error:
+        if force:
+            return None
+        raise Unreadable(f"{error}; delete the folder, or run again with --force") from None
+
+
+def _same(folder: Path, summary: dict, scene: Scene, mesh_file: Path | None, code: str) -> bool:
+    """Whether the finished run in `folder` is the run that is asked for."""
+    provenance = summary.get("provenance", {})
+    if provenance.get("code") != code or provenance.get("script") != scene.script:
+        return False
+    if mesh_file:
+        same_mesh = provenance.get("mesh") == _sha256(mesh_file)
+    else:
+        same_mesh = provenance.get("gmsh") == mesh.gmsh_version()
+    used = read_scene(folder)
+    return same_mesh and all(used.get(name) == value for name, value in scene.values.items())
+
+
+# ---- the mesh
+
+def _with_mesh_sizes(scene: Scene) -> Scene:
+    values = scene.values
+    sizes = mesh.resolve_sizes(values["mesh_size"], values["contact_mesh_size"], values["accuracy"], values["radius"])
+    return scene.override(dict(zip(("mesh_size", "contact_mesh_size"), sizes)))
+
+
+def _is_half(values: dict[str, Value]) -> bool:
+    """Half a disc is enough where nothing breaks the symmetry x -> -x."""
+    symmetric = values["angle"] == 90 and values["spin"] == 0
+    if values["symmetry"] == "half" and not symmetric:
+        raise BadInput("symmetry: half needs angle = 90 and spin = 0 (accepted here: auto|full)")
+    return symmetric and values["symmetry"] != "full"
+
+
+# ---- the folder of a run
+
+@contextmanager
+def _staging(folder: Path) -> Iterator[Path]:
+    """An empty folder DIR.part, locked against a second run and gone in the end."""
+    stage = folder.with_name(folder.name + ".part")
+    try:
+        stage.mkdir(parents=True, exist_ok=True)
+        lock = os.open(stage, os.O_RDONLY)
+    except OSError as error:
+        raise Unreadable(f"{stage} cannot be made: {error.strerror}; choose another --out") from None
+    try:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise Unreadable(f"{folder} is being written by another run; wait, or choose another --out") from None
+        try:
+            for left_over in stage.iterdir():   # of a run that was killed
+                shutil.rmtree(left_over) if left_over.is_dir() else left_over.unlink()
+            yield stage
+        finally:
+            shutil.rmtree(stage, ignore_errors=True)
+    finally:
+        os.close(lock)
+
+
+def _replace(stage: Path, folder: Path) -> None:
+    """Puts `stage` in the place of `folder`, complete or not at all."""
+    old = folder.with_name(folder.name + ".old")
+    shutil.rmtree(old, ignore_errors=True)
+    if folder.exists():
+        os.rename(folder, old)
+    os.rename(stage, folder)
+    shutil.rmtree(old, ignore_errors=True)
+
+
+def _check(stage: Path, exit_code: int) -> None:
+    """Failure unless FreeFem++ ended well AND left a finished summary and a finite history (0 alone says little)."""
+    if exit_code == 0:
+        try:
+            read_summary(stage)
+            history = read_history(stage)
+        except Unreadable as error:
+            problem = str(error).replace(f"{stage}/", "")
+            raise Failure(f"FreeFem++ ended without a result: {problem}; {_tail(stage)}") from None
+        for name, column in history.items():
+            if not np.isfinite(column).all():
+                raise Failure(f"history.csv: {name} is not finite from row {1 + np.argmin(np.isfinite(column))} on")
+        return
+    log = (stage / "log.txt").read_text()
+    said = [line.removeprefix("ffimpact: ") for line in log.splitlines() if line.startswith("ffimpact: ")]
+    if exit_code in FAILURES and said:
+        raise Failure(said[-1], exit_code)
+    if "Load error" in log:
+        raise Failure(f"FreeFem++ lacks a plugin: {_tail(stage)}; {freefem.HOW}", 13)
+    how = f"was killed by {signal.Signals(-exit_code).name}" if exit_code < 0 else f"stopped with exit code {exit_code}"
+    raise Failure(f"FreeFem++ {how}; {_tail(stage)}")
+
+
+def _tail(stage: Path) -> str:
+    lines = [line.strip() for line in (stage / "log.txt").read_text().splitlines()]
+    return "end of its log: " + " | ".join([line for line in lines if line and not line.startswith("progress ")][-4:])
+
+
+def _finish(stage: Path, provenance: dict, pictures: bool) -> None:
+    """Figures, then the summary with its provenance, last and by rename."""
+    summary = read_summary(stage) | {"provenance": provenance}
+    (stage / "summary.json").unlink()
+    _write_json(stage / "summary.json.part", summary)
+    if pictures:
+        from . import figures
+        try:
+            figures.draw(stage)
+        except Exception as error:   # a picture is no reason to lose a run
+            print(f"ffimpact: the figures could not be drawn: {error!r}", file=sys.stderr)
+    os.replace(stage / "summary.json.part", stage / "summary.json")
+
+
+def _keep_failed(stage: Path, failure: Failure, provenance: dict) -> None:
+    """failure.json: the one the script wrote, or what is known; never a summary.json."""
+    (stage / "summary.json").unlink(missing_ok=True)
+    record = {"status": FAILURES.get(failure.code, "crashed"), "message": str(failure)}
+    try:
+        record |= json.loads((stage / "failure.json").read_text())
+    except (OSError, ValueError):
+        pass
+    _write_json(stage / "failure.json", record | {"exit_code": failure.code, "provenance": provenance})
+
+
+def _write_json(path: Path, content: dict) -> None:
+    path.write_text(json.dumps(content, indent=2) + "\n")
+
+
+@contextmanager
+def _progress_line(name: str) -> Iterator[freefem.Progress]:
+    """One line on stderr, gone at the end."""
+    from tqdm import tqdm
+    with tqdm(total=1.0, desc=name, leave=False, bar_format="{desc} {percentage:3.0f}% |{bar}| {elapsed}{postfix}") as line:
+        def show(fraction: float, t: str, steps: str) -> None:
+            line.n = min(max(fraction, line.n), 1.0) if math.isfinite(fraction) else line.n
+            line.set_postfix_str(f"t = {float(t) * 1e3:.3f} ms, {steps} steps")
+        yield show
+
+
+# ---- provenance
+
+def _sha256(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def _git() -> str:
+    """The commit, with -dirty where the tree differs from it."""
+    try:
+        return subprocess.run(["git", "describe", "--always", "--dirty", "--abbrev=40", "--exclude=*"], cwd=ROOT,
+                              capture_output=True, text=True, check=True).stdout.strip()
+    except (OSError, subprocess.CalledProcessError):
+        return "unknown"

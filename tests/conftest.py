@@ -1,0 +1,39 @@
+"""Shared by the tests: a stand-in for FreeFem++, and finished-looking folders made without it."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+import fake_freefem
+
+HERE = Path(__file__).resolve().parent
+
+
+@pytest.fixture
+def fake(tmp_path, monkeypatch):
+    """Puts the stand-in in the place of FreeFem++; fake(mode) picks what it does, fake.starts() counts its runs."""
+    program, count = tmp_path / "FreeFem++", tmp_path / "starts"
+    program.write_text(f'#!/bin/sh\nexec {sys.executable} {HERE / "fake_freefem.py"} "$@"\n')
+    program.chmod(0o755)
+    monkeypatch.setenv("FREEFEM", str(program))
+    monkeypatch.setenv("FAKE_COUNT", str(count))
+
+    def choose(mode: str) -> None:
+        monkeypatch.setenv("FAKE", mode)
+
+    choose.pids = lambda: [int(line) for line in count.read_text().split()] if count.exists() else []
+    choose.starts = lambda: len(choose.pids())
+    choose("ok")
+    return choose
+
+
+@pytest.fixture
+def finished_folder(tmp_path):
+    """A result folder with a history, a scene and nine snapshots of half a disc."""
+    folder = tmp_path / "finished"
+    folder.mkdir()
+    fake_freefem.write_history(folder)
+    fake_freefem.write_fields(folder, 9)
+    fake_freefem.write_scene(folder, dict(law="svk", nu="0.45", speed="8", angle="90"))
+    return folder

@@ -1,0 +1,155 @@
+"""The command line: exit codes, one-line errors, interruption, and that `make` lists its targets."""
+
+import os
+import pty
+import re
+import signal
+import subprocess
+import sys
+import termios
+import time
+from pathlib import Path
+
+import pytest
+
+from orchestrate import parameters
+
+ROOT = parameters.ROOT
+
+
+def start(*arguments: str, **options) -> subprocess.Popen:
+    return subprocess.Popen([sys.executable, "-m", "orchestrate", *arguments], cwd=ROOT, text=True,
+                            **dict(stdout=subprocess.PIPE, stderr=subprocess.PIPE) | options)
+
+
+def call(*arguments: str) -> tuple[int, str, str]:
+    process = start(*arguments)
+    out, err = process.communicate(timeout=60)
+    return process.returncode, out, err
+
+
+def wait_for(condition, seconds: float = 10.0) -> None:
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, "waited too long"
+        time.sleep(0.02)
+
+
+def is_alive(pid: int) -> bool:
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except FileNotFoundError:
+        return False
+
+
+def test_run_reports_beside_the_published_numbers(fake, tmp_path):
+    """The report shows the key figures, the paper's contact time and what it leaves open, and the pictures."""
+    code, out, err = call("run", "disc-normal", "--out", str(tmp_path / "out"))
+    assert code == 0 and err == ""
+    assert re.search(r"contact time +4.67 ms +4.67 ± 0.02 \(NGSolve", out)
+    assert "4.8 (paper, section 3.3; k, nu not stated in the paper)" in out
+    assert "shapes.png" in out and "half of the disc" in out
+    assert "finished earlier" in call("run", "disc-normal", "--out", str(tmp_path / "out"))[1]
+
+
+def test_published_numbers_are_not_shown_beside_another_scene(fake, tmp_path):
+    """At another speed the paper has no number, and none is shown."""
+    _, out, _ = call("run", "disc-normal", "--set", "speed=4", "--set", "fields=0", "--out", str(tmp_path / "out"))
+    assert "paper" not in out and "NGSolve" not in out
+
+
+def test_quiet_is_quiet(fake, tmp_path):
+    """--quiet prints nothing."""
+    assert call("run", "disc-normal", "--quiet", "--set", "fields=0", "--out", str(tmp_path / "out")) == (0, "", "")
+
+
+@pytest.mark.parametrize("arguments, code, line", [
+    (["run", "disc-nowhere"], 10, "ffimpact: disc-nowhere: no such scene"),
+    (["run", "disc-normal", "--set", "speed=8x"], 10, "ffimpact: speed: '8x' is not a number (accepted: 0 to 10000)"),
+    (["run", "disc-normal", "--set", "speed"], 10, "ffimpact: --set: 'speed' is not of the form name=value"),
+    (["run", "disc-normal", "--set", "sped=8"], 10, "ffimpact: sped: no such parameter; did you mean speed"),
+    (["run", "disc-normal", "--mesh", "nowhere.msh"], 10, "ffimpact: mesh: "),
+    (["run", "disc-normal", "--out", "orchestrate"], 14, "ffimpact: "),
+    (["run", "disc-normal", "--out", "/proc/nowhere"], 14, "ffimpact: "),
+    (["figures", "nowhere"], 14, "ffimpact: "),
+])
+def test_expected_errors_are_one_line(fake, arguments, code, line):
+    """An expected error is one line on stderr and its exit code; no traceback."""
+    returned, out, err = call(*arguments)
+    assert returned == code and err.startswith(line) and err.count("\n") == 1, err
+
+
+def test_failure_of_the_script_is_passed_on(fake, tmp_path):
+    """The script's own line arrives on stderr as it is, with its exit code; stdout says where the files are."""
+    fake("step")
+    code, out, err = call("run", "disc-normal", "--out", str(tmp_path / "out"))
+    assert code == 11 and err == "ffimpact: step: no convergence at t = 1.2e-3 s, dt = 1e-9 s, residual 3e-4\n"
+    assert str(tmp_path.name) in out
+
+
+@pytest.mark.parametrize("number, code", [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_interrupted_run_leaves_nothing(fake, tmp_path, number, code):
+    """Ctrl-C (or SIGTERM) ends FreeFem++ too and leaves no folder, finished or half-finished."""
+    fake("slow")
+    process = start("run", "disc-normal", "--out", str(tmp_path / "out"))
+    wait_for(fake.starts)
+    process.send_signal(number)
+    _, err = process.communicate(timeout=10)
+    assert process.returncode == code and "Traceback" not in err
+    assert not is_alive(fake.pids()[0])
+    assert not list(tmp_path.glob("out*"))
+
+
+def test_killed_driver_leaves_no_orphan(fake, tmp_path):
+    """When the driver is killed outright, FreeFem++ dies with it, and the next run starts afresh."""
+    fake("slow")
+    process = start("run", "disc-normal", "--set", "fields=0", "--out", str(tmp_path / "out"))
+    wait_for(fake.starts)
+    process.kill()
+    process.communicate()
+    wait_for(lambda: not is_alive(fake.pids()[0]))
+    assert not (tmp_path / "out").exists()
+    fake("ok")
+    assert call("run", "disc-normal", "--set", "fields=0", "--out", str(tmp_path / "out"))[0] == 0
+    assert not list(tmp_path.glob("out.*"))
+
+
+def test_two_runs_do_not_share_a_folder(fake, tmp_path):
+    """A second run into the same folder is refused while the first one is at work."""
+    fake("slow")
+    first = start("run", "disc-normal", "--out", str(tmp_path / "out"))
+    wait_for(fake.starts)
+    code, _, err = call("run", "disc-normal", "--out", str(tmp_path / "out"))
+    assert code == 14 and "being written by another run" in err and first.poll() is None
+    first.terminate()
+    first.communicate()
+
+
+def test_progress_is_shown_on_a_terminal_only(fake, tmp_path):
+    """On a terminal one line shows time and steps."""
+    master, slave = pty.openpty()
+    termios.tcsetwinsize(slave, (24, 100))
+    process = start("run", "disc-normal", "--set", "fields=0", "--out", str(tmp_path / "out"), stderr=slave)
+    os.close(slave)
+    seen = ""
+    try:
+        while block := os.read(master, 10000):
+            seen += block.decode()
+    except OSError:   # the other end is closed
+        os.close(master)
+    process.communicate(timeout=60)
+    assert re.search(r"disc-normal +75% .* t = 3.000 ms, 150 steps", seen) and process.returncode == 0
+
+
+def test_lists():
+    """Scenes and parameters are listed, every one."""
+    assert "disc-normal" in call("list")[1]
+    out = call("parameters")[1]
+    assert all(re.search(rf"^{name} ", out, re.MULTILINE) for name in parameters.names())
+
+
+def test_make_lists_every_target():
+    """`make` alone lists every target with one line each."""
+    out = subprocess.run(["make", "-s"], cwd=ROOT, capture_output=True, text=True).stdout
+    targets = re.search(r"^\.PHONY: (.*)$", (ROOT / "Makefile").read_text(), re.MULTILINE)[1].split()
+    assert [line.split()[1] for line in out.splitlines()] == targets

@@ -1,0 +1,97 @@
+"""The parameter table and the scenes that are made of it."""
+
+import re
+
+import pytest
+
+from orchestrate import parameters, scene
+from orchestrate.failure import BadInput
+
+
+def test_every_row_of_the_table_is_read():
+    """No row of the table is skipped in silence, and each has a unit, a help text and a default that is accepted."""
+    text = parameters.TABLE.read_text().partition("// THE TABLE")[2].partition("// END OF THE TABLE")[0]
+    assert len(parameters.table()) == len(re.findall(r"^\w+ \w+\s*= parameter", text, re.MULTILINE)) > 20
+    for row in parameters.table().values():
+        assert row.unit and row.help, row.name
+        if row.kind != "path":
+            assert row.check(row.default) == row.default
+
+
+def test_known_rows():
+    """Values of the table arrive with their types."""
+    table = parameters.table()
+    assert (table["young"].default, table["young"].unit, table["young"].low) == (7e6, "Pa", 1.0)
+    assert table["law"].words[:2] == ("svk", "neohookean")
+    assert table["fields"].kind == "int" and type(table["fields"].default) is int
+    assert table["mesh"].kind == "path" and "mesh" not in parameters.names()
+
+
+@pytest.mark.parametrize("given, value", [("8", 8.0), ("+8.5", 8.5), (".5", 0.5), ("1e-3", 1e-3), (8, 8.0)])
+def test_numbers_that_are_accepted(given, value):
+    """Text and TOML values give the same number."""
+    assert parameters.check({"speed": given}) == {"speed": value}
+
+
+@pytest.mark.parametrize("name, given, message", [
+    ("speed", "8x", "speed: '8x' is not a number (accepted: 0 to 10000)"),
+    ("speed", "", "speed: '' is not a number (accepted: 0 to 10000)"),
+    ("speed", "1_000", "speed: '1_000' is not a number (accepted: 0 to 10000)"),
+    ("speed", "nan", "speed: 'nan' is not a number (accepted: 0 to 10000)"),
+    ("speed", float("nan"), "speed: nan is out of range (accepted: 0 to 10000)"),
+    ("speed", True, "speed: 'True' is not a number (accepted: 0 to 10000)"),
+    ("speed", "-1", "speed: -1 is out of range (accepted: 0 to 10000)"),
+    ("fields", "2.5", "fields: '2.5' is not a whole number (accepted: 0 to 10000)"),
+    ("law", "hooke", "law: 'hooke' is not known (accepted: " + "|".join(parameters.table()["law"].words) + ")"),
+])
+def test_bad_values_are_named_with_what_is_accepted(name, given, message):
+    """The message for a bad value names the parameter, the value and the range or the words, as the scripts do."""
+    with pytest.raises(BadInput) as error:
+        parameters.check({name: given})
+    assert str(error.value) == message and error.value.code == 10
+
+
+def test_unknown_parameter_gets_a_suggestion():
+    """A misspelt parameter is named, with the closest match and the list of all."""
+    with pytest.raises(BadInput, match="sped: no such parameter; did you mean speed.*accepted: law, young"):
+        parameters.check({"sped": 8})
+    with pytest.raises(BadInput, match="^mesh: no such parameter"):
+        parameters.check({"mesh": "file.msh"})
+
+
+@pytest.mark.parametrize("name", scene.built_in())
+def test_built_in_scenes_load(name):
+    """Every scene that comes with the program has a title, and a value for every parameter."""
+    loaded = scene.load(name)
+    assert loaded.title and list(loaded.values) == parameters.names()
+
+
+def test_scene_file(tmp_path):
+    """A TOML file sets what differs from the defaults; overriding leaves the original alone."""
+    path = tmp_path / "fast.toml"
+    path.write_text('title = "fast"\nscript = "disc-plane"\nspeed = 11\n')
+    loaded = scene.load(str(path))
+    assert (loaded.name, loaded.title, loaded.values["speed"], loaded.values["nu"]) == ("fast", "fast", 11.0, 0.45)
+    assert loaded.override({"speed": "2"}).values["speed"] == 2.0 and loaded.values["speed"] == 11.0
+
+
+@pytest.mark.parametrize("text, words", [
+    ("speed = = 3", "bad.toml: cannot be read"),
+    ("sped = 3", "bad.toml: sped: no such parameter; did you mean speed"),
+    ("speed = 'fast'", "bad.toml: speed: 'fast' is not a number"),
+    ("speed = -3", "bad.toml: speed: -3 is out of range"),
+    ("[speed]\nvalue = 3", "bad.toml: speed: .* is not a number"),
+    ("script = 'nothing'", "bad.toml: script: 'nothing' is not known"),
+    ("script = ['nothing']", "bad.toml: script: .* is not known"),
+])
+def test_bad_scene_files_are_named(tmp_path, text, words):
+    """A broken scene file is bad input that names the file and the key."""
+    (tmp_path / "bad.toml").write_text(text)
+    with pytest.raises(BadInput, match=words):
+        scene.load(str(tmp_path / "bad.toml"))
+
+
+def test_missing_scene_lists_the_built_in_ones():
+    """A scene that does not exist is bad input that lists what there is."""
+    with pytest.raises(BadInput, match="no such scene .built in: .*disc-normal"):
+        scene.load("disc-nowhere")

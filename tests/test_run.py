@@ -1,0 +1,190 @@
+"""The run contract: one scene, one run, one folder; what is kept, reused and refused."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from orchestrate import freefem, mesh, run, scene
+from orchestrate.failure import BadInput, Failure, NotInstalled, Unreadable
+
+
+def go(out: Path, overrides: dict | None = None, **options) -> run.RunResult:
+    return run.run(scene.load("disc-normal"), {"fields": 0} | (overrides or {}), out, **{"pictures": False} | options)
+
+
+def test_finished_run_is_complete(fake, tmp_path):
+    """A finished run has the whole folder, a summary with provenance, and leaves no staging folder."""
+    result = go(tmp_path / "out", {"fields": 2}, pictures=True)
+    assert {"scene.toml", "history.csv", "summary.json", "log.txt", "mesh.msh", "fields.pvd", "fields", "figures"} == {
+        p.name for p in result.folder.iterdir()}
+    assert set(result.summary["provenance"]) == {"script", "git", "code", "freefem", "gmsh", "mesh"}
+    assert result.summary["status"] == "ok" and not result.reused
+    assert result.history["t"].shape == (200,) and result.scene["speed"] == 8.0
+    assert not list(tmp_path.glob("out.*"))
+
+
+def test_mesh_sizes_are_recorded(fake, tmp_path):
+    """The sizes that follow from the accuracy are in scene.toml as used, not as 0."""
+    used = go(tmp_path / "out").scene
+    assert (used["mesh_size"], used["contact_mesh_size"]) == mesh.sizes_from_accuracy(used["accuracy"], used["radius"])
+
+
+@pytest.mark.parametrize("given, half", [
+    ({}, True), ({"angle": 60}, False), ({"spin": 1}, False), ({"symmetry": "full"}, False), ({"symmetry": "half"}, True)])
+def test_half_is_meshed_where_it_is_enough(fake, tmp_path, given, half):
+    """Half a disc is meshed unless direction, spin or the user ask for the whole."""
+    m = mesh.read(go(tmp_path / "out", given).folder / "mesh.msh")
+    assert (m.points[:, 0].min() >= 0) == half
+
+
+def test_half_of_an_oblique_impact_is_refused(fake, tmp_path):
+    """Half a disc cannot stand for an oblique impact."""
+    with pytest.raises(BadInput, match="symmetry: half needs angle = 90"):
+        go(tmp_path / "out", {"symmetry": "half", "angle": 60})
+    assert fake.starts() == 0
+
+
+def test_same_scene_and_code_is_reused(fake, tmp_path, monkeypatch):
+    """The same run is not run again; another parameter, other code, another mesh or --force run again."""
+    out = tmp_path / "out"
+    go(out)
+    assert go(out).reused and fake.starts() == 1
+    assert not go(out, {"speed": 7}).reused
+    assert go(out, {"speed": "7.0"}).reused
+    assert not go(out, {"speed": 7}, force=True).reused
+    own = tmp_path / "own.msh"
+    mesh.write(mesh.disc(0.05, 0.02, 0.01, True), own)
+    assert not go(out, mesh_file=own).reused
+    assert go(out, mesh_file=own).reused
+    mesh.write(mesh.disc(0.05, 0.02, 0.005, True), own)
+    assert not go(out, mesh_file=own).reused
+    assert not go(out).reused
+    monkeypatch.setattr(run, "code_hash", lambda: "other")
+    assert not go(out).reused
+    assert fake.starts() == 7
+
+
+def test_run_without_python_is_not_reused(fake, tmp_path):
+    """A folder that FreeFem++ wrote without us has no provenance: it is run again and replaced."""
+    result = go(tmp_path / "out")
+    summary = result.summary.copy()
+    del summary["provenance"]
+    (result.folder / "summary.json").write_text(json.dumps(summary))
+    assert not go(tmp_path / "out").reused
+
+
+@pytest.mark.parametrize("mode, code, words", [
+    ("step", 11, "^step: no convergence at t = 1.2e-3 s"),
+    ("material", 12, "^material: det F = -0.1"),
+    ("plugin", 13, "plugin.*Element_QF.*make setup"),
+    ("crash", 1, "killed by SIGABRT.*some assertion failed"),
+    ("nan", 1, "history.csv: elastic is not finite from row 8"),
+    ("silent", 1, "without a result: summary.json cannot be read"),
+])
+def test_failed_run_keeps_its_files_and_no_summary(fake, tmp_path, mode, code, words):
+    """A failed run ends with the script's line and code, keeps log, scene and failure.json, and never looks finished."""
+    fake(mode)
+    with pytest.raises(Failure, match=words) as error:
+        go(tmp_path / "out")
+    assert error.value.code == code and error.value.folder == tmp_path / "out"
+    kept = {p.name for p in (tmp_path / "out").iterdir()}
+    assert {"log.txt", "scene.toml", "failure.json"} <= kept and "summary.json" not in kept
+    record = json.loads((tmp_path / "out/failure.json").read_text())
+    assert record["status"] != "ok" and record["message"] and record["exit_code"] == code
+    assert not list(tmp_path.glob("out.*"))
+    fake("ok")
+    assert go(tmp_path / "out").summary["status"] == "ok"
+    assert not (tmp_path / "out/failure.json").exists()
+
+
+def test_failure_does_not_cost_an_earlier_result(fake, tmp_path):
+    """A failing run in the folder of a finished one leaves that one alone and keeps its own files beside it."""
+    go(tmp_path / "out")
+    before = (tmp_path / "out/summary.json").read_bytes()
+    fake("step")
+    with pytest.raises(Failure) as error:
+        go(tmp_path / "out", {"speed": 9})
+    assert (tmp_path / "out/summary.json").read_bytes() == before
+    assert error.value.folder == tmp_path / "out.failed" and (tmp_path / "out.failed/failure.json").exists()
+    assert go(tmp_path / "out").reused
+
+
+def test_left_over_of_a_killed_run_is_replaced(fake, tmp_path):
+    """What a killed run left in the staging folder does not get into a result."""
+    (tmp_path / "out.part/fields").mkdir(parents=True)
+    (tmp_path / "out.part/summary.json").write_text('{"status": "ok"}')
+    (tmp_path / "out.part/fields/old.vtu").write_text("")
+    fake("silent")
+    with pytest.raises(Failure, match="without a result"):
+        go(tmp_path / "out")
+    assert not (tmp_path / "out/summary.json").exists() and not (tmp_path / "out/fields/old.vtu").exists()
+
+
+def test_foreign_folder_is_refused(fake, tmp_path):
+    """A folder with files of others is not touched: exit code 14."""
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out/thesis.tex").write_text("years of work")
+    with pytest.raises(Unreadable, match="no scene.toml") as error:
+        go(tmp_path / "out", force=True)
+    assert error.value.code == 14 and [p.name for p in (tmp_path / "out").iterdir()] == ["thesis.tex"]
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", "null", '{"status": "running"}'])
+def test_corrupt_summary_is_named(fake, tmp_path, text):
+    """A summary that cannot be read is exit code 14 with what to do; --force runs again."""
+    go(tmp_path / "out")
+    (tmp_path / "out/summary.json").write_text(text)
+    with pytest.raises(Unreadable, match="summary.json cannot be read.*--force"):
+        go(tmp_path / "out")
+    assert not go(tmp_path / "out", force=True).reused
+
+
+def test_corrupt_scene_is_named(fake, tmp_path):
+    """A scene.toml that cannot be read is exit code 14."""
+    go(tmp_path / "out")
+    (tmp_path / "out/scene.toml").write_text("= =")
+    with pytest.raises(Unreadable, match="scene.toml cannot be read"):
+        go(tmp_path / "out")
+
+
+def test_bad_mesh_file_is_bad_input(fake, tmp_path):
+    """A mesh file that is missing or no mesh is bad input, found before anything is started."""
+    with pytest.raises(BadInput, match="nowhere.msh"):
+        go(tmp_path / "out", mesh_file=tmp_path / "nowhere.msh")
+    assert fake.starts() == 0 and not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("mode, words", [("noplugin", "lacks its plugin"), ("old", "is version 4.6, needed is 4.9")])
+def test_unusable_freefem_says_how_to_install(fake, tmp_path, mode, words):
+    """FreeFem++ without plugins or too old is exit code 13 with how to install it."""
+    fake(mode)
+    with pytest.raises(NotInstalled, match=f"{words}.*make setup") as error:
+        go(tmp_path / "out")
+    assert error.value.code == 13 and not (tmp_path / "out").exists()
+
+
+def test_missing_freefem_says_how_to_install(tmp_path, monkeypatch):
+    """No FreeFem++ at all is exit code 13 with how to install it."""
+    monkeypatch.setenv("FREEFEM", str(tmp_path / "nothing"))
+    with pytest.raises(NotInstalled, match="not found; run: make setup"):
+        freefem.find()
+
+
+def test_progress_arrives(fake, tmp_path):
+    """The progress lines of the script arrive with their fraction, time and number of steps; the log keeps them too."""
+    seen = []
+    flags = ["-fields", "0", "-mesh", __file__, "-out", str(tmp_path)]
+    assert freefem.run(freefem.find(), "disc-plane", flags, tmp_path / "log.txt", lambda *p: seen.append(p)) == 0
+    assert seen[0] == (0.25, "0.001", "50") and len(seen) == 3
+    assert "progress 0.25" in (tmp_path / "log.txt").read_text()
+
+
+def test_history_is_read_to_the_last_digit(tmp_path):
+    """A table of one row is a table too; a ragged one is named."""
+    (tmp_path / "history.csv").write_text("t,vy\n0.10000000000000001,-8\n")
+    assert np.array_equal(run.read_history(tmp_path)["t"], [0.1])
+    (tmp_path / "history.csv").write_text("t,vy\n0.1,-8\n0.2\n")
+    with pytest.raises(Unreadable, match="history.csv cannot be read"):
+        run.read_history(tmp_path)
