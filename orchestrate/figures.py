@@ -16,7 +16,7 @@ LAWS = {"svk": "St. Venant–Kirchhoff", "neohookean": "neo-Hookean", "incompres
 BLUE, ORANGE, GREEN, PURPLE, BLACK, GREY = "#0072b2", "#d55e00", "#009e73", "#aa4499", "#222222", "#999999"
 STYLE = {"font.size": 9, "axes.titlesize": 9, "axes.spines.top": False, "axes.spines.right": False,
          "axes.linewidth": 0.8, "lines.linewidth": 1.4, "legend.frameon": False, "figure.dpi": 100, "savefig.dpi": 150,
-         "figure.constrained_layout.use": True}
+         "figure.constrained_layout.use": True, "figure.constrained_layout.w_pad": 0.08}
 SHAPES = 9   # small multiples at most
 
 

@@ -86,5 +86,5 @@ def report(result: RunResult) -> str:
         lines.append(f"  {'skipped':<24}{', '.join(summary['skipped'])}")
     pictures = sorted((result.folder / "figures").glob("*.png"))
     if pictures:
-        lines.append(f"  {'figures':<24}" + " ".join(str(place / "figures" / p.name) for p in pictures))
+        lines.append(f"  {'figures':<24}" + f"{place}/figures/{{{','.join(p.stem for p in pictures)}}}.png")
     return "\n".join(lines)

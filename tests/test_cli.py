@@ -48,7 +48,7 @@ def test_run_reports_beside_the_published_numbers(fake, tmp_path):
     assert code == 0 and err == ""
     assert re.search(r"contact time +4.67 ms +4.67 ± 0.02 \(NGSolve", out)
     assert "4.8 (paper, section 3.3; k, nu not stated in the paper)" in out
-    assert "shapes.png" in out and "half of the disc" in out
+    assert "figures/{energies,force,shapes,velocity}.png" in out and "half of the disc" in out
     assert "finished earlier" in call("run", "disc-normal", "--out", str(tmp_path / "out"))[1]
 
 

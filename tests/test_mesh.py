@@ -1,9 +1,11 @@
 """The meshes that the scenes run on."""
 
+import subprocess
+
 import numpy as np
 import pytest
 
-from orchestrate import mesh
+from orchestrate import freefem, mesh
 from orchestrate.failure import BadInput
 
 CASES = [
@@ -83,6 +85,22 @@ def test_file_keeps_every_digit(tmp_path):
     back = mesh.read(tmp_path / "m.msh")
     for name in ("points", "triangles", "edges", "labels"):
         assert np.array_equal(getattr(m, name), getattr(back, name)), name
+
+
+def test_freefem_reads_it(tmp_path):
+    """FreeFEM finds the same area, and the length of each labelled boundary."""
+    m = mesh.disc(0.05, 0.01, 0.004, True)
+    mesh.write(m, tmp_path / "m.msh")
+    (tmp_path / "read.edp").write_text(
+        f'mesh Th = readmesh("{tmp_path}/m.msh"); cout.precision(15);\n'
+        'cout << Th.area << " " << int1d(Th, 1)(1.) << " " << int1d(Th, 2)(1.) << " " << Th.nv << endl;\n')
+    program = freefem.find()
+    answer = subprocess.run([program.command, "-nw", "-ne", "-v", "0", tmp_path / "read.edp"], env=program.environment,
+                            capture_output=True, text=True, check=True).stdout
+    length = np.linalg.norm(m.points[m.edges[:, 1]] - m.points[m.edges[:, 0]], axis=1)
+    expected = [twice_areas(m).sum() / 2, length[m.labels == 1].sum(), length[m.labels == 2].sum(), len(m.points)]
+    assert list(map(float, answer.split())) == pytest.approx(expected, rel=1e-12)
+    assert length[m.labels == 2].sum() == pytest.approx(0.1, rel=1e-12)
 
 
 def test_same_input_same_mesh():
