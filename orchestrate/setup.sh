@@ -23,8 +23,8 @@ find_python() {   # the first python that is new enough and can make a venv
 }
 
 missing=()
-command -v "$freefem" >/dev/null || missing+=(freefem++ libfreefem++)
-probe || compgen -G '/usr/lib/freefem++/*.so' >/dev/null || missing+=(libfreefem++)
+if ! command -v "$freefem" >/dev/null; then missing+=(freefem++ libfreefem++)
+elif ! probe && ! compgen -G '/usr/lib/freefem++/*.so' >/dev/null; then missing+=(libfreefem++); fi
 has_library libopenblas.so || missing+=(libopenblas0-pthread)
 [ -x .venv/bin/python ] || find_python >/dev/null || missing+=(python3 python3-venv)
 while read -r library package; do
@@ -49,14 +49,14 @@ if [ ${#missing[@]} -gt 0 ]; then
     root=$(command -v sudo) || stop "cannot install without root or sudo; as root run: apt-get install ${missing[*]}"
   fi
   command -v apt-get >/dev/null || stop "no apt-get here; install by other means: ${missing[*]}"
+  apt() { $root env DEBIAN_FRONTEND=noninteractive apt-get -qq "$@" </dev/null >/dev/null; }
   say "installing ${missing[*]}"
-  export DEBIAN_FRONTEND=noninteractive
-  $root apt-get update -qq
+  apt update
   wanted=()   # where the plugins come with freefem++ itself there is no libfreefem++
   for package in "${missing[@]}"; do
     if [ "$package" != libfreefem++ ] || apt-cache show "$package" >/dev/null 2>&1; then wanted+=("$package"); fi
   done
-  $root apt-get install -y -qq --no-install-recommends "${wanted[@]}" </dev/null >&2
+  apt install -y --no-install-recommends "${wanted[@]}"
 fi
 
 # Debian's FreeFem++ looks for its plugins in a folder that does not exist.
