@@ -99,11 +99,14 @@ def _velocity(history: dict[str, np.ndarray]) -> plt.Figure:
     t = 1e3 * history["t"]
     figure, axes = plt.subplots(figsize=(5.2, 3.2))
     axes.axhline(0, color=GREY, linewidth=0.6)
-    for name, colour in (("vx", ORANGE), ("vy", BLUE), ("vz", GREEN)):
-        if name in history and history[name].any():
-            axes.plot(t, history[name], color=colour, label=f"$v_{name[1]}$")
+    moving = [name for name in ("vx", "vy", "vz") if name in history and history[name].any()]
+    for name, colour in zip(moving, (BLUE, ORANGE, GREEN)):
+        axes.plot(t, history[name], color=colour, label=f"$v_{name[1]}$")
     axes.set(xlabel="time [ms]", ylabel="velocity of the centre of mass [m/s]")
-    axes.legend()
+    if moving == ["vy"]:
+        axes.set_ylabel("$v_y$ of the centre of mass [m/s]")
+    else:
+        axes.legend()
     axes.margins(x=0)
     return figure
 
