@@ -25,7 +25,8 @@ def main(argv: list[str]) -> int:
     except Failure as failure:
         print(f"ffimpact: {failure}", file=sys.stderr)
         if failure.folder:
-            print(f"files of the failed run: {os.path.relpath(failure.folder)}")
+            from .run import shown
+            print(f"files of the failed run: {shown(failure.folder)}")
         return failure.code
     except KeyboardInterrupt:
         print("ffimpact: interrupted", file=sys.stderr)

@@ -54,7 +54,7 @@ def _energies(history: dict[str, np.ndarray]) -> plt.Figure:
     """Energies [J/m] over time, and below them the error of their balance, relative to the energy at the start."""
     t = 1e3 * history["t"]
     total = history["kinetic"] + history["elastic"] + history["contact"]
-    start = total[0]
+    start = total[0] or total.max() or 1.0   # at rest: over the largest energy
     figure, (top, bottom) = plt.subplots(2, sharex=True, figsize=(5.2, 4.2), height_ratios=[3, 1])
     lines = {"kinetic": (history["kinetic"], BLUE), "elastic": (history["elastic"], ORANGE),
              "contact": (history["contact"], GREEN)}
@@ -68,7 +68,7 @@ def _energies(history: dict[str, np.ndarray]) -> plt.Figure:
         top.plot(t, values, color=colour, label=name)
     top.plot(t, total, color=BLACK, linestyle="--", label="balance" if len(lines) > 3 else "total")
     top.set(ylabel=f"energy [J{_per(history)}]", ylim=(min(0, 1.05 * min(v.min() for v, _ in lines.values())), None))
-    top.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncols=len(lines) + 1, handlelength=1.6, columnspacing=1.4)
+    top.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncols=min(len(lines) + 1, 4), handlelength=1.6, columnspacing=1.4)
     error = np.abs(history["balance"]) / start
     bottom.semilogy(t, np.where(error > 0, error, np.nan), color=BLACK, linewidth=0.9)
     bottom.set(xlabel="time [ms]", ylabel="|balance| / $E_0$")
@@ -116,7 +116,8 @@ def _shapes(series: list[tuple[float, Path]]) -> plt.Figure:
     picked = [series[k] for k in np.unique(np.linspace(0, len(series) - 1, SHAPES).round().astype(int))]
     bodies = [_deformed(vtu.read(path)) for _, path in picked]
     largest = max(stress.max() for _, _, stress in bodies)
-    width = 1.06 * max(abs(points[:, 0]).max() for points, _, _ in bodies)
+    left, right = min(points[:, 0].min() for points, _, _ in bodies), max(points[:, 0].max() for points, _, _ in bodies)
+    left, right = left - 0.03 * (right - left), right + 0.03 * (right - left)
     low = min(points[:, 1].min() for points, _, _ in bodies)
     high = 1.04 * max(points[:, 1].max() for points, _, _ in bodies)
     floor = min(low, 0) - 0.08 * high
@@ -124,15 +125,15 @@ def _shapes(series: list[tuple[float, Path]]) -> plt.Figure:
     columns = min(3, len(bodies))
     rows = -(-len(bodies) // columns)
     size = 6.4 / columns
-    figure, grid = plt.subplots(rows, columns, figsize=(6.4 + 0.8, rows * (size * (high - floor) / (2 * width) + 0.25) + 0.3),
+    figure, grid = plt.subplots(rows, columns, figsize=(6.4 + 0.8, rows * (size * (high - floor) / (right - left) + 0.25) + 0.3),
                                 squeeze=False)
     for axes in grid.flat:
         axes.set_axis_off()
     for axes, (points, triangles, stress), (t, _) in zip(grid.flat, bodies, picked):
-        axes.fill_between([-width, width], floor, 0, color="#d0d0d0", linewidth=0)
+        axes.fill_between([left, right], floor, 0, color="#d0d0d0", linewidth=0)
         axes.axhline(0, color=BLACK, linewidth=0.8)
         picture = axes.tripcolor(*points.T, triangles, stress, shading="gouraud", cmap="viridis", vmin=0, vmax=largest)
-        axes.set(xlim=(-width, width), ylim=(floor, high), aspect="equal")
+        axes.set(xlim=(left, right), ylim=(floor, high), aspect="equal")
         axes.set_title(f"{1e3 * t:.2f} ms", pad=2)
     figure.colorbar(picture, ax=grid, label="von Mises stress [MPa]", shrink=0.7, aspect=30)
     return figure

@@ -1,12 +1,11 @@
 """What a finished run is told in: its key figures, beside the published numbers of the same scene."""
 
-import os
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
 from .parameters import Value
-from .run import RunResult
+from .run import RunResult, shown
 
 REFERENCE = Path(__file__).resolve().parent / "reference"
 
@@ -71,7 +70,7 @@ def report(result: RunResult) -> str:
     summary, scene = result.summary, result.scene
     script = summary["provenance"]["script"]
     known = references(script, scene)
-    place = Path(os.path.relpath(result.folder))
+    place = shown(result.folder)
     lines = [f"{place}: " + ("finished earlier, same scene and code" if result.reused else "finished"),
              f"{scene['law']}, nu = {scene['nu']:g}, {scene['speed']:g} m/s, angle {scene['angle']:g} degrees, "
              f"penalty {scene['penalty']:g}"]

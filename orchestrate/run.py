@@ -131,6 +131,11 @@ def read_summary(folder: Path) -> dict:
         raise Unreadable(f"{folder / 'summary.json'} cannot be read: {_why(error)}") from None
 
 
+def shown(path: Path) -> Path:
+    """A path for the reader: relative where it is below the working folder."""
+    return path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path
+
+
 def _why(error: Exception) -> str:
     return getattr(error, "strerror", None) or f"{type(error).__name__}: {error}"
 
