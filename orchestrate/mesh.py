@@ -5,6 +5,7 @@ the FreeFEM side curves the boundary. The lowest point of the disc touches the p
 """
 
 import math
+import re
 import signal
 import threading
 from collections.abc import Iterator
@@ -17,6 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from .failure import BadInput, NotInstalled
+from .parameters import ROOT
 
 FREE, AXIS = 1, 2          # boundary labels
 GROWTH = 0.3               # element size gained per length of distance from the contact arc
@@ -34,12 +36,11 @@ class Mesh:
 
 
 def sizes_from_accuracy(accuracy: float, radius: float) -> tuple[float, float]:
-    """(mesh_size, contact_mesh_size) in m for a relative accuracy.
-
-    CALIBRATION: a first guess, radius/8 and radius/25 at 5e-3, with the error taken as quadratic in the size.
-    """
+    """(mesh_size, contact_mesh_size) in m for a relative accuracy, with the numbers of edp/core/disc-mesh.idp."""
+    text = (ROOT / "edp/core/disc-mesh.idp").read_text()
+    bulk, contact = map(float, re.search(r"^real bulkSize = (\S+), arcSize = (\S+);", text, re.M).groups())
     scale = math.sqrt(accuracy / 5e-3)
-    return min(radius / 8 * scale, radius / 2), min(radius / 25 * scale, radius / 4)
+    return radius * min(bulk * scale, 0.5), radius * min(contact * scale, 0.25)
 
 
 def resolve_sizes(mesh_size: float, contact_mesh_size: float, accuracy: float, radius: float) -> tuple[float, float]:
