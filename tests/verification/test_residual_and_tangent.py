@@ -1,0 +1,54 @@
+"""V2: the assembled residual, contact force, tangent and contact stiffness against direct statements of the same."""
+
+import math
+
+import pytest
+
+LAWS = ["svk", "neohookean"]
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("integrator, exponent", [
+    ("energy-momentum", 1), ("energy-momentum", 1.5), ("midpoint", 2), ("newmark", 1), ("newmark", 1.5),
+    ("backward-euler", 2), ("bdf2", 1)])
+def test_residual_is_the_one_of_the_equations(measure, law, integrator, exponent):
+    """Inertia, stress, load and contact of one step equal a varf written from the equations, to round-off."""
+    found = measure("residual", law=law, integrator=integrator, exponent=exponent)
+    assert found["state"] == 0 and found["strain"] > 0.3
+    assert found["before"] > 0 and found["switching"] > 0 and found["after"] < found["points"]
+    assert found["elastic"] < 1e-10 and found["contact"] < 1e-10 and found["total"] < 1e-10
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("degree", [1, 2])
+@pytest.mark.parametrize("integrator", ["newmark", "midpoint"])
+@pytest.mark.parametrize("body", ["block", "disc"])
+def test_tangent_is_the_derivative_of_the_residual(measure, body, law, degree, integrator):
+    """Moduli and mass give the derivative of the residual at large strain, on straight and curved elements."""
+    found = measure(f"tangent-{body}", law=law, degree=degree, integrator=integrator, accuracy=0.05)
+    assert found["state"] == 0 and found["smallest"] < 0.6
+    assert found["tangent"] < 1e-6
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_factorised_matrix_solves_and_holds_the_constraints(measure, law):
+    """The symmetric factorisation solves the tangent system; constrained unknowns stay where they are."""
+    found = measure("tangent-disc", law=law, degree=2, integrator="newmark", accuracy=0.05)
+    assert found["solve"] < 1e-11 and found["stray"] < 1e-15
+
+
+def test_curved_outline_has_the_area_of_the_disc(measure):
+    """The weights of the isoparametric half disc add up to its area; straight triangles miss 2.5 % of it."""
+    exact = math.pi * 0.05**2
+    flags = dict(law="svk", integrator="newmark", accuracy=0.05)
+    assert measure("tangent-disc", degree=2, **flags)["area"] == pytest.approx(exact, rel=1e-4)
+    assert measure("tangent-disc", degree=1, **flags)["area"] == pytest.approx(exact * 0.975, rel=2e-3)
+
+
+@pytest.mark.parametrize("exponent", [1, 1.5, 2])
+def test_contact_stiffness_is_the_derivative_of_the_traction(measure, exponent):
+    """For points that stay open or closed, rest, open and close, wherever in the step the law is evaluated."""
+    found = measure("contact-law", exponent=exponent)
+    for place in range(3):
+        assert found[f"stiffness{place}"] < 1e-6 and found[f"open{place}"] == 0
+    assert abs(found["work"]) < 1e-13 and found["alone"] < 1e-10
