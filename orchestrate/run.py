@@ -83,6 +83,8 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | Non
         flags += ["-mesh", str(stage / "mesh.msh"), "-out", str(stage)]
         with _progress_line(scene.name) if progress else nullcontext() as show:
             exit_code = freefem.run(program, scene.script, flags, stage / "log.txt", show)
+        log = stage / "log.txt"
+        log.write_text(log.read_text(errors="replace").replace(str(stage), str(shown(folder))))
         if not any((stage / "fields").iterdir()):
             (stage / "fields").rmdir()
         try:
