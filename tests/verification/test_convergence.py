@@ -14,7 +14,7 @@ def order(coarse: float, fine: float) -> float:
 
 
 @pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize("degree, sizes, expected", [(2, (0.125, 0.0625), 3), (1, (0.0625, 0.03125), 2)])
+@pytest.mark.parametrize("degree, sizes, expected", [(2, (0.125, 0.0625), 3), (1, (0.125, 0.0625), 2)])
 def test_order_in_space(measure, law, degree, sizes, expected):
     """The L2 error of the displacement falls with h^(degree + 1), at a step whose error is far smaller."""
     errors = [measure("manufactured", law=law, degree=degree, mesh_size=h, dt=0.0025, end_time=0.1, tolerance=1e-12,
