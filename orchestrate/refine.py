@@ -1,0 +1,137 @@
+"""How far mesh, time step and accuracy decide the answers of disc-normal, the converged answers, and what the penalty does."""
+
+import argparse
+from dataclasses import dataclass
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import pandas as pd
+from matplotlib.ticker import NullLocator
+
+from . import mesh, study
+from .failure import Failure
+from .figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE
+from .parameters import ROOT, defaults
+from .run import shown
+
+ANSWERS = ("contact_time", "impulse", "rebound_vy", "peak_force")   # the first three are promised to ASKED
+SHOWN = 1e-4                # %; differences below are drawn there
+ASKED = 0.5                 # % of the converged values, for the run with default parameters
+LABELS = {"mesh": ("mesh factor", "off the finest mesh [%]"), "step": ("time step [s]", "off the smallest step [%]"),
+          "accuracy": ("accuracy", "off the converged values [%]"), "penalty": ("penalty [Pa/m]", "off the stiffest [%]")}
+LIMIT = 300.0               # seconds a run may take
+
+
+@dataclass(frozen=True)
+class Series:
+    """Runs that differ in one thing, from coarse to fine: `axis` is its value for the figure and the table."""
+
+    title: str
+    axis: str
+    points: dict[float, study.Point]
+
+
+def series(quick: bool) -> dict[str, Series]:
+    """The four series by name; quick: coarser, a few seconds."""
+    bulk, contact = mesh.sizes_from_accuracy(defaults()["accuracy"], defaults()["radius"])
+    sized = {factor: {"mesh_size": factor * bulk, "contact_mesh_size": factor * contact} for factor in (2, 1, 0.5, 0.25)}
+    small, fine = (4e-5, 1.0) if quick else (5e-6, 0.5)
+    steps = (1e-4, 4e-5, 2e-5) if quick else (1e-4, 5e-5, 2e-5, 1e-5, 5e-6, 2.5e-6)
+    return {
+        "mesh": Series(f"both mesh sizes times a factor, dt = {small:g} s", "mesh factor",
+                       {f: sized[f] | {"dt": small} for f in sized if not quick or f >= fine / 2}),
+        "step": Series(f"fixed dt [s], mesh factor {fine:g}", "dt", {dt: sized[fine] | {"dt": dt} for dt in steps}),
+        "accuracy": Series("accuracy, which sets mesh and adaptive step", "accuracy",
+                           {a: {"accuracy": a} for a in ((2e-2, 5e-3) if quick else (2e-2, 1e-2, 5e-3, 2.5e-3, 1e-3))}),
+        "penalty": Series("penalty k [Pa/m]: a parameter of the model, its influence is no error", "penalty",
+                          {k: {"penalty": k} for k in ((1e9, 1e10) if quick else (1e9, 1e10, 1e11, 1e12))}),
+    }
+
+
+def main(argv: list[str]) -> int:
+    """Runs all series, prints their tables and the converged values; 0 if the default run is as near to them as asked."""
+    parser = argparse.ArgumentParser(prog="python -m orchestrate refine", description=__doc__)
+    parser.add_argument("--quick", action="store_true", help="few and coarse runs: a look at the tables, not at convergence")
+    parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/refine", help="the result folder")
+    options = parser.parse_args(argv)
+    out, wanted = options.out.resolve(), series(options.quick)
+    tables = run_all(wanted, out)
+    best, error = converged(tables)
+    default = defaults()["accuracy"]
+    at_default = tables["accuracy"].set_index("accuracy").loc[default, list(ANSWERS)]
+    compare(tables, best)
+    for name, frame in tables.items():
+        study.save(frame, out / f"{name}.csv")
+        print(f"{wanted[name].title}\n{as_text(frame, wanted[name].axis)}\n")
+    draw(tables, wanted, out / "refine.png")
+    result = pd.DataFrame({"answer": ANSWERS, "converged": best.values, "+-": error.values, "default": at_default.values,
+                           "off %": 100 * (at_default / best - 1).values})
+    study.save(result, out / "converged.csv")
+    near = (result["off %"].abs() <= ASKED)[:3].all()
+    print(f"converged: the finest mesh; error bar: the last refinements of mesh and step\n"
+          f"{study.table(result, {'answer': '', 'converged': '.7g', '+-': '.1e', 'default': '.6g', 'off %': '+.3f'})}\n\n"
+          f"the default run (accuracy {default:g}) is {'' if near else 'NOT '}within {ASKED:g} % of the converged contact time, "
+          f"impulse and rebound velocity\n\n{shown(out)}/{{{','.join(tables)},converged}}.csv, refine.png")
+    return 0 if near else 1
+
+
+def run_all(wanted: dict[str, Series], out: Path) -> dict[str, pd.DataFrame]:
+    """A table for each series, its axis in front; Failure if a run fails."""
+    keys = [(name, value) for name, each in wanted.items() for value in each.points]
+    rows = study.study([wanted[name].points[value] for name, value in keys], out, {"fields": 0}, LIMIT)
+    for (name, value), code, message in zip(keys, rows.exit, rows.message):
+        if code:
+            raise Failure(f"{name} {value:g}: {message}", code)
+    tables = {}
+    for name, each in wanted.items():
+        here = [key[0] == name for key in keys]
+        tables[name] = rows[here].assign(**{each.axis: list(each.points)}).reset_index(drop=True)
+    return tables
+
+
+def converged(tables: dict[str, pd.DataFrame]) -> tuple[pd.Series, pd.Series]:
+    """The answers on the finest mesh, and their error: what the last refinement of the mesh and of the step changed."""
+    answers = {name: frame[list(ANSWERS)] for name, frame in tables.items()}
+    last = [answers[name].iloc[-1] - answers[name].iloc[-2] for name in ("mesh", "step")]
+    return answers["mesh"].iloc[-1], last[0].abs() + last[1].abs()
+
+
+def compare(tables: dict[str, pd.DataFrame], best: pd.Series) -> None:
+    """Adds the difference in % of each answer: accuracy from the converged values, the others from their finest run."""
+    for name, frame in tables.items():
+        against = best if name == "accuracy" else frame.iloc[-1]
+        for answer in ANSWERS:
+            frame[f"{answer} %"] = 100 * (frame[answer] / against[answer] - 1)
+
+
+def as_text(frame: pd.DataFrame, axis: str) -> str:
+    """The table of a series: each answer with its difference, and what the run cost."""
+    text = frame[[axis, *ANSWERS]].astype(object)
+    for answer in ANSWERS:
+        text[answer] = [f"{value:.6g} ({percent:+.3f} %)" for value, percent in zip(frame[answer], frame[f"{answer} %"])]
+    text[["dofs", "steps", "seconds"]] = frame[["dofs", "steps", "wall_seconds"]]
+    return study.table(text, {axis: "g"} | dict.fromkeys(ANSWERS, "") | {"dofs": ".0f", "steps": ".0f", "seconds": ".1f"})
+
+
+def draw(tables: dict[str, pd.DataFrame], wanted: dict[str, Series], path: Path) -> None:
+    """The differences of the tables over what was refined, log-log; the run that is compared with is left out."""
+    with plt.rc_context(STYLE):
+        figure, grid = plt.subplots(2, 2, figsize=(8, 6.4), sharey=True)
+        for axes, (name, frame) in zip(grid.flat, tables.items()):
+            rows = frame if name == "accuracy" else frame.iloc[:-1]
+            x, differences = rows[wanted[name].axis], rows[[f"{answer} %" for answer in ANSWERS]].abs()
+            for column, colour, marker in zip(differences, (BLUE, ORANGE, GREEN, PURPLE), "osd^"):
+                axes.loglog(x, differences[column].clip(lower=SHOWN), color=colour, marker=marker, markersize=4,
+                            label=column.rstrip(" %").replace("_", " "))
+            if name in ("mesh", "step"):
+                axes.loglog(x, 0.1 * (x / x.max()) ** 2, color=GREY, linestyle=":", label="second order")
+            if name != "penalty":
+                axes.axhline(ASKED, color=BLACK, linestyle="--", linewidth=0.8, label="asked of the default run")
+            axes.set_xticks(x, [f"{value:g}" for value in x])
+            axes.xaxis.set_minor_locator(NullLocator())
+            axes.set(xlabel=LABELS[name][0], ylabel=LABELS[name][1], ylim=(SHOWN / 2, 100))
+            axes.grid(alpha=0.3)
+        figure.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=6, handlelength=1.6,
+                      columnspacing=1.4)
+        figure.savefig(path)
+        plt.close(figure)

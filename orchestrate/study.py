@@ -1,0 +1,133 @@
+"""Studies: many runs of one scene, one FreeFem++ a core at most; whatever a run comes to becomes a row of a table."""
+
+import ctypes
+import json
+import multiprocessing
+import os
+import signal
+import sys
+from collections.abc import Iterator
+from multiprocessing.connection import Connection, wait
+from pathlib import Path
+
+import pandas as pd
+from tqdm import tqdm
+
+from . import freefem, run, scene
+from .failure import Failure, Unreadable
+from .parameters import Value
+
+CORES = len(os.sched_getaffinity(0))
+TOO_LONG = 124              # exit code of a run that its time limit ended, as of timeout(1)
+tqdm.monitor_interval = 0   # no thread beside us: we fork
+Point = dict[str, Value]    # the parameters that tell this run from the others of the study
+
+
+def study(points: list[Point], folder: Path, base: Point, limit: float) -> pd.DataFrame:
+    """A row for each of `points`, in their order: its parameters, exit, message, reused, and the numbers of its summary.
+
+    Every run is disc-normal with `base` and the point's parameters on top, in folder/runs/, and may take `limit`
+    seconds. What is there already is not run again: finished runs, and failures of the same scene and code. A run
+    that fails is a row like any other, with its exit code and message; NotInstalled, without FreeFem++, is raised.
+    """
+    freefem.find()
+    names = [",".join(f"{name}={value}" for name, value in point.items()) for point in points]
+    tasks = {name: (folder / "runs" / name, base | point) for name, point in zip(names, points)}
+    found = dict(tqdm(_outcomes(tasks, limit), desc="runs", total=len(tasks), disable=None, leave=False))
+    return pd.DataFrame([point | found[name] for name, point in zip(names, points)])
+
+
+def _outcomes(tasks: dict[str, tuple[Path, Point]], limit: float) -> Iterator[tuple[str, dict]]:
+    """(name, outcome) as they are ready, a process each; leaving this in any way ends them and their FreeFem++."""
+    context = multiprocessing.get_context("fork")
+    waiting, running = list(tasks.items())[::-1], {}
+    try:
+        while waiting or running:
+            while waiting and len(running) < CORES:
+                name, task = waiting.pop()
+                receiver, sender = context.Pipe(duplex=False)
+                process = context.Process(target=_work, args=(sender, limit, *task))
+                process.start()
+                sender.close()
+                running[receiver] = name, process
+            for receiver in wait(running):
+                name, process = running.pop(receiver)
+                try:
+                    yield name, receiver.recv()
+                except EOFError:
+                    process.join()
+                    yield name, _row(1, f"its process ended with exit code {process.exitcode}", False, {})
+    finally:
+        for _, process in running.values():
+            process.terminate()
+        for _, process in running.values():
+            process.join()
+
+
+def _work(sender: Connection, limit: float, folder: Path, values: Point) -> None:
+    """One point in a process of its own."""
+    def too_long(number, frame):
+        raise Failure(f"no end after {limit:g} s: killed", TOO_LONG)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)         # Ctrl-C is for the parent, who then ends us
+    signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(128 + number))   # run() tidies up on the way out
+    signal.signal(signal.SIGALRM, too_long)              # likewise
+    ctypes.CDLL(None).prctl(1, signal.SIGTERM)           # PR_SET_PDEATHSIG
+    signal.setitimer(signal.ITIMER_REAL, limit)
+    sender.send(_outcome(folder, values))
+
+
+def _outcome(folder: Path, values: Point) -> dict:
+    """Exit code, message, whether it was there already, and the numbers of the summary, as far as the run came."""
+    wanted = scene.load("disc-normal").override(values)
+    if failed := _failed_before(wanted, folder):
+        return _row(failed["exit_code"], failed["message"], True, failed)
+    try:
+        result = run.run(wanted, out=folder, pictures=False)
+        return _row(0, "", result.reused, result.summary)
+    except Failure as failure:
+        record = _read_json(failure.folder / "failure.json") if failure.folder else {}
+        return _row(failure.code, str(failure), False, record)
+
+
+def _row(code: int, message: str, reused: bool, summary: dict) -> dict:
+    numbers = {name: value for name, value in summary.items() if type(value) in (int, float) and name != "exit_code"}
+    return {"exit": code, "message": message, "reused": reused} | numbers
+
+
+def _failed_before(wanted: scene.Scene, folder: Path) -> dict | None:
+    """The record of the same scene's failure with the same code: FreeFem++ would say the same again."""
+    for place in (folder, folder.with_name(folder.name + ".failed")):
+        record = _read_json(place / "failure.json")
+        if record.get("exit_code") in (11, 12) and record["provenance"]["code"] == run.code_hash():
+            try:
+                used = run.read_scene(place)
+            except Unreadable:
+                continue
+            if all(used.get(name) == value for name, value in wanted.values.items()):
+                return record
+    return None
+
+
+def _read_json(path: Path) -> dict:
+    try:
+        return json.loads(path.read_text())
+    except (OSError, ValueError):
+        return {}
+
+
+def table(frame: pd.DataFrame, formats: dict[str, str]) -> str:
+    """The columns named in `formats` (column: format, such as ".3f"; "" as it is) as a table of text in markdown."""
+    cells = [[_cell(value, form) for value in frame[name]] for name, form in formats.items()]
+    widths = [max(map(len, [name, *column])) for name, column in zip(formats, cells)]
+    lines = [list(formats), ["-" * (width - 1) + ":" for width in widths], *zip(*cells)]
+    return "\n".join("| " + " | ".join(f"{cell:>{width}}" for cell, width in zip(line, widths)) + " |" for line in lines)
+
+
+def _cell(value, form: str) -> str:
+    return "" if pd.isna(value) else format(value, form)
+
+
+def save(frame: pd.DataFrame, path: Path) -> None:
+    """Writes a tidy CSV, a row a run."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    frame.to_csv(path, index=False)

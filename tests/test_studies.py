@@ -1,0 +1,179 @@
+"""The studies: runs in parallel that survive failures, limits and interruption; stress, refine and bench on top."""
+
+import os
+import signal
+
+import pandas as pd
+import pytest
+
+from orchestrate import bench, refine, run, stress, study
+from test_cli import is_alive, start, wait_for
+
+POINTS = [{"speed": speed, "dt": dt} for speed in (4.0, 8.0) for dt in (0.0, 1e-4)]
+BASE = {"mesh_size": 0.02, "contact_mesh_size": 0.01, "fields": 0}
+
+
+def go(folder, points=POINTS, limit=30.0) -> pd.DataFrame:
+    return study.study(points, folder, BASE, limit)
+
+
+def test_rows_are_parameters_outcome_and_summary(fake, tmp_path):
+    """A row a point in the given order, with the numbers of its summary; a point given twice is run once."""
+    rows = go(tmp_path, [*POINTS, POINTS[0]])
+    assert rows[["speed", "dt"]].to_dict("records") == [*POINTS, POINTS[0]]
+    assert (rows.exit == 0).all() and (rows.message == "").all() and not rows.reused.any()
+    assert (rows.impulse == 208.2).all() and (rows.steps == 200).all() and fake.starts() == 4
+    used = [run.read_scene(folder) for folder in (tmp_path / "runs").iterdir()]
+    assert len(used) == 4 and all(scene["mesh_size"] == 0.02 for scene in used)
+
+
+@pytest.mark.parametrize("mode, code, words", [("step", 11, "step: no convergence"), ("material", 12, "material: det F"),
+                                               ("crash", 1, "killed by SIGABRT")])
+def test_failing_points_are_rows(fake, tmp_path, mode, code, words):
+    """A point that fails keeps its code, its message and what the script knew; the others go on."""
+    fake(mode)
+    rows = go(tmp_path)
+    assert (rows.exit == code).all() and rows.message.str.contains(words).all() and len(rows) == fake.starts() == 4
+    assert ("steps" in rows) == (code != 1)
+
+
+@pytest.mark.parametrize("mode, again", [("ok", 0), ("step", 0), ("material", 0), ("crash", 4)])
+def test_what_is_done_is_not_done_again(fake, tmp_path, monkeypatch, mode, again):
+    """Finished runs and failures of the same code are reused, crashes are not; with other code all is run again."""
+    fake(mode)
+    first = go(tmp_path)
+    second = go(tmp_path)
+    assert fake.starts() == 4 + again and (second.reused == (again == 0)).all()
+    pd.testing.assert_frame_equal(first.drop(columns="reused"), second.drop(columns="reused"))
+    monkeypatch.setattr(run, "code_hash", lambda: "other")
+    assert not go(tmp_path).reused.any() and fake.starts() == 8 + again
+
+
+def test_time_limit_kills_and_reports(fake, tmp_path):
+    """A run that does not end is killed at its limit, says so, and leaves nothing."""
+    fake("slow")
+    rows = go(tmp_path, POINTS[:2], limit=1.0)
+    assert (rows.exit == study.TOO_LONG).all() and (rows.message == "no end after 1 s: killed").all()
+    assert not any(map(is_alive, fake.pids())) and not any((tmp_path / "runs").iterdir())
+
+
+def test_lost_process_is_a_row(fake, tmp_path, monkeypatch):
+    """A process that dies (as when memory runs out) costs its own row only."""
+    work = study._outcome
+    monkeypatch.setattr(study, "_outcome", lambda folder, values: os._exit(9) if values["speed"] == 4 else work(folder, values))
+    rows = go(tmp_path)
+    assert rows.exit.tolist() == [1, 1, 0, 0] and rows.message[0] == "its process ended with exit code 9"
+
+
+@pytest.mark.parametrize("number, code", [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_interruption_is_clean(fake, tmp_path, number, code):
+    """One FreeFem++ a core at most; Ctrl-C ends them all, leaves no half-finished folder and no traceback."""
+    fake("slow")
+    process = start("stress", "--quick", "7", "--out", str(tmp_path / "out"), start_new_session=True)
+    wait_for(lambda: fake.starts() >= study.CORES)
+    process.send_signal(number)
+    _, err = process.communicate(timeout=20)
+    assert process.returncode == code and "Traceback" not in err, err
+    assert fake.starts() == study.CORES and not any(map(is_alive, fake.pids()))
+    assert not any((tmp_path / "out/runs").iterdir())
+
+
+def test_missing_freefem_is_said_once(tmp_path, monkeypatch, capsys):
+    """Without FreeFem++ a study does not fail point by point."""
+    monkeypatch.setenv("FREEFEM", str(tmp_path / "nothing"))
+    from orchestrate.__main__ import main
+    assert main(["stress", "--quick", "3", "--out", str(tmp_path)]) == 13
+    assert capsys.readouterr().err.count("make setup") == 1
+
+
+def test_table_is_markdown():
+    """Columns are aligned; what is missing is left empty."""
+    frame = pd.DataFrame({"law": ["svk", "neohookean"], "drift": [1e-11, None]})
+    assert study.table(frame, {"law": "", "drift": ".1e"}).splitlines() == [
+        "|        law |   drift |", "| ---------: | ------: |", "|        svk | 1.0e-11 |", "| neohookean |         |"]
+
+
+@pytest.mark.parametrize("mode, returned, words", [("ok", 0, "requirement holds"), ("material", 0, "exit 12: law"),
+                                                   ("crash", 1, "requirement FAILS for 6 sets")])
+def test_stress_reports(fake, tmp_path, capsys, mode, returned, words):
+    """The verdict follows the requirement; every set that did not finish is listed; CSV and figure are there."""
+    fake(mode)
+    assert stress.main(["--quick", "6", "--out", str(tmp_path)]) == returned
+    out = capsys.readouterr().out
+    assert words in out and "6 sets:" in out and out.count("\nexit ") == (0 if mode == "ok" else 6)
+    assert len(pd.read_csv(tmp_path / "stress.csv")) == 6 and (tmp_path / "stress.png").stat().st_size > 5000
+
+
+def test_stress_has_every_combination_once(fake, tmp_path, monkeypatch):
+    """648 sets, none twice; a part of them is always the same part."""
+    asked = []
+    monkeypatch.setattr(study, "study", lambda points, *rest: asked.append(points) or pd.DataFrame(
+        [point | {"exit": 0, "message": "", "energy_drift": 1e-12} for point in points]))
+    monkeypatch.setattr(stress, "draw", lambda *_: None)
+    monkeypatch.setattr(stress, "report", lambda *_: "")
+    for quick in ([], ["--quick", "5"], ["--quick", "5"]):
+        assert stress.main([*quick, "--out", str(tmp_path)]) == 0
+    assert len(asked[0]) == len({tuple(point.values()) for point in asked[0]}) == 648
+    assert asked[1] == asked[2] and len(asked[1]) == 5
+
+
+@pytest.mark.parametrize("row, kind, good", [
+    (dict(exit=0, message="", energy_drift=1e-9), "closed", True), (dict(exit=0, message="", energy_drift=1e-7), "open", False),
+    (dict(exit=11, message="the step"), "no step", True), (dict(exit=11, message=""), "no step", False),
+    (dict(exit=12, message="det F"), "breakdown", True), (dict(exit=10, message="end_time"), "other", False),
+    (dict(exit=study.TOO_LONG, message="no end"), "other", False)])
+def test_stress_requirement(row, kind, good):
+    """Closed balance, or 11 or 12 with a message; nothing else will do."""
+    rows = pd.DataFrame([row | {"outcome": stress.outcome(pd.Series(row))}])
+    assert rows.outcome[0] == kind and stress.holds(rows)[0] == good
+
+
+def test_stress_holds_on_real_runs(tmp_path, monkeypatch, capsys):
+    """A few hard sets with the real FreeFem++ do what is required."""
+    monkeypatch.setattr(stress, "AXES", {"law": ("svk", "neohookean"), "nu": (0.49,), "speed": (10.0,), "penalty": (1e12,),
+                                         "exponent": (1.0, 2.0), "dt": (1e-4,)})
+    monkeypatch.setattr(stress, "draw", lambda *_: None)
+    assert stress.main(["--out", str(tmp_path)]) == 0, capsys.readouterr().out
+
+
+def test_converged_values_have_an_error_bar():
+    """Finest mesh; error: what the last refinements of mesh and step changed, added."""
+    answers = lambda *values: pd.DataFrame({name: values for name in refine.ANSWERS})   # noqa: E731
+    best, error = refine.converged({"mesh": answers(1.3, 1.1, 1.0), "step": answers(2.0, 1.04, 1.02)})
+    assert best.tolist() == [1.0] * 4 and error.tolist() == pytest.approx([0.12] * 4)
+
+
+def test_refine_reports(fake, tmp_path, capsys):
+    """Four tables with a row a run, the verdict on the default run, CSVs and a figure; the penalty is no error."""
+    assert refine.main(["--quick", "--out", str(tmp_path / "out")]) == 0
+    out = capsys.readouterr().out
+    assert "its influence is no error" in out and "is within 0.5 % of the converged" in out
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {
+        "runs", "mesh.csv", "step.csv", "accuracy.csv", "penalty.csv", "converged.csv", "refine.png"}
+    assert out.count("208.2 (+0.000 %)") == sum(len(each.points) for each in refine.series(quick=True).values())
+
+
+def test_refine_fails_with_the_run(fake, tmp_path):
+    """A refinement table with a hole is none: the failing run is named."""
+    fake("step")
+    with pytest.raises(run.Failure, match="mesh 2: step: no convergence") as error:
+        refine.main(["--quick", "--out", str(tmp_path)])
+    assert error.value.code == 11
+
+
+def test_refine_series_go_from_coarse_to_fine():
+    """The default run is among them, and the mesh and step series share the run that the error bar rests on."""
+    wanted = refine.series(quick=False)
+    assert list(wanted["mesh"].points) == [2, 1, 0.5, 0.25] and 5e-3 in wanted["accuracy"].points
+    assert wanted["step"].points[5e-6] == wanted["mesh"].points[0.5]
+    assert all(list(wanted[name].points) == sorted(wanted[name].points, reverse=True) for name in ("mesh", "step", "accuracy"))
+
+
+def test_bench_compares_the_same_problem(tmp_path, capsys):
+    """Same mesh, same step, answers that agree, both energies kept; the verdict is about the ratio."""
+    code = bench.main(["--quick", "--out", str(tmp_path)])
+    row = pd.read_csv(tmp_path / "bench.csv").iloc[0]
+    assert row.impulse_ours == pytest.approx(row.impulse_textbook, rel=1e-2)
+    assert max(row.energy_drift_ours, row.energy_drift_textbook) < 1e-8
+    assert row.ratio == pytest.approx(row.seconds_a_step_textbook / row.seconds_a_step_ours)
+    assert code == (row.ratio < bench.ASKED) and "the answers differ by" in capsys.readouterr().out
