@@ -18,7 +18,9 @@ ROOT = parameters.ROOT
 
 
 def start(*arguments: str, **options) -> subprocess.Popen:
-    return subprocess.Popen([sys.executable, "-m", "orchestrate", *arguments], cwd=ROOT, text=True,
+    def hear_interrupts():   # a shell's background job has SIGINT ignored, and hands that on
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+    return subprocess.Popen([sys.executable, "-m", "orchestrate", *arguments], cwd=ROOT, text=True, preexec_fn=hear_interrupts,
                             **dict(stdout=subprocess.PIPE, stderr=subprocess.PIPE) | options)
 
 
