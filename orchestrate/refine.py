@@ -130,6 +130,7 @@ def draw(tables: dict[str, pd.DataFrame], wanted: dict[str, Series], path: Path)
             axes.set_xticks(x, [f"{value:g}" for value in x])
             axes.xaxis.set_minor_locator(NullLocator())
             axes.set(xlabel=LABELS[name][0], ylabel=LABELS[name][1], ylim=(SHOWN / 2, 100))
+            axes.yaxis.labelpad = 6
             axes.grid(alpha=0.3)
         figure.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=6, handlelength=1.6,
                       columnspacing=1.4)
