@@ -5,6 +5,8 @@ import math
 import pytest
 
 LAWS = ["svk", "neohookean"]
+REGULARIZATIONS = ["linear", "linear-printed", "sqrt", "tanh"]
+TRANSITIONS = ["jump", "smooth"]
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -52,3 +54,28 @@ def test_contact_stiffness_is_the_derivative_of_the_traction(measure, exponent):
     for place in range(3):
         assert found[f"stiffness{place}"] < 1e-6 and found[f"open{place}"] == 0
     assert abs(found["work"]) < 1e-13 and found["alone"] < 1e-10
+
+
+@pytest.mark.parametrize("regularization", REGULARIZATIONS)
+@pytest.mark.parametrize("transition", TRANSITIONS)
+@pytest.mark.parametrize("integrator", ["energy-momentum", "newmark", "midpoint"])
+def test_friction_force_is_the_one_of_the_equations(measure, integrator, transition, regularization):
+    """Friction (11)-(13) on points that stick, slip, run back, open and close in the step equals a varf, to round-off."""
+    found = measure("residual", law="svk", integrator=integrator, exponent=1.5, friction_static=0.7, friction_dynamic=0.5,
+                    slip_velocity=2.5, regularization=regularization, friction_transition=transition)
+    assert found["slow"] > 1 and found["fast"] > 1 and found["backwards"] > 1 and found["switching"] > 0
+    assert found["friction"] < 1e-10 and found["contact"] < 1e-10 and found["total"] < 1e-10
+
+
+@pytest.mark.parametrize("regularization", REGULARIZATIONS)
+@pytest.mark.parametrize("transition", TRANSITIONS)
+@pytest.mark.parametrize("coefficients", [(0.7, 0.5), (0.9, 0.2), (0.4, 0.4)])
+def test_friction_derivatives(measure, coefficients, transition, regularization):
+    """t_T is the printed law on the side of the jump that the velocity is on; stiffness, drag and coupling are the
+    derivatives of t_N and t_T on either side, for three exponents, wherever in the step the law is evaluated."""
+    found = measure("friction-law", friction_static=coefficients[0], friction_dynamic=coefficients[1])
+    kind = f"{regularization.removeprefix('linear-')}_{transition}"
+    assert found[f"law_{kind}"] < 1e-13 and found[f"normal_{kind}"] == 0
+    assert found[f"stiff_{kind}"] < 1e-6 and found[f"drag_{kind}"] < 1e-6 and found[f"coupling_{kind}"] < 1e-6
+    assert found[f"cross_{kind}"] == 0
+    assert found[f"falls_{kind}"] == 0   # one side of the jump never weakens with speed
