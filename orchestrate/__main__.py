@@ -1,4 +1,4 @@
-"""Command line: python -m orchestrate run|list|parameters|figures|stress|bench|refine."""
+"""Command line: python -m orchestrate run|compare|list|parameters|figures|friction-laws|stress|bench|refine."""
 
 import argparse
 import importlib
@@ -9,7 +9,7 @@ from pathlib import Path
 
 from .failure import BadInput, Failure
 
-OWN_MAIN = ("stress", "bench", "refine")   # modules with a main(argv) of their own, loaded when asked for
+OWN_MAIN = ("friction-laws", "stress", "bench", "refine")   # modules with a main(argv) of their own, loaded when asked for
 
 
 def main(argv: list[str]) -> int:
@@ -18,7 +18,7 @@ def main(argv: list[str]) -> int:
     signal.signal(signal.SIGHUP, _stop)
     try:
         if argv[:1] and argv[0] in OWN_MAIN:
-            return importlib.import_module(f"{__package__}.{argv[0]}").main(argv[1:]) or 0
+            return importlib.import_module(f"{__package__}.{argv[0].replace('-', '_')}").main(argv[1:]) or 0
         options = _parser().parse_args(argv)
         options.command(options)
         return 0

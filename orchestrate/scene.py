@@ -8,6 +8,7 @@ from . import parameters
 from .failure import BadInput
 
 SCENES = Path(__file__).resolve().parent / "scenes"
+MARCH = 'include "core/march.idp"'   # what tells the script of a scene from others
 
 
 @dataclass(frozen=True)
@@ -43,7 +44,7 @@ def load(name: str) -> Scene:
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, OSError) as error:
         raise BadInput(f"{path}: cannot be read: {error}") from None
     script, title = given.pop("script", "disc-plane"), given.pop("title", path.stem)
-    scripts = sorted(file.stem for file in (parameters.ROOT / "edp").glob("*.edp"))
+    scripts = [file.stem for file in sorted((parameters.ROOT / "edp").glob("*.edp")) if MARCH in file.read_text()]
     if script not in scripts:
         raise BadInput(f"{path}: script: '{script}' is not known (accepted: {'|'.join(scripts)})")
     try:

@@ -23,21 +23,21 @@ tqdm.monitor_interval = 0   # no thread beside us: we fork
 Point = dict[str, Value]    # the parameters that tell this run from the others of the study
 
 
-def study(points: list[Point], folder: Path, base: Point, limit: float) -> pd.DataFrame:
+def study(points: list[Point], folder: Path, base: Point, limit: float, name: str = "disc-normal") -> pd.DataFrame:
     """A row for each of `points`, in their order: its parameters, exit, message, reused, and the numbers of its summary.
 
-    Every run is disc-normal with `base` and the point's parameters on top, in folder/runs/, and may take `limit`
+    Every run is the scene `name` with `base` and the point's parameters on top, in folder/runs/, and may take `limit`
     seconds. What is there already is not run again: finished runs, and failures of the same scene and code. A run
     that fails is a row like any other, with its exit code and message; NotInstalled, without FreeFem++, is raised.
     """
     freefem.find()
-    names = [",".join(f"{name}={value}" for name, value in point.items()) for point in points]
-    tasks = {name: (folder / "runs" / name, base | point) for name, point in zip(names, points)}
+    labels = [",".join(f"{key}={value}" for key, value in point.items()) for point in points]
+    tasks = {label: (folder / "runs" / label, base | point, name) for label, point in zip(labels, points)}
     found = dict(tqdm(_outcomes(tasks, limit), desc="runs", total=len(tasks), disable=None, leave=False))
-    return pd.DataFrame([point | found[name] for name, point in zip(names, points)])
+    return pd.DataFrame([point | found[label] for label, point in zip(labels, points)])
 
 
-def _outcomes(tasks: dict[str, tuple[Path, Point]], limit: float) -> Iterator[tuple[str, dict]]:
+def _outcomes(tasks: dict[str, tuple[Path, Point, str]], limit: float) -> Iterator[tuple[str, dict]]:
     """(name, outcome) as they are ready, a process each; leaving this in any way ends them and their FreeFem++."""
     context = multiprocessing.get_context("fork")
     waiting, running = list(tasks.items())[::-1], {}
@@ -64,7 +64,7 @@ def _outcomes(tasks: dict[str, tuple[Path, Point]], limit: float) -> Iterator[tu
             process.join()
 
 
-def _work(sender: Connection, limit: float, folder: Path, values: Point) -> None:
+def _work(sender: Connection, limit: float, folder: Path, values: Point, name: str) -> None:
     """One point in a process of its own."""
     def too_long(number, frame):
         raise Failure(f"no end after {limit:g} s: killed", TOO_LONG)
@@ -73,12 +73,12 @@ def _work(sender: Connection, limit: float, folder: Path, values: Point) -> None
     signal.signal(signal.SIGALRM, too_long)              # likewise
     ctypes.CDLL(None).prctl(1, signal.SIGTERM)           # PR_SET_PDEATHSIG
     signal.setitimer(signal.ITIMER_REAL, limit)
-    sender.send(_outcome(folder, values))
+    sender.send(_outcome(folder, values, name))
 
 
-def _outcome(folder: Path, values: Point) -> dict:
+def _outcome(folder: Path, values: Point, name: str) -> dict:
     """Exit code, message, whether it was there already, and the numbers of the summary, as far as the run came."""
-    wanted = scene.load("disc-normal").override(values)
+    wanted = scene.load(name).override(values)
     if failed := _failed_before(wanted, folder):
         return _row(failed["exit_code"], failed["message"], True, failed)
     try:
