@@ -138,8 +138,9 @@ def test_stress_holds_on_real_runs(tmp_path, monkeypatch, capsys):
 
 def test_converged_values_have_an_error_bar():
     """Finest mesh; error: what the last refinements of mesh and step changed, added."""
-    answers = lambda *values: pd.DataFrame({name: values for name in refine.ANSWERS})   # noqa: E731
-    best, error = refine.converged({"mesh": answers(1.3, 1.1, 1.0), "step": answers(2.0, 1.04, 1.02)})
+    wanted = refine.ANSWERS["disc-normal"]
+    answers = lambda *values: pd.DataFrame({name: values for name in wanted})   # noqa: E731
+    best, error = refine.converged({"mesh": answers(1.3, 1.1, 1.0), "step": answers(2.0, 1.04, 1.02)}, wanted)
     assert best.tolist() == [1.0] * 4 and error.tolist() == pytest.approx([0.12] * 4)
 
 
@@ -150,7 +151,7 @@ def test_refine_reports(fake, tmp_path, capsys):
     assert "its influence is no error" in out and "is within 0.5 % of the converged" in out
     assert {path.name for path in (tmp_path / "out").iterdir()} == {
         "runs", "mesh.csv", "step.csv", "accuracy.csv", "penalty.csv", "converged.csv", "refine.png"}
-    assert out.count("208.2 (+0.000 %)") == sum(len(each.points) for each in refine.series(quick=True).values())
+    assert out.count("208.2 (+0.000 %)") == sum(len(each.points) for each in refine.series("disc-normal", quick=True).values())
 
 
 def test_refine_fails_with_the_run(fake, tmp_path):
@@ -161,10 +162,11 @@ def test_refine_fails_with_the_run(fake, tmp_path):
     assert error.value.code == 11
 
 
-def test_refine_series_go_from_coarse_to_fine():
+@pytest.mark.parametrize("scene, factors", [("disc-normal", [2, 1, 0.5, 0.25]), ("disc-oblique", [2, 1, 0.5, 0.35])])
+def test_refine_series_go_from_coarse_to_fine(scene, factors):
     """The default run is among them, and the mesh and step series share the run that the error bar rests on."""
-    wanted = refine.series(quick=False)
-    assert list(wanted["mesh"].points) == [2, 1, 0.5, 0.25] and 5e-3 in wanted["accuracy"].points
+    wanted = refine.series(scene, quick=False)
+    assert list(wanted["mesh"].points) == factors and 5e-3 in wanted["accuracy"].points
     assert wanted["step"].points[5e-6] == wanted["mesh"].points[0.5]
     assert all(list(wanted[name].points) == sorted(wanted[name].points, reverse=True) for name in ("mesh", "step", "accuracy"))
 
