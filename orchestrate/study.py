@@ -31,10 +31,15 @@ def study(points: list[Point], folder: Path, base: Point, limit: float, name: st
     that fails is a row like any other, with its exit code and message; NotInstalled, without FreeFem++, is raised.
     """
     freefem.find()
-    labels = [",".join(f"{key}={value}" for key, value in point.items()) for point in points]
-    tasks = {label: (folder / "runs" / label, base | point, name) for label, point in zip(labels, points)}
+    places = [place(folder, point) for point in points]
+    tasks = {where.name: (where, base | point, name) for where, point in zip(places, points)}
     found = dict(tqdm(_outcomes(tasks, limit), desc="runs", total=len(tasks), disable=None, leave=False))
-    return pd.DataFrame([point | found[label] for label, point in zip(labels, points)])
+    return pd.DataFrame([point | found[where.name] for where, point in zip(places, points)])
+
+
+def place(folder: Path, point: Point) -> Path:
+    """The result folder of a point of the study in `folder`."""
+    return folder / "runs" / ",".join(f"{name}={value}" for name, value in point.items())
 
 
 def _outcomes(tasks: dict[str, tuple[Path, Point, str]], limit: float) -> Iterator[tuple[str, dict]]:
