@@ -5,7 +5,7 @@ READY := .venv/.ready
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup disc-normal disc-rolling friction-laws test stress bench refine clean
+.PHONY: help setup disc-normal disc-oblique disc-rolling friction-laws test stress bench refine clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 24
@@ -17,6 +17,9 @@ $(READY): pyproject.toml orchestrate/setup.sh orchestrate/probe.edp
 
 disc-normal: $(READY) ## a disc falls normally on a rigid plane (paper, sections 3.1 and 3.3)
 	@$(PYTHON) -m orchestrate run $@ $(ARGS)
+
+disc-oblique: $(READY) ## a disc hits the plane at 60 degrees, with friction: as the paper ran it, and converged (section 3.1)
+	@$(PYTHON) -m orchestrate compare disc-oblique-svk disc-oblique $(ARGS)
 
 disc-rolling: $(READY) ## a disc is set down on the plane, slides and comes to roll (section 3.1)
 	@$(PYTHON) -m orchestrate run $@ $(ARGS)

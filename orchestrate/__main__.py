@@ -1,4 +1,4 @@
-"""Command line: python -m orchestrate run|compare|list|parameters|figures|friction-laws|stress|bench|refine."""
+"""Command line: python -m orchestrate run|compare|list|parameters|figures|friction-laws|stick-slip|stress|bench|refine."""
 
 import argparse
 import importlib
@@ -7,9 +7,9 @@ import signal
 import sys
 from pathlib import Path
 
-from .failure import BadInput, Failure
+from .failure import Failure
 
-OWN_MAIN = ("friction-laws", "stress", "bench", "refine")   # modules with a main(argv) of their own, loaded when asked for
+OWN_MAIN = ("compare", "friction-laws", "stick-slip", "stress", "bench", "refine")   # modules with a main(argv) of their own, loaded when asked for
 
 
 def main(argv: list[str]) -> int:
@@ -65,19 +65,11 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _run(options: argparse.Namespace) -> None:
-    from . import report, run, scene
-    result = run.run(scene.load(options.scene), _overrides(options.set), options.out, mesh_file=options.mesh,
+    from . import parameters, report, run, scene
+    result = run.run(scene.load(options.scene), parameters.overrides(options.set), options.out, mesh_file=options.mesh,
                      force=options.force, progress=not options.quiet and sys.stderr.isatty())
     if not options.quiet:
         print(report.report(result))
-
-
-def _overrides(texts: list[str]) -> dict[str, str]:
-    pairs = [text.partition("=") for text in texts]
-    for name, equals, value in pairs:
-        if not (name and equals and value):
-            raise BadInput(f"--set: '{name}{equals}{value}' is not of the form name=value")
-    return {name.strip(): value.strip() for name, _, value in pairs}
 
 
 def _list(options: argparse.Namespace) -> None:
@@ -91,7 +83,7 @@ def _parameters(options: argparse.Namespace) -> None:
     for name in parameters.names():
         p = parameters.table()[name]
         default = p.default if p.kind == "word" else f"{p.default:g}"
-        print(f"{name:<19}{default:<16}{p.unit:<9}{p.help}; accepted: {p.accepted}")
+        print(f"{name:<21}{default:<17}{p.unit:<9}{p.help}; accepted: {p.accepted}")
 
 
 def _figures(options: argparse.Namespace) -> None:

@@ -1,5 +1,7 @@
-"""Figures of a finished run: energies, contact force, velocity of the centre of mass, deformed shapes."""
+"""Figures of a finished run: energies, contact force, velocity of the centre of mass, deformed shapes; with friction also
+the friction force, what slides and sticks, and the flight, as figures 4 to 6 of the paper."""
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import matplotlib
@@ -7,6 +9,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.tri import LinearTriInterpolator, Triangulation
 
 from . import vtu
 from .parameters import Value
@@ -27,9 +30,15 @@ def draw(folder: Path) -> list[Path]:
     target = folder / "figures"
     target.mkdir(exist_ok=True)
     with plt.rc_context(STYLE):
-        drawn = {"energies": _energies(history), "force": _force(history), "velocity": _velocity(history)}
+        drawn = {"energies": _energies(history), "velocity": _velocity(history)}
+        if history["friction_force"].any():
+            drawn |= {"force": _friction(history, scene), "rolling": _rolling(history, scene)}
+        else:
+            drawn["force"] = _force(history)
         if snapshots:
             drawn["shapes"] = _shapes(snapshots)
+            if vtu.read(snapshots[0][1]).points[:, 0].min() < 0:   # a whole body, which may move along the plane
+                drawn["flight"] = _flight(history, scene, snapshots)
         files = []
         for name, figure in drawn.items():
             figure.suptitle(_title(scene), fontsize=9)
@@ -40,9 +49,13 @@ def draw(folder: Path) -> list[Path]:
 
 
 def _title(scene: dict[str, Value]) -> str:
-    """Law, nu, speed, and the angle where the impact is oblique."""
+    """Law, nu, speed, the angle where the impact is oblique, and the friction law where there is one."""
     angle = "" if scene.get("angle", 90) == 90 else f" at {scene['angle']:g}°"
-    return f"{LAWS.get(scene['law'], scene['law'])}, ν = {scene['nu']:g}, {scene['speed']:g} m/s{angle}"
+    text = f"{LAWS.get(scene['law'], scene['law'])}, ν = {scene['nu']:g}, {scene['speed']:g} m/s{angle}"
+    if scene.get("friction_static", 0) > 0:
+        text += (f"\nfriction {scene['friction_static']:g} static, {scene['friction_dynamic']:g} dynamic, "
+                 f"{scene['regularization']}, ε = {scene['slip_velocity']:g} m/s")
+    return text
 
 
 def _per(history: dict[str, np.ndarray]) -> str:
@@ -51,24 +64,32 @@ def _per(history: dict[str, np.ndarray]) -> str:
 
 
 def _energies(history: dict[str, np.ndarray]) -> plt.Figure:
-    """Energies [J/m] over time, and below them the error of their balance, relative to the energy at the start."""
+    """Energies [J/m] over time, and below them the error of their balance, relative to the energy at the start.
+
+    Figure 6a: where friction takes energy or gravity gives it the total is not constant, the dashed balance is.
+    """
     t = 1e3 * history["t"]
     total = history["kinetic"] + history["elastic"] + history["contact"]
     start = total[0] or total.max() or 1.0   # at rest: over the largest energy
-    figure, (top, bottom) = plt.subplots(2, sharex=True, figsize=(5.2, 4.2), height_ratios=[3, 1])
+    figure, (top, bottom) = plt.subplots(2, sharex=True, figsize=(5.6, 4.4), height_ratios=[3, 1])
     lines = {"kinetic": (history["kinetic"], BLUE), "elastic": (history["elastic"], ORANGE),
              "contact": (history["contact"], GREEN)}
+    balance, words = total, "total"
     if history["friction_work"].any():
         lines["lost to friction"] = history["friction_work"], PURPLE
-        total = total + history["friction_work"]
+        balance, words = balance + history["friction_work"], words + " + lost"
     if history["external_work"].any():
         lines["work of gravity"] = history["external_work"], GREY
-        total = total - history["external_work"]
+        balance, words = balance - history["external_work"], words + " − work"
     for name, (values, colour) in lines.items():
         top.plot(t, values, color=colour, label=name)
-    top.plot(t, total, color=BLACK, linestyle="--", label="balance" if len(lines) > 3 else "total")
-    top.set(ylabel=f"energy [J{_per(history)}]", ylim=(min(0, 1.05 * min(v.min() for v, _ in lines.values())), None))
-    top.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncols=min(len(lines) + 1, 4), handlelength=1.6, columnspacing=1.4)
+    if words != "total":
+        top.plot(t, total, color=BLACK, linewidth=1.0, label="total")
+    top.plot(t, balance, color=BLACK, linestyle="--", label=words)
+    least = min(values.min() for values, _ in lines.values())
+    top.set(ylabel=f"energy [J{_per(history)}]", ylim=(min(0, 1.05 * least), 1.05 * max(total.max(), balance.max())))
+    columns = len(lines) + 1 if len(lines) == 3 else 3
+    top.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncols=columns, handlelength=1.6, columnspacing=1.4)
     error = np.abs(history["balance"]) / start
     bottom.semilogy(t, np.where(error > 0, error, np.nan), color=BLACK, linewidth=0.9)
     bottom.set(xlabel="time [ms]", ylabel="|balance| / $E_0$")
@@ -78,20 +99,68 @@ def _energies(history: dict[str, np.ndarray]) -> plt.Figure:
 
 
 def _force(history: dict[str, np.ndarray]) -> plt.Figure:
-    """Normal (and friction) force [kN/m] over time."""
-    t = 1e3 * history["t"]
+    """Normal force [kN/m] over time."""
     figure, axes = plt.subplots(figsize=(5.2, 3.2))
-    axes.plot(t, 1e-3 * history["normal_force"], color=BLUE, label="normal")
-    if history["friction_force"].any():
-        axes.plot(t, 1e-3 * history["friction_force"], color=ORANGE, label="friction")
-        axes.axhline(0, color=GREY, linewidth=0.6)
-        axes.legend()
-    axes.set(xlabel="time [ms]", ylabel=f"contact force [kN{_per(history)}]")
-    if not history["friction_force"].any():
-        axes.set_ylabel(f"normal force [kN{_per(history)}]")
-        axes.set_ylim(bottom=0)
+    axes.plot(1e3 * history["t"], 1e-3 * history["normal_force"], color=BLUE)
+    axes.set(xlabel="time [ms]", ylabel=f"normal force [kN{_per(history)}]", ylim=(0, None))
     axes.margins(x=0)
     return figure
+
+
+def _friction(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
+    """Figure 5: normal and friction force [kN/m] over time; beside them, enlarged, where stick and slip alternate most.
+
+    The broken lines are the coefficients times the normal force: a body of which all points slide one way is on the dynamic one.
+    """
+    t, per = 1e3 * history["t"], _per(history)
+    normal, friction = 1e-3 * history["normal_force"], 1e-3 * history["friction_force"]
+    figure, grid = plt.subplots(2, 2, figsize=(7.6, 4.8), sharex="col", width_ratios=[1.7, 1])
+    (force, share), (drag, zoom) = grid
+    force.plot(t, normal, color=BLUE)
+    force.set(ylabel=f"normal force [kN{per}]", ylim=(0, None))
+    for axes in (drag, zoom):
+        axes.axhline(0, color=GREY, linewidth=0.6)
+        for name, line in (("friction_static", ":"), ("friction_dynamic", "--")):
+            for sign in (-1, 1):
+                axes.plot(t, sign * scene[name] * normal, color=BLACK, linestyle=line, linewidth=0.8,
+                          label=f"{scene[name]:g} of the normal force" if sign > 0 else None)
+    drag.plot(t, friction, color=ORANGE)
+    drag.set(xlabel="time [ms]", ylabel=f"friction force [kN{per}]", xlim=(0, t[-1]), ylim=_around(friction, 0.3))
+    drag.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncols=2)
+    first, last = _liveliest(history)
+    inside = slice(first, last + 1)
+    zoom.plot(t, friction, color=ORANGE, linewidth=1.0, marker=".", markersize=3)
+    zoom.set(xlabel="time [ms]", xlim=(t[first], t[last]), ylim=_around(friction[inside], 0.15))
+    zoom.set_title("enlarged: stick and slip")
+    zoom.spines[:].set_visible(True)
+    share.step(t, 100 * history["sliding_fraction"], where="pre", color=PURPLE, linewidth=1.0)
+    share.set(title="share of the load that slides [%]", ylim=(0, 1.08 * max(1.0, 100 * history["sliding_fraction"][inside].max())))
+    share.tick_params(labelbottom=True)
+    for axes in (zoom, share):
+        axes.yaxis.tick_right()
+        axes.spines.right.set_visible(True)
+        axes.spines.left.set_visible(axes is zoom)
+    drag.indicate_inset_zoom(zoom, edgecolor=BLACK, linewidth=0.7)
+    return figure
+
+
+def _around(values: np.ndarray, margin: float) -> tuple[float, float]:
+    """Limits of an axis around the values, with a margin as a share of their range on either side."""
+    low, high = values.min(), values.max()
+    space = margin * ((high - low) or abs(high) or 1.0)
+    return low - space, high + space
+
+
+def _liveliest(history: dict[str, np.ndarray]) -> tuple[int, int]:
+    """First and last row of the twelfth of the contact in which the sliding load [N/m] goes up and down most."""
+    touching = np.flatnonzero(history["normal_force"] > 0)
+    t, sliding = history["t"], history["sliding_fraction"] * history["normal_force"]
+    width = (t[touching[-1]] - t[touching[0]]) / 12
+    travelled = np.concatenate([[0], np.cumsum(np.abs(np.diff(sliding)))])
+    ends = np.minimum(np.searchsorted(t, t + width), len(t) - 1)
+    lively = travelled[ends] - travelled - np.abs(sliding[ends] - sliding)   # there and back again
+    first = int(np.argmax(lively))
+    return first, max(int(ends[first]), min(first + 1, len(t) - 1))
 
 
 def _velocity(history: dict[str, np.ndarray]) -> plt.Figure:
@@ -109,6 +178,146 @@ def _velocity(history: dict[str, np.ndarray]) -> plt.Figure:
         axes.legend()
     axes.margins(x=0)
     return figure
+
+
+def _rolling(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
+    """Velocity of the centre and of the rim [m/s], which are equal in rolling, and which share of the load sticks, slides on
+    and slides back. A disc that is set down on the plane: the velocities of a rigid one beside them."""
+    t = 1e3 * history["t"]
+    figure, (top, bottom) = plt.subplots(2, sharex=True, figsize=(5.6, 4.6), height_ratios=[1.6, 1])
+    top.axhline(0, color=GREY, linewidth=0.6)
+    if rigid := _rigid_rolling(history["t"], scene):
+        for values, label in zip(rigid, ("rigid disc", None)):
+            top.plot(t, values, color=BLACK, linestyle="--", linewidth=0.9, label=label)
+    top.plot(t, history["vx"], color=BLUE, label="$v_x$ of the centre")
+    top.plot(t, -scene["radius"] * history["spin"], color=ORANGE, label=r"$-\omega R$ of the rim")
+    top.set_ylabel("velocity [m/s]")
+    top.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncols=3, handlelength=1.6)
+    touches = history["normal_force"] > 0
+    back = np.minimum(history["reverse_fraction"], history["sliding_fraction"])
+    shares = {"sticks": (1 - history["sliding_fraction"], "#56b4e9"), "slides": (history["sliding_fraction"] - back, PURPLE),
+              "slides back": (back, ORANGE)}
+    if not back.any():
+        del shares["slides back"]
+    floor = np.zeros(len(t))
+    for label, (values, colour) in shares.items():
+        values = np.where(touches, 100 * values, 0)
+        bottom.fill_between(t, floor, floor + values, step="pre", color=colour, linewidth=0, label=label)
+        floor = floor + values
+    bottom.set(xlabel="time [ms]", ylabel="share of the load [%]", ylim=(0, 100))
+    bottom.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncols=3, handlelength=1.0, handleheight=1.0)
+    top.margins(x=0)
+    return figure
+
+
+def _rigid_rolling(t: np.ndarray, scene: dict[str, Value]) -> tuple[np.ndarray, np.ndarray] | None:
+    """v_x and -omega R [m/s] of a rigid disc on the plane, each (steps,): it slides until both are equal, then rolls.
+
+    None where the disc does not start on the plane or other forces than gravity act: with v0 and no spin it slides as
+    v0 - mu_d g t and rolls from v0/(3 mu_d g) on, at 2/3 v0.
+    """
+    given = lambda name: scene.get(name, 0)   # noqa: E731
+    pull = given("friction_dynamic") * given("gravity")
+    if pull <= 0 or given("angle") != 0 or any(map(given, ("height", "body_force_x", "body_force_y"))):
+        return None
+    slip = scene["speed"] + given("spin") * scene["radius"]
+    gained = np.sign(slip) * pull * np.minimum(t, abs(slip) / (3 * pull))
+    return scene["speed"] - gained, 2 * gained - given("spin") * scene["radius"]
+
+
+@dataclass(frozen=True)
+class Pose:
+    """The body at time t [s]: its closed outline (n, 2) and a material diameter (m, 2), the first point at the mark, in m."""
+
+    t: float
+    outline: np.ndarray
+    diameter: np.ndarray
+
+
+def _flight(history: dict[str, np.ndarray], scene: dict[str, Value], series: list[tuple[float, Path]]) -> plt.Figure:
+    """Figure 4b: the body along its flight with a material diameter that shows how it turns, and the way of its centre.
+
+    A run begins at the touch and ends soon after the contact: before and after it the motion is continued as that of a
+    rigid body (parabola, constant spin), dashed and named so.
+    """
+    row = lambda t: int(np.argmin(np.abs(history["t"] - t)))   # noqa: E731
+    impact = history["vy"][0] < 0 or scene.get("height", 0) > 0
+    if impact:
+        lowest = min(series, key=lambda each: history["y"][row(each[0])])
+        picked = [(series[0], "touch", BLUE), (lowest, "lowest", ORANGE), (series[-1], "end of the run", GREEN)]
+    else:
+        places = np.unique(np.linspace(0, len(series) - 1, 5).round().astype(int))
+        picked = [(series[k], "", plt.get_cmap("viridis")(0.85 * k / places[-1])) for k in places]
+    figure, axes = plt.subplots(figsize=(6.4, 5.6 if impact else 3.6))
+    axes.plot(history["x"], history["y"], color=BLACK, linewidth=1.0, label="centre of mass")
+    poses = [_pose(t, path) for (t, path), _, _ in picked]
+    for pose, (_, name, colour) in zip(poses, picked):
+        _draw_pose(axes, pose, colour, "-", f"{name}, {1e3 * pose.t:.2f} ms" if name else None)
+        if not name:
+            axes.text(pose.outline[:, 0].mean(), pose.outline[:, 1].max(), f"{1e3 * pose.t:.0f} ms", color=colour, ha="center",
+                      va="bottom")
+    free = history["normal_force"][-1] == 0 and history["vy"][-1] > 0
+    ends = [(poses[0], -1, BLUE), (poses[-1], 1, GREEN)][:1 + bool(free)] if impact else []
+    for number, (pose, sign, colour) in enumerate(ends):
+        at = row(pose.t)
+        pause = 3 * scene["radius"] / np.hypot(history["vx"][at], history["vy"][at])   # one and a half diameters apart
+        if sign < 0 and scene.get("height", 0) > 0:
+            pause = min(pause, pose.t / 2)                                              # not before the start
+        for k in (1, 2):
+            moved = _fly(pose, sign * k * pause, at, history, scene)
+            label = None if number or k == 2 else "continued as rigid motion, shape frozen"
+            _draw_pose(axes, moved, colour, (0, (4, 2)), label)
+            axes.annotate(f"{1e3 * moved.t:.1f} ms".replace("-", "−"), moved.outline[np.argmax(sign * moved.outline[:, 0])], (3 * sign, 0),
+                          textcoords="offset points", color=colour, ha="left" if sign > 0 else "right", va="center")
+        way = np.array([_fly(pose, sign * share * 2 * pause, at, history, scene).diameter.mean(axis=0) for share in np.linspace(0, 1, 50)])
+        axes.plot(*way.T, color=BLACK, linewidth=0.8, linestyle=":")
+    left, right = axes.get_xlim()
+    if ends:   # room for the times
+        left, right = left - 1.2 * scene["radius"], right + 1.2 * scene["radius"]
+    axes.axhline(0, color=BLACK, linewidth=0.8)
+    low, high = axes.get_ylim()
+    axes.fill_between([left, right], -0.3 * scene["radius"], 0, color="#d0d0d0", linewidth=0)
+    axes.set(xlim=(left, right), ylim=(-0.3 * scene["radius"], high + (0 if impact else 0.2 * scene["radius"])), aspect="equal",
+             xlabel="x [m]", ylabel="y [m]")
+    if len(ends) == 2:
+        incidence, reflection = (np.degrees(np.arctan2(abs(history["vy"][k]), abs(history["vx"][k]))) for k in (row(poses[0].t), -1))
+        axes.set_title(f"angle to the plane: {incidence:.1f}° before, {reflection:.1f}° after")
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13 if impact else -0.2), ncols=2, handlelength=1.8)
+    return figure
+
+
+def _pose(t: float, path: Path) -> Pose:
+    """The deformed outline and the deformed upright diameter of a snapshot of a whole disc, the mark at its top."""
+    snapshot = vtu.read(path)
+    moved = snapshot.points + snapshot.fields["displacement"][:, :2]
+    sides = snapshot.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+    inner = set(map(tuple, sides[:, ::-1]))
+    following = {a: b for a, b in map(tuple, sides) if (a, b) not in inner}   # along the boundary
+    loop = [next(iter(following))]
+    while following[loop[-1]] != loop[0]:
+        loop.append(following[loop[-1]])
+    low, high = snapshot.points.min(axis=0), snapshot.points.max(axis=0)
+    x = np.full(41, (low[0] + high[0]) / 2)
+    y = np.linspace(high[1], low[1], 43)[1:-1]   # not quite to the outline, which is a polygon here
+    grid = Triangulation(*snapshot.points.T, snapshot.triangles)
+    line = np.ma.stack([LinearTriInterpolator(grid, values)(x, y) for values in moved.T], axis=1)
+    return Pose(t, moved[loop + loop[:1]], np.ma.compress_rows(line))
+
+
+def _fly(pose: Pose, wait: float, row: int, history: dict[str, np.ndarray], scene: dict[str, Value]) -> Pose:
+    """The pose after another `wait` seconds (before, if negative) of rigid flight with the velocities of history's `row`."""
+    centre, velocity = (np.array([history[a][row], history[b][row]]) for a, b in (("x", "y"), ("vx", "vy")))
+    pull = np.array([scene.get("body_force_x", 0), scene.get("body_force_y", 0) - scene.get("gravity", 0)])
+    turned = history["spin"][row] * wait
+    rotation = np.array([[np.cos(turned), -np.sin(turned)], [np.sin(turned), np.cos(turned)]])
+    place = centre + velocity * wait + pull * wait**2 / 2
+    return Pose(pose.t + wait, *((points - centre) @ rotation.T + place for points in (pose.outline, pose.diameter)))
+
+
+def _draw_pose(axes: plt.Axes, pose: Pose, colour, line, label: str | None) -> None:
+    axes.plot(*pose.outline.T, color=colour, linestyle=line, linewidth=1.1, label=label)
+    axes.plot(*pose.diameter.T, color=colour, linewidth=0.7)
+    axes.plot(*pose.diameter[0], color=colour, marker="o", markersize=4)
 
 
 def _shapes(series: list[tuple[float, Path]]) -> plt.Figure:

@@ -90,3 +90,12 @@ def check(given: dict[str, Value]) -> dict[str, Value]:
 def defaults() -> dict[str, Value]:
     """Every parameter of a scene at its default."""
     return {name: table()[name].default for name in names()}
+
+
+def overrides(texts: list[str]) -> dict[str, str]:
+    """The pairs of --set name=value; BadInput where one has another form."""
+    pairs = [text.partition("=") for text in texts]
+    for name, equals, value in pairs:
+        if not (name and equals and value):
+            raise BadInput(f"--set: '{name}{equals}{value}' is not of the form name=value")
+    return {name.strip(): value.strip() for name, _, value in pairs}

@@ -9,6 +9,8 @@ from .run import RunResult, shown
 
 REFERENCE = Path(__file__).resolve().parent / "reference"
 
+LEFT_OUT_AT_ZERO = ("friction_work", "rebound_vx", "spin", "sliding_time", "sticking_time", "reverse_slip_time", "unsolved_jumps")
+
 
 @dataclass(frozen=True)
 class Quantity:
@@ -40,6 +42,10 @@ def rows(per_metre: bool) -> list[Quantity]:
         Quantity("impulse", "impulse", f"N s{per}", digits=".5g"),
         Quantity("rebound_vx", "rebound velocity, x", "m/s"),
         Quantity("rebound_vy", "rebound velocity, y", "m/s"),
+        Quantity("spin", "spin", "rad/s"),
+        Quantity("sliding_time", "load slides for", "ms", 1e3),
+        Quantity("reverse_slip_time", "  of it backwards", "ms", 1e3),
+        Quantity("sticking_time", "load sticks for", "ms", 1e3),
         Quantity("energy_initial", "energy at the start", f"J{per}"),
         Quantity("vibration_energy", "left in vibration", f"J{per}"),
         Quantity("friction_work", "lost to friction", f"J{per}"),
@@ -47,7 +53,10 @@ def rows(per_metre: bool) -> list[Quantity]:
         Quantity("max_penetration", "largest penetration", "mm", 1e3, ".3g"),
         Quantity("min_jacobian", "smallest det F", digits=".3f"),
         Quantity("min_stretch", "smallest stretch", digits=".3f"),
-        Quantity("breakdown_time", "material broke down at", "ms", 1e3),
+        Quantity("breakdown_time", "det F <= 0 from", "ms", 1e3),
+        Quantity("breakdown_x", "  there X =", "mm", 1e3),
+        Quantity("breakdown_y", "  there Y =", "mm", 1e3),
+        Quantity("unsolved_jumps", "unsolved jumps", "steps of points in a jump of the friction law", digits=".0f"),
         Quantity("steps", "steps", digits=".0f"),
         Quantity("dofs", "degrees of freedom", digits=".0f"),
         Quantity("wall_seconds", "wall time", "s", digits=".2f"),
@@ -76,7 +85,7 @@ def report(result: RunResult) -> str:
              f"penalty {scene['penalty']:g}"]
     for quantity in rows(per_metre=not script.startswith("ball")):
         value = summary.get(quantity.key)
-        if value is None or (value == 0 and quantity.key in ("friction_work", "rebound_vx")):
+        if value is None or (abs(value) < 1e-9 and quantity.key in LEFT_OUT_AT_ZERO):
             continue
         beside = [quantity.beside(number) for number in known.get(quantity.key, [])] or [""]
         lines.append(f"  {quantity.label:<24}{quantity.text(value):<18}{beside[0]}".rstrip())

@@ -101,7 +101,7 @@ def test_both_ways_in_refuse_alike(tmp_path, name, value):
 @pytest.mark.parametrize("flags, words", [
     (("-velocity", "8"), r"-velocity: no such parameter \(accepted: .*speed"),
     (("-speed",), "speed: a value is missing"), (("-speed", ""), "speed: the value is empty"),
-    (("-speed", "0"), "speed: 0 without spin, gravity or height"),
+    (("-speed", "0"), "speed: 0 without spin, gravity or body force"),
     (("-angle", "60", "-symmetry", "half"), "symmetry: half needs"), (("-spin", "1", "-symmetry", "half"), "symmetry: half needs"),
     (("-mesh_size", "0.06"), "mesh_size: 0.06 is larger than the radius 0.05"),
     (("-mesh_size", "0.01", "-contact_mesh_size", "0.02"), "contact_mesh_size: 0.02 is larger than mesh_size 0.01"),

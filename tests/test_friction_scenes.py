@@ -1,0 +1,179 @@
+"""Scenes with friction: that they load, run, are reported and drawn as the paper's figures 4 to 6 are."""
+
+import re
+
+import numpy as np
+import pytest
+
+from orchestrate import compare, figures, parameters, report, run, scene, study, vtu
+from orchestrate.__main__ import main
+from orchestrate.failure import BadInput
+
+COARSE = {"degree": 1, "mesh_size": 0.0125, "contact_mesh_size": 0.0125, "fields": 3}
+FRICTIONLESS = {"energies", "force", "shapes", "velocity"}
+
+
+@pytest.fixture(scope="module")
+def oblique(tmp_path_factory):
+    """The oblique impact as the paper ran it, with the real FreeFem++."""
+    return run.run(scene.load("disc-oblique-svk"), {"fields": 5}, tmp_path_factory.mktemp("friction") / "oblique")
+
+
+@pytest.mark.parametrize("name", scene.built_in())
+def test_built_in_scenes_load(name):
+    """Every built-in scene has a title, a script of its own kind and every parameter."""
+    loaded = scene.load(name)
+    assert loaded.title != name and set(loaded.values) == set(parameters.names())
+
+
+def test_scenes_of_the_paper():
+    """Both oblique scenes are section 3.1: 12 m/s at 60 degrees, 0.7 static, 0.5 dynamic; only the law and mesh differ."""
+    stated = dict(speed=12, angle=60, friction_static=0.7, friction_dynamic=0.5, density=1722, young=7e6, radius=0.05)
+    converged, printed = scene.load("disc-oblique").values, scene.load("disc-oblique-svk").values
+    assert stated.items() <= converged.items() and stated.items() <= printed.items()
+    assert {name for name in converged if converged[name] != printed[name]} == {
+        "law", "breakdown", "degree", "mesh_size", "contact_mesh_size", "accuracy"}
+
+
+def test_a_script_without_a_march_is_no_scene(tmp_path):
+    """A scene of a script that makes no run is refused, and the scripts that do are listed."""
+    path = tmp_path / "wrong.toml"
+    path.write_text('script = "friction-laws"\n')
+    with pytest.raises(BadInput, match=r"'friction-laws' is not known \(accepted: [^)]*disc-plane") as caught:
+        scene.load(str(path))
+    assert "|friction-laws" not in str(caught.value)
+
+
+def test_oblique_impact_closes_its_balance(oblique):
+    """Friction takes energy and never gives any; with it the balance closes; the body leaves turning forwards."""
+    summary, work = oblique.summary, oblique.history["friction_work"]
+    assert summary["energy_drift"] < 1e-9 and (np.diff(work) >= -1e-9 * summary["energy_initial"]).all()
+    assert 0 < summary["friction_work"] == pytest.approx(work[-1]) and summary["spin"] < 0
+    assert summary["sliding_time"] + summary["sticking_time"] == pytest.approx(summary["contact_time"], rel=0.02)
+
+
+def test_friction_is_drawn(oblique):
+    """A frictional run gets the flight and the rolling figure as well; none is empty."""
+    drawn = {path.stem: path.stat().st_size for path in (oblique.folder / "figures").iterdir()}
+    assert set(drawn) == FRICTIONLESS | {"flight", "rolling"} and min(drawn.values()) > 10_000
+
+
+def test_whole_body_without_friction(tmp_path):
+    """Without friction there is no figure of friction or rolling; a whole body still gets its flight."""
+    values = COARSE | {"angle": 60, "speed": 4}
+    result = run.run(scene.load("disc-normal"), values, tmp_path / "slide")
+    assert {path.stem for path in (result.folder / "figures").iterdir()} == FRICTIONLESS | {"flight"}
+    assert "slide" not in report.report(result).replace(str(result.folder), "") and "lost to friction" not in report.report(result)
+
+
+@pytest.mark.parametrize("values", [{"height": 0.01, "speed": 0, "angle": 90, "gravity": 9.81, "symmetry": "full"},
+                                    {"height": 0.01, "spin": 50, "gravity": 9.81}, {"end_time": 1e-3},
+                                    {"regularization": "tanh", "friction_transition": "smooth"}, {"fields": 1}, {"fields": 0}])
+def test_figures_of_unusual_runs(tmp_path, values):
+    """Falls from rest, spins, runs that end inside the contact or keep one or no snapshot are drawn without an error."""
+    result = run.run(scene.load("disc-oblique"), COARSE | values, tmp_path / "run", pictures=False)
+    names = {path.stem for path in figures.draw(result.folder)}
+    assert FRICTIONLESS - {"shapes"} <= names and ("flight" in names) == (result.scene["fields"] > 0)
+
+
+def test_report_tells_sliding_from_sticking(oblique):
+    """The report has the times the load slides, slides back and sticks, and the spin; the paper's number beside ours."""
+    text = report.report(oblique)
+    for label in ("load slides for", "of it backwards", "load sticks for", "spin", "lost to friction"):
+        assert label in text
+    assert "4.5 (paper, section 3.1" in text and "unsolved" not in text
+
+
+def test_report_tells_breakdown_and_unsolved_jumps(oblique):
+    """Where there are any, unsolved jumps are told in plain words, and the place and time of a breakdown in mm and ms."""
+    told = oblique.summary | {"unsolved_jumps": 7, "breakdown_time": 1.5e-3, "breakdown_x": 0.01, "breakdown_y": 0.002}
+    text = report.report(run.RunResult(oblique.folder, told, reused=False))
+    assert "7 steps of points in a jump of the friction law" in text
+    for line in (r"det F <= 0 from +1\.5 ms", r"there X = +10 mm", r"there Y = +2 mm"):
+        assert re.search(line, text)
+
+
+def test_rigid_rolling_is_the_closed_form():
+    """A rigid disc slides as v0 - mu_d g t, spins up twice as fast, and rolls at 2/3 v0 from v0/(3 mu_d g) on."""
+    used = scene.load("disc-rolling").values
+    v0, pull = used["speed"], used["friction_dynamic"] * used["gravity"]
+    t = np.array([0.0, 0.5, 1.0, 2.0]) * v0 / (3 * pull)
+    centre, rim = figures._rigid_rolling(t, used)
+    assert centre == pytest.approx(v0 * np.array([1, 5 / 6, 2 / 3, 2 / 3])) and rim == pytest.approx(v0 * np.array([0, 1 / 3, 2 / 3, 2 / 3]))
+    spun = figures._rigid_rolling(t, used | {"spin": -v0 / used["radius"]})
+    assert np.ptp(spun) == 0    # it rolls already
+    for other in ({"angle": 60.0}, {"gravity": 0.0}, {"height": 0.1}, {"friction_dynamic": 0.0}):
+        assert figures._rigid_rolling(t, used | other) is None
+
+
+def test_pose_is_the_whole_outline(oblique):
+    """The outline of the first snapshot is the closed circle of the disc, its diameter is upright with the mark on top."""
+    pose = figures._pose(*vtu.series(oblique.folder / "fields.pvd")[0])
+    assert (pose.outline[0] == pose.outline[-1]).all()
+    assert np.hypot(pose.outline[:, 0], pose.outline[:, 1] - 0.05) == pytest.approx(0.05, rel=0.01)   # a polygon of 10 mm or less a side
+    assert np.ptp(pose.diameter[:, 0]) < 1e-4 and pose.diameter[0, 1] > 0.09 and pose.diameter[-1, 1] < 0.01
+
+
+def test_flight_is_rigid_motion(oblique):
+    """Outside the run the body flies on the parabola of its centre, turns with its spin and keeps its shape."""
+    h = oblique.history
+    pose = figures._pose(*vtu.series(oblique.folder / "fields.pvd")[-1])
+    wait, pull = 0.01, 9.81
+    moved = figures._fly(pose, wait, -1, h, {"gravity": pull})
+    centre = np.array([h["x"][-1], h["y"][-1]])
+    place = centre + wait * np.array([h["vx"][-1], h["vy"][-1]]) - [0, pull * wait**2 / 2]
+    before, after = pose.outline - centre, moved.outline - place
+    assert np.hypot(*after.T) == pytest.approx(np.hypot(*before.T))
+    turned = np.angle((after[:, 0] + 1j * after[:, 1]) / (before[:, 0] + 1j * before[:, 1]))
+    assert turned == pytest.approx(h["spin"][-1] * wait) and moved.t == pose.t + wait
+
+
+@pytest.mark.parametrize("setting, line", [
+    ("friction_static=0.2", "friction_static: 0.2 is below friction_dynamic (accepted: from 0.5 to 10)"),
+    ("friction_static=-1", "friction_static: -1 is out of range (accepted: 0 to 10)"),
+    ("slip_velocity=0", "slip_velocity: 0 is out of range (accepted: 1e-09 to 10000)"),
+    ("regularization=cubic", "regularization: 'cubic' is not known (accepted: linear|linear-printed|sqrt|tanh)"),
+    ("friction_transition=none", "friction_transition: 'none' is not known (accepted: jump|smooth)"),
+])
+def test_bad_friction_is_one_line(tmp_path, capsys, setting, line):
+    """Friction that is not accepted ends with exit code 10 and one line that says what is."""
+    assert main(["run", "disc-oblique", "--set", setting, "--out", str(tmp_path / "out")]) == 10
+    assert capsys.readouterr().err == f"ffimpact: {line}\n"
+
+
+def test_compare_runs_reports_and_draws(fake, tmp_path, capsys):
+    """Each scene is run and reported once, then compared in one picture; a second time all is there."""
+    arguments = ["compare", "disc-oblique-svk", "disc-oblique", "--out", str(tmp_path / "both"), "--set", "fields=0"]
+    assert main(arguments) == 0 and fake.starts() == 2
+    out = capsys.readouterr().out
+    assert "disc-oblique-svk: finished" in out and out.strip().endswith("disc-oblique-svk-and-disc-oblique.png")
+    assert (tmp_path / "both/disc-oblique-svk-and-disc-oblique.png").stat().st_size > 20_000
+    assert main(arguments) == 0 and fake.starts() == 2
+
+
+def test_compare_goes_on_after_a_failure(fake, tmp_path, capsys):
+    """A scene that fails is named, the others are run, and the exit code is that of the failure."""
+    fake("step")
+    assert main(["compare", "disc-oblique-svk", "disc-oblique", "--out", str(tmp_path)]) == 11 and fake.starts() == 2
+    captured = capsys.readouterr()
+    assert captured.out.count("failed: step: no convergence") == 2 and captured.err.count("\n") == 1
+
+
+@pytest.mark.parametrize("scenes", [["disc-oblique"], ["disc-oblique", "disc-oblique"]])
+def test_compare_wants_two_scenes(capsys, scenes):
+    """One scene, or one twice, is bad input."""
+    assert main(["compare", *scenes]) == 10 and "two or more different scenes" in capsys.readouterr().err
+
+
+def test_comparison_of_frictional_runs(oblique, tmp_path):
+    """The comparison of runs with friction is drawn."""
+    compare.draw({"one": oblique, "two": oblique}, tmp_path / "both.png")
+    assert (tmp_path / "both.png").stat().st_size > 20_000
+
+
+def test_study_of_another_scene(fake, tmp_path):
+    """A study runs the scene that it is asked for, disc-normal otherwise."""
+    study.study([{"speed": 4.0}], tmp_path, {"fields": 0}, 30.0, "disc-oblique")
+    study.study([{"speed": 5.0}], tmp_path, {"fields": 0}, 30.0)
+    used = {folder.name: run.read_scene(folder) for folder in (tmp_path / "runs").iterdir()}
+    assert used["speed=4.0"]["friction_static"] == 0.7 and used["speed=5.0"]["friction_static"] == 0
