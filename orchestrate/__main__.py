@@ -9,7 +9,7 @@ from pathlib import Path
 
 from .failure import Failure
 
-OWN_MAIN = ("compare", "friction-laws", "stick-slip", "stress", "bench", "refine")   # modules with a main(argv) of their own, loaded when asked for
+OWN_MAIN = ("compare", "friction-laws", "stick-slip", "stress", "bench", "refine")   # modules with a main(argv)
 
 
 def main(argv: list[str]) -> int:

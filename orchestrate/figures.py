@@ -21,6 +21,7 @@ STYLE = {"font.size": 9, "axes.titlesize": 9, "axes.spines.top": False, "axes.sp
          "axes.linewidth": 0.8, "lines.linewidth": 1.4, "legend.frameon": False, "figure.dpi": 100, "savefig.dpi": 150,
          "figure.constrained_layout.use": True, "figure.constrained_layout.w_pad": 0.08}
 SHAPES = 9   # small multiples at most
+DASHED = (0, (4, 2))
 
 
 def draw(folder: Path) -> list[Path]:
@@ -37,7 +38,7 @@ def draw(folder: Path) -> list[Path]:
             drawn["force"] = _force(history)
         if snapshots:
             drawn["shapes"] = _shapes(snapshots)
-            if vtu.read(snapshots[0][1]).points[:, 0].min() < 0:   # a whole body, which may move along the plane
+            if len(snapshots) > 2 and vtu.read(snapshots[0][1]).points[:, 0].min() < 0:   # a whole body
                 drawn["flight"] = _flight(history, scene, snapshots)
         files = []
         for name, figure in drawn.items():
@@ -125,7 +126,7 @@ def _friction(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fi
                 axes.plot(t, sign * scene[name] * normal, color=BLACK, linestyle=line, linewidth=0.8,
                           label=f"{scene[name]:g} of the normal force" if sign > 0 else None)
     drag.plot(t, friction, color=ORANGE)
-    drag.set(xlabel="time [ms]", ylabel=f"friction force [kN{per}]", xlim=(0, t[-1]), ylim=_around(friction, 0.3))
+    drag.set(xlabel="time [ms]", ylabel=f"friction force [kN{per}]", xlim=(_first_touch(history), t[-1]), ylim=_around(friction, 0.3))
     drag.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncols=2)
     first, last = _liveliest(history)
     inside = slice(first, last + 1)
@@ -142,6 +143,11 @@ def _friction(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fi
         axes.spines.left.set_visible(axes is zoom)
     drag.indicate_inset_zoom(zoom, edgecolor=BLACK, linewidth=0.7)
     return figure
+
+
+def _first_touch(history: dict[str, np.ndarray]) -> float:
+    """The time [ms] of the last row before the contact, where a flight may have ended."""
+    return 1e3 * history["t"][max(0, int(np.argmax(history["normal_force"] > 0)) - 1)]
 
 
 def _around(values: np.ndarray, margin: float) -> tuple[float, float]:
@@ -204,9 +210,8 @@ def _rolling(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fig
         values = np.where(touches, 100 * values, 0)
         bottom.fill_between(t, floor, floor + values, step="pre", color=colour, linewidth=0, label=label)
         floor = floor + values
-    bottom.set(xlabel="time [ms]", ylabel="share of the load [%]", ylim=(0, 100))
+    bottom.set(xlabel="time [ms]", ylabel="share of the load [%]", xlim=(_first_touch(history), t[-1]), ylim=(0, 100))
     bottom.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncols=3, handlelength=1.0, handleheight=1.0)
-    top.margins(x=0)
     return figure
 
 
@@ -227,9 +232,11 @@ def _rigid_rolling(t: np.ndarray, scene: dict[str, Value]) -> tuple[np.ndarray, 
 
 @dataclass(frozen=True)
 class Pose:
-    """The body at time t [s]: its closed outline (n, 2) and a material diameter (m, 2), the first point at the mark, in m."""
+    """The body at time t [s]: centre of mass (2,), closed outline (n, 2) and a material diameter (m, 2), marked at its first
+    point, in m."""
 
     t: float
+    centre: np.ndarray
     outline: np.ndarray
     diameter: np.ndarray
 
@@ -246,47 +253,52 @@ def _flight(history: dict[str, np.ndarray], scene: dict[str, Value], series: lis
         lowest = min(series, key=lambda each: history["y"][row(each[0])])
         picked = [(series[0], "touch", BLUE), (lowest, "lowest", ORANGE), (series[-1], "end of the run", GREEN)]
     else:
-        places = np.unique(np.linspace(0, len(series) - 1, 5).round().astype(int))
+        places = np.linspace(0, len(series) - 1, min(5, len(series))).round().astype(int)
         picked = [(series[k], "", plt.get_cmap("viridis")(0.85 * k / places[-1])) for k in places]
     figure, axes = plt.subplots(figsize=(6.4, 5.6 if impact else 3.6))
-    axes.plot(history["x"], history["y"], color=BLACK, linewidth=1.0, label="centre of mass")
-    poses = [_pose(t, path) for (t, path), _, _ in picked]
+    run = history["t"] >= series[0][0]
+    axes.plot(history["x"][run], history["y"][run], color=BLACK, linewidth=1.0, label="centre of mass")
+    poses = [_pose(t, path, history) for (t, path), _, _ in picked]
     for pose, (_, name, colour) in zip(poses, picked):
         _draw_pose(axes, pose, colour, "-", f"{name}, {1e3 * pose.t:.2f} ms" if name else None)
         if not name:
-            axes.text(pose.outline[:, 0].mean(), pose.outline[:, 1].max(), f"{1e3 * pose.t:.0f} ms", color=colour, ha="center",
-                      va="bottom")
-    free = history["normal_force"][-1] == 0 and history["vy"][-1] > 0
-    ends = [(poses[0], -1, BLUE), (poses[-1], 1, GREEN)][:1 + bool(free)] if impact else []
-    for number, (pose, sign, colour) in enumerate(ends):
-        at = row(pose.t)
-        pause = 3 * scene["radius"] / np.hypot(history["vx"][at], history["vy"][at])   # one and a half diameters apart
-        if sign < 0 and scene.get("height", 0) > 0:
-            pause = min(pause, pose.t / 2)                                              # not before the start
-        for k in (1, 2):
-            moved = _fly(pose, sign * k * pause, at, history, scene)
-            label = None if number or k == 2 else "continued as rigid motion, shape frozen"
-            _draw_pose(axes, moved, colour, (0, (4, 2)), label)
-            axes.annotate(f"{1e3 * moved.t:.1f} ms".replace("-", "−"), moved.outline[np.argmax(sign * moved.outline[:, 0])], (3 * sign, 0),
-                          textcoords="offset points", color=colour, ha="left" if sign > 0 else "right", va="center")
-        way = np.array([_fly(pose, sign * share * 2 * pause, at, history, scene).diameter.mean(axis=0) for share in np.linspace(0, 1, 50)])
-        axes.plot(*way.T, color=BLACK, linewidth=0.8, linestyle=":")
+            axes.text(pose.centre[0], pose.outline[:, 1].max(), f"{1e3 * pose.t:.0f} ms", color=colour, ha="center", va="bottom")
+    room = 0.0
+    if impact:
+        _draw_flight(axes, poses[0], -1, row(poses[0].t), history, scene, BLUE)
+        axes.plot([], [], color=BLUE, linestyle=DASHED, label="continued as rigid motion, shape frozen")
+        if history["normal_force"][-1] == 0 and history["vy"][-1] > 0:   # it has left the plane
+            _draw_flight(axes, poses[-1], 1, -1, history, scene, GREEN)
+            at, ahead = row(poses[0].t), np.sign(history["vx"][0]) or 1.0
+            before, after = (np.degrees(np.arctan2(abs(history["vy"][k]), ahead * history["vx"][k])) for k in (at, -1))
+            axes.set_title(f"angle to the plane: {before:.1f}° before, {after:.1f}° after" + " (backwards)" * bool(after > 90))
+        room = 1.2 * scene["radius"]   # for the times beside the outlines
     left, right = axes.get_xlim()
-    if ends:   # room for the times
-        left, right = left - 1.2 * scene["radius"], right + 1.2 * scene["radius"]
+    high = axes.get_ylim()[1] + (0 if impact else 0.2 * scene["radius"])
     axes.axhline(0, color=BLACK, linewidth=0.8)
-    low, high = axes.get_ylim()
-    axes.fill_between([left, right], -0.3 * scene["radius"], 0, color="#d0d0d0", linewidth=0)
-    axes.set(xlim=(left, right), ylim=(-0.3 * scene["radius"], high + (0 if impact else 0.2 * scene["radius"])), aspect="equal",
-             xlabel="x [m]", ylabel="y [m]")
-    if len(ends) == 2:
-        incidence, reflection = (np.degrees(np.arctan2(abs(history["vy"][k]), abs(history["vx"][k]))) for k in (row(poses[0].t), -1))
-        axes.set_title(f"angle to the plane: {incidence:.1f}° before, {reflection:.1f}° after")
+    axes.axhspan(-0.3 * scene["radius"], 0, color="#d0d0d0", linewidth=0)
+    axes.set(xlim=(left - room, right + room), ylim=(-0.3 * scene["radius"], high), aspect="equal", xlabel="x [m]", ylabel="y [m]")
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13 if impact else -0.2), ncols=2, handlelength=1.8)
     return figure
 
 
-def _pose(t: float, path: Path) -> Pose:
+def _draw_flight(axes: plt.Axes, pose: Pose, sign: int, row: int, history: dict[str, np.ndarray], scene: dict[str, Value],
+                 colour: str) -> None:
+    """Two more outlines after (sign 1) or before (-1) the pose, in rigid motion with the velocities of history's `row`."""
+    pause = 3 * scene["radius"] / np.hypot(history["vx"][row], history["vy"][row])   # one and a half diameters apart
+    if sign < 0 and scene.get("height", 0) > 0:
+        pause = min(pause, pose.t / 2)                                                # not before the start
+    for k in (1, 2):
+        moved = _fly(pose, sign * k * pause, row, history, scene)
+        _draw_pose(axes, moved, colour, DASHED, None)
+        axes.annotate(f"{1e3 * moved.t:.1f} ms".replace("-", "−"), moved.outline[np.argmax(sign * moved.outline[:, 0])],
+                      (3 * sign, 0), textcoords="offset points", color=colour, ha="left" if sign > 0 else "right", va="center")
+    waits = np.linspace(0, 2 * sign * pause, 50)
+    way = np.array([_fly(pose, wait, row, history, scene).centre for wait in waits])
+    axes.plot(*way.T, color=BLACK, linewidth=0.8, linestyle=":")
+
+
+def _pose(t: float, path: Path, history: dict[str, np.ndarray]) -> Pose:
     """The deformed outline and the deformed upright diameter of a snapshot of a whole disc, the mark at its top."""
     snapshot = vtu.read(path)
     moved = snapshot.points + snapshot.fields["displacement"][:, :2]
@@ -301,17 +313,19 @@ def _pose(t: float, path: Path) -> Pose:
     y = np.linspace(high[1], low[1], 43)[1:-1]   # not quite to the outline, which is a polygon here
     grid = Triangulation(*snapshot.points.T, snapshot.triangles)
     line = np.ma.stack([LinearTriInterpolator(grid, values)(x, y) for values in moved.T], axis=1)
-    return Pose(t, moved[loop + loop[:1]], np.ma.compress_rows(line))
+    centre = np.array([np.interp(t, history["t"], history[name]) for name in ("x", "y")])
+    return Pose(t, centre, moved[loop + loop[:1]], np.ma.compress_rows(line))
 
 
 def _fly(pose: Pose, wait: float, row: int, history: dict[str, np.ndarray], scene: dict[str, Value]) -> Pose:
     """The pose after another `wait` seconds (before, if negative) of rigid flight with the velocities of history's `row`."""
-    centre, velocity = (np.array([history[a][row], history[b][row]]) for a, b in (("x", "y"), ("vx", "vy")))
+    velocity = np.array([history["vx"][row], history["vy"][row]])
     pull = np.array([scene.get("body_force_x", 0), scene.get("body_force_y", 0) - scene.get("gravity", 0)])
     turned = history["spin"][row] * wait
     rotation = np.array([[np.cos(turned), -np.sin(turned)], [np.sin(turned), np.cos(turned)]])
-    place = centre + velocity * wait + pull * wait**2 / 2
-    return Pose(pose.t + wait, *((points - centre) @ rotation.T + place for points in (pose.outline, pose.diameter)))
+    place = pose.centre + velocity * wait + pull * wait**2 / 2
+    outline, diameter = ((points - pose.centre) @ rotation.T + place for points in (pose.outline, pose.diameter))
+    return Pose(pose.t + wait, place, outline, diameter)
 
 
 def _draw_pose(axes: plt.Axes, pose: Pose, colour, line, label: str | None) -> None:

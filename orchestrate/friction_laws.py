@@ -71,11 +71,11 @@ def draw(laws: pd.DataFrame, values: dict[str, float], path: Path) -> None:
         both = laws[laws.panel == "c"]
         _curve(c, both[both.transition == "jump"], BLUE, "-", "jump at $|v_T| = \\varepsilon$, as in the paper", 1.6)
         _curve(c, both[both.transition == "smooth"], ORANGE, "--", "smooth (friction_transition)", 1.4)
-        top = values["friction_static"]
+        ticks = {f"{sign}\\mu_{kind}": float(sign + "1") * values[f"friction_{name}"] for sign in ("-", "+")
+                 for kind, name in (("e", "static"), ("d", "dynamic"))}
         c.set(title="c) static and dynamic coefficient, linear", ylabel=r"$-t_T/t_N = \mu_f\,\phi_\varepsilon$", xlim=(-4, 4),
-              ylim=(-1.2 * top, 1.45 * top), yticks=[sign * values[f"friction_{kind}"] for sign in (-1, 1) for kind in ("static", "dynamic")] + [0],
-              yticklabels=[rf"${sign}\mu_{kind} = {sign}{values[name]:g}$" for sign in ("-", "")
-                           for kind, name in (("e", "friction_static"), ("d", "friction_dynamic"))] + ["0"])
+              ylim=(-1.2 * values["friction_static"], 1.45 * values["friction_static"]))
+        c.set_yticks([0, *ticks.values()], ["0", *(f"${name} = {value:+g}$".replace("+", "") for name, value in ticks.items())])
         c.legend(loc="upper left", handlelength=1.6, fontsize=7, borderaxespad=0)
         figure.savefig(path)
         plt.close(figure)
