@@ -5,7 +5,7 @@ READY := .venv/.ready
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup disc-normal disc-oblique disc-rolling friction-laws test stress bench refine clean
+.PHONY: help setup disc-normal disc-oblique disc-rolling friction-laws stick-slip test stress bench refine refine-oblique clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 24
@@ -30,11 +30,14 @@ friction-laws: $(READY) ## draw the friction laws (figure 3)
 test: $(READY) ## run all tests
 	@$(PYTHON) -m pytest -q tests $(ARGS)
 
-stress bench refine: $(READY)
+stress bench refine stick-slip: $(READY)
 	@$(PYTHON) -m orchestrate $@ $(ARGS)
 stress: ## run hard parameter sets and report which of them hold
 bench: ## time the program, at equal error
 refine: ## refine mesh and step, report the observed convergence
+refine-oblique: $(READY) ## the same for the oblique disc, with the slip velocity down to 0.01 m/s
+	@$(PYTHON) -m orchestrate refine disc-oblique $(ARGS)
+stick-slip: ## search for the paper's order of sliding and sticking over epsilon, k, nu and the angle
 
 clean: ## remove all results (keeps .venv)
 	@find results -mindepth 1 ! -name README.md -delete
