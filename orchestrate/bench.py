@@ -13,6 +13,7 @@ from .parameters import ROOT
 from .run import shown
 
 DT = 2e-5                   # s
+OURS = 3                    # runs of the program at least: they are short, and a busy neighbour shows
 ASKED = 40                  # times as fast as the textbook
 TEXTBOOK = "../tests/oracle/textbook"
 
@@ -53,7 +54,7 @@ def compare(case: Case, out: Path, runs: int) -> dict:
     wanted = scene.load("disc-normal").override({"dt": DT, "end_time": case.end_time, "fields": 0})
     mesh.write(mesh.disc(wanted.values["radius"], case.mesh_size, case.mesh_size / 2, half=True), path)
     ours = [run.run(wanted, out=out / "runs" / path.stem, mesh_file=path, force=True, pictures=False).summary
-            for _ in range(runs)]
+            for _ in range(max(runs, OURS))]
     theirs = [textbook(wanted, path) for _ in range(runs)]
     if theirs[0]["dofs"] != ours[0]["dofs"]:
         raise Failure(f"bench: not the same problem: {ours[0]['dofs']} and {theirs[0]['dofs']} dofs")
@@ -96,8 +97,8 @@ def report(rows: pd.DataFrame, runs: int) -> str:
                                      "rebound_vy": ".8g", "energy_drift": ".1e"}),
                   f"ratio {row.ratio:.1f}; the answers differ by {_off(row, 'impulse'):.1e} (impulse) and "
                   f"{_off(row, 'rebound_vy'):.1e} (velocity)\n"]
-    lines.append(f"median of {runs}, one process at a time, one thread, without set-up; ours wall time, "
-                 f"the textbook's processor time\n"
+    lines.append(f"medians of {max(runs, OURS)} runs (ours) and {runs} (textbook), one process at a time, one thread, without "
+                 f"set-up; ours wall time, the textbook's processor time\n"
                  f"the ratio is {'' if (rows.ratio >= ASKED).all() else 'NOT '}at least {ASKED} on every mesh")
     return "\n".join(lines)
 
