@@ -5,7 +5,7 @@ READY := .venv/.ready
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup disc-normal disc-oblique disc-rolling friction-laws stick-slip test stress bench refine refine-oblique clean
+.PHONY: help setup disc-normal disc-oblique disc-rolling friction-laws test stress bench refine refine-oblique stick-slip clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 24
