@@ -197,9 +197,9 @@ def _with_mesh_sizes(scene: Scene) -> Scene:
 
 def _is_half(values: dict[str, Value]) -> bool:
     """Half a disc is enough where nothing breaks the symmetry x -> -x."""
-    symmetric = values["angle"] == 90 and values["spin"] == 0
+    symmetric = values["angle"] == 90 and values["spin"] == 0 and values["body_force_x"] == 0
     if values["symmetry"] == "half" and not symmetric:
-        raise BadInput("symmetry: half needs angle = 90 and spin = 0 (accepted here: auto|full)")
+        raise BadInput("symmetry: half needs angle = 90, spin = 0 and body_force_x = 0 (accepted here: auto|full)")
     return symmetric and values["symmetry"] != "full"
 
 
@@ -219,6 +219,9 @@ def _staging(folder: Path) -> Iterator[Path]:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             raise Unreadable(f"{folder} is being written by another run; wait, or choose another --out") from None
+        old = folder.with_name(folder.name + ".old")
+        if old.exists() and not folder.exists():   # killed between the two renames of _replace
+            os.rename(old, folder)
         try:
             for left_over in stage.iterdir():   # of a run that was killed
                 shutil.rmtree(left_over) if left_over.is_dir() else left_over.unlink()
