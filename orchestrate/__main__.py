@@ -47,7 +47,7 @@ def _parser() -> argparse.ArgumentParser:
 
     command = commands.add_parser("run", help="run a scene, or reuse its finished result")
     command.add_argument("scene", metavar="SCENE", help="a built-in scene (see list) or the path of a TOML file")
-    command.add_argument("--set", metavar="NAME=VALUE", action="append", default=[], help="set a parameter (see parameters)")
+    command.add_argument("--set", metavar="NAME=VALUE", nargs="+", action="extend", default=[], help="set a parameter (see parameters)")
     command.add_argument("--out", metavar="DIR", type=Path, help="the result folder (default: results/SCENE)")
     command.add_argument("--mesh", metavar="FILE", type=Path, help="a mesh in FreeFEM's .msh format, instead of our own")
     command.add_argument("--force", action="store_true", help="run again even if the result is there")

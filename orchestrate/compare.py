@@ -18,7 +18,7 @@ def main(argv: list[str]) -> int:
     """Runs or reuses every scene, prints the reports, draws DIR/<names>.png. A scene that fails does not keep the others."""
     parser = argparse.ArgumentParser(prog="python -m orchestrate compare", description=__doc__)
     parser.add_argument("scenes", metavar="SCENE", nargs="+", help="two or more built-in scenes or TOML files")
-    parser.add_argument("--set", metavar="NAME=VALUE", action="append", default=[], help="set a parameter in all of them")
+    parser.add_argument("--set", metavar="NAME=VALUE", nargs="+", action="extend", default=[], help="set a parameter in all of them")
     parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results", help="a folder for a folder of each scene")
     options = parser.parse_args(argv)
     scenes, folder = [scene.load(name) for name in options.scenes], options.out.resolve()

@@ -62,7 +62,7 @@ def test_published_numbers_are_not_shown_beside_another_scene(fake, tmp_path):
 
 def test_quiet_is_quiet(fake, tmp_path):
     """--quiet prints nothing."""
-    assert call("run", "disc-normal", "--quiet", "--set", "fields=0", "--out", str(tmp_path / "out")) == (0, "", "")
+    assert call("run", "disc-normal", "--quiet", "--set", "speed=4", "fields=0", "--out", str(tmp_path / "out")) == (0, "", "")
 
 
 @pytest.mark.parametrize("arguments, code, line", [
