@@ -30,12 +30,14 @@ def draw(folder: Path) -> list[Path]:
     snapshots = vtu.series(folder / "fields.pvd")
     target = folder / "figures"
     target.mkdir(exist_ok=True)
+    touches = history["normal_force"] > 0
+    contact = {name: column[max(0, int(np.argmax(touches)) - 1):] for name, column in history.items()}   # without the flight
     with plt.rc_context(STYLE):
-        drawn = {"energies": _energies(history), "velocity": _velocity(history)}
+        drawn = {"energies": _energies(contact), "velocity": _velocity(contact)}
         if history["friction_force"].any():
             drawn |= {"force": _friction(history, scene), "rolling": _rolling(history, scene)}
         else:
-            drawn["force"] = _force(history)
+            drawn["force"] = _force(contact)
         if snapshots:
             drawn["shapes"] = _shapes(snapshots)
             if len(snapshots) > 2 and vtu.read(snapshots[0][1]).points[:, 0].min() < 0:   # a whole body
@@ -165,6 +167,8 @@ def _liveliest(history: dict[str, np.ndarray]) -> tuple[int, int]:
     travelled = np.concatenate([[0], np.cumsum(np.abs(np.diff(sliding)))])
     ends = np.minimum(np.searchsorted(t, t + width), len(t) - 1)
     lively = travelled[ends] - travelled - np.abs(sliding[ends] - sliding)   # there and back again
+    idle = np.cumsum(history["normal_force"] == 0)
+    lively = np.where(idle[ends] > idle, -1.0, lively)                         # not in the air
     first = int(np.argmax(lively))
     return first, max(int(ends[first]), min(first + 1, len(t) - 1))
 
