@@ -7,13 +7,14 @@ import signal
 import sys
 from pathlib import Path
 
-from .failure import Failure
+from .failure import BadInput, Failure
 
 OWN_MAIN = ("compare", "friction-laws", "stick-slip", "stress", "bench", "refine")   # modules with a main(argv)
 
 
 def main(argv: list[str]) -> int:
     """The exit code of the command; see the table in the run contract."""
+    argparse.ArgumentParser.error = _bad_usage   # one line and exit code 10 as for any bad input
     signal.signal(signal.SIGTERM, _stop)
     signal.signal(signal.SIGHUP, _stop)
     try:
@@ -34,6 +35,10 @@ def main(argv: list[str]) -> int:
     except BrokenPipeError:   # the reader of our output left
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
+
+
+def _bad_usage(parser: argparse.ArgumentParser, message: str) -> None:
+    raise BadInput(f"{message} (see {parser.prog} --help)")
 
 
 def _stop(number: int, frame) -> None:
