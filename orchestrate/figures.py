@@ -160,10 +160,12 @@ def _around(values: np.ndarray, margin: float) -> tuple[float, float]:
 
 
 def _liveliest(history: dict[str, np.ndarray]) -> tuple[int, int]:
-    """First and last row of the twelfth of the contact in which the sliding load [N/m] goes up and down most."""
+    """First and last row of the twelfth of the contact, or third of its longest interval where that is less, in which
+    the sliding load [N/m] goes up and down most."""
     touching = np.flatnonzero(history["normal_force"] > 0)
     t, sliding = history["t"], history["sliding_fraction"] * history["normal_force"]
-    width = (t[touching[-1]] - t[touching[0]]) / 12
+    intervals = np.split(touching, np.flatnonzero(np.diff(touching) > 1) + 1)
+    width = min((t[touching[-1]] - t[touching[0]]) / 12, max(t[each[-1]] - t[each[0]] for each in intervals) / 3)
     travelled = np.concatenate([[0], np.cumsum(np.abs(np.diff(sliding)))])
     ends = np.minimum(np.searchsorted(t, t + width), len(t) - 1)
     lively = travelled[ends] - travelled - np.abs(sliding[ends] - sliding)   # there and back again
