@@ -7,7 +7,7 @@ import signal
 import sys
 from pathlib import Path
 
-from .failure import BadInput, Failure
+from .failure import BadInput, Failure, Unreadable
 
 OWN_MAIN = ("compare", "friction-laws", "stick-slip", "stress", "bench", "refine")   # modules with a main(argv)
 
@@ -29,12 +29,15 @@ def main(argv: list[str]) -> int:
             from .run import shown
             print(f"files of the failed run: {shown(failure.folder)}")
         return failure.code
-    except KeyboardInterrupt:
-        print("ffimpact: interrupted", file=sys.stderr)
-        return 130
     except BrokenPipeError:   # the reader of our output left
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
+    except OSError as error:  # a full disk, a folder that was taken away
+        print(f"ffimpact: {error.filename or 'the result folder'}: {error.strerror}; make room, or choose another --out", file=sys.stderr)
+        return Unreadable("").code
+    except KeyboardInterrupt:
+        print("ffimpact: interrupted", file=sys.stderr)
+        return 130
 
 
 def _bad_usage(parser: argparse.ArgumentParser, message: str) -> None:

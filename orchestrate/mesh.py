@@ -171,6 +171,8 @@ def read(path: Path) -> Mesh:
         n, t, e = map(int, words[:3])
         points, triangles, edges = np.split(np.array(words[3:], dtype=float), [3 * n, 3 * n + 4 * t])
         points, triangles, edges = points.reshape(n, 3), triangles.reshape(t, 4), edges.reshape(e, 3)
-    except (OSError, ValueError) as error:
+    except OSError as error:
+        raise BadInput(f"mesh: {path} cannot be read: {error.strerror}") from None
+    except ValueError as error:
         raise BadInput(f"mesh: {path} is not a 2D mesh of FreeFEM: {error}") from None
     return Mesh(points[:, :2], triangles[:, :3].astype(int) - 1, edges[:, :2].astype(int) - 1, edges[:, 2].astype(int))

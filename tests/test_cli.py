@@ -1,5 +1,6 @@
 """The command line: exit codes, one-line errors, interruption, and that `make` lists its targets."""
 
+import errno
 import os
 import pty
 import re
@@ -12,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from orchestrate import parameters
+from orchestrate import parameters, run
 
 ROOT = parameters.ROOT
 
@@ -155,3 +156,12 @@ def test_make_lists_every_target():
     out = subprocess.run(["make", "-s"], cwd=ROOT, capture_output=True, text=True).stdout
     targets = re.search(r"^\.PHONY: (.*)$", (ROOT / "Makefile").read_text(), re.MULTILINE)[1].split()
     assert [line.split()[1] for line in out.splitlines()] == targets
+
+
+def test_a_full_disk_is_one_line(fake, tmp_path, monkeypatch):
+    """Where the results cannot be written for want of room, one line says so with exit code 14."""
+    def full(*_, **__):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(tmp_path / "out"))
+    monkeypatch.setattr(run, "run", full)
+    code, _, error = call("run", "disc-normal", "--out", str(tmp_path / "out"))
+    assert code == 14 and error.count("\n") <= 1 and "No space left on device" in error and "--out" in error
