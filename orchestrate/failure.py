@@ -36,3 +36,7 @@ class Unreadable(Failure):
 
     def __init__(self, message: str):
         super().__init__(message, 14)
+
+
+class Busy(Unreadable):
+    """A result folder that another run is writing just now."""

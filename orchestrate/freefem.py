@@ -8,6 +8,7 @@ import signal
 import subprocess
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from .failure import NotInstalled
@@ -69,7 +70,7 @@ def run(freefem: FreeFem, script: str, flags: list[str], log: Path, progress: Pr
     with open(log, "w") as file, subprocess.Popen(
             command, cwd=ROOT, env=freefem.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT, text=True, errors="replace", process_group=0,
-            preexec_fn=_die_with_parent) as child:
+            preexec_fn=partial(die_with_parent, os.getpid(), signal.SIGKILL)) as child:
         try:
             for line in child.stdout:
                 file.write(line)
@@ -85,5 +86,8 @@ def run(freefem: FreeFem, script: str, flags: list[str], log: Path, progress: Pr
 _libc = ctypes.CDLL(None)
 
 
-def _die_with_parent() -> None:
-    _libc.prctl(1, signal.SIGKILL)   # PR_SET_PDEATHSIG
+def die_with_parent(parent: int, number: signal.Signals) -> None:
+    """Lets the kernel send this process the signal `number` when its parent dies; ends it if it is dead already."""
+    _libc.prctl(1, number)   # PR_SET_PDEATHSIG
+    if os.getppid() != parent:
+        os._exit(128 + number)

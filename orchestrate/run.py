@@ -10,6 +10,7 @@ import hashlib
 import json
 import math
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -24,7 +25,7 @@ from pathlib import Path
 import numpy as np
 
 from . import freefem, mesh
-from .failure import BadInput, Failure, Unreadable
+from .failure import BadInput, Busy, Failure, Unreadable
 from .parameters import ROOT, Value
 from .scene import Scene
 
@@ -58,18 +59,20 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | Non
     """
     scene = scene.override(overrides or {})
     folder = (out or ROOT / "results" / scene.name).resolve()
-    finished = _finished(folder, force)
     if mesh_file:
         mesh_file = mesh_file.resolve()
         mesh.read(mesh_file)
     else:
         scene = _with_mesh_sizes(scene)
-    code = code_hash()
-    if finished and not force and _same(folder, finished, scene, mesh_file, code):
-        return RunResult(folder, finished, reused=True)
+    finished = _finished(folder, force)
+    if not force and (there := reusable(scene, folder, mesh_file)):
+        return there
 
     program = freefem.find()
     with _staging(folder) as stage:
+        if not force and (there := reusable(scene, folder, mesh_file)):   # another run has finished it meanwhile
+            return there
+        code = code_hash()
         if mesh_file:
             shutil.copy(mesh_file, stage / "mesh.msh")
         else:
@@ -122,6 +125,11 @@ def read_scene(folder: Path) -> dict[str, Value]:
         raise Unreadable(f"{folder / 'scene.toml'} cannot be read: {_why(error)}") from None
 
 
+def summary_numbers() -> list[str]:
+    """The names of the numbers in summary.json, from the script that writes them."""
+    return re.findall(r'^  (?:entry|perhaps)\("(\w+)"', (ROOT / "edp/core/march.idp").read_text(), re.MULTILINE)
+
+
 def read_summary(folder: Path) -> dict:
     """summary.json of a finished run."""
     try:
@@ -143,6 +151,15 @@ def _why(error: Exception) -> str:
 
 
 # ---- reuse
+
+def reusable(scene: Scene, folder: Path, mesh_file: Path | None = None) -> RunResult | None:
+    """The finished run in `folder` if it is of this very scene, mesh and code, else None; Unreadable if it is not ours."""
+    summary = _finished(folder, force=False)
+    if not mesh_file:
+        scene = _with_mesh_sizes(scene)
+    same = summary and _same(folder, summary, scene, mesh_file, code_hash())
+    return RunResult(folder, summary, reused=True) if same else None
+
 
 def code_hash() -> str:
     """sha256 over what decides a result besides the scene: the FreeFEM scripts and the mesh generator."""
@@ -209,16 +226,8 @@ def _is_half(values: dict[str, Value]) -> bool:
 def _staging(folder: Path) -> Iterator[Path]:
     """An empty folder DIR.part, locked against a second run and gone in the end."""
     stage = folder.with_name(folder.name + ".part")
+    lock = _lock(stage, folder)
     try:
-        stage.mkdir(parents=True, exist_ok=True)
-        lock = os.open(stage, os.O_RDONLY)
-    except OSError as error:
-        raise Unreadable(f"{stage} cannot be made: {error.strerror}; choose another --out") from None
-    try:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise Unreadable(f"{folder} is being written by another run; wait, or choose another --out") from None
         old = folder.with_name(folder.name + ".old")
         if old.exists() and not folder.exists():   # killed between the two renames of _replace
             os.rename(old, folder)
@@ -230,6 +239,28 @@ def _staging(folder: Path) -> Iterator[Path]:
             shutil.rmtree(stage, ignore_errors=True)
     finally:
         os.close(lock)
+
+
+def _lock(stage: Path, folder: Path) -> int:
+    """The open folder `stage`, made if need be and locked; Busy where another run holds it."""
+    while True:
+        try:
+            stage.mkdir(parents=True, exist_ok=True)
+            lock = os.open(stage, os.O_RDONLY)
+        except FileNotFoundError:   # put in its place between the two calls
+            continue
+        except OSError as error:
+            raise Unreadable(f"{stage} cannot be made: {error.strerror}; choose another --out") from None
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            if os.path.samestat(os.fstat(lock), os.stat(stage)):
+                return lock
+        except FileNotFoundError:
+            pass
+        except BlockingIOError:
+            os.close(lock)
+            raise Busy(f"{folder} is being written by another run; wait, or choose another --out") from None
+        os.close(lock)              # locked too late: its run has just put it in its place
 
 
 def _replace(stage: Path, folder: Path) -> None:

@@ -1,11 +1,12 @@
 """Studies: many runs of one scene, one FreeFem++ a core at most; whatever a run comes to becomes a row of a table."""
 
-import ctypes
 import json
 import multiprocessing
 import os
 import signal
 import sys
+import time
+from collections import deque
 from collections.abc import Iterator
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
@@ -14,7 +15,7 @@ import pandas as pd
 from tqdm import tqdm
 
 from . import freefem, run, scene
-from .failure import Failure, Unreadable
+from .failure import Busy, Failure, Unreadable
 from .parameters import Value
 
 CORES = len(os.sched_getaffinity(0))
@@ -29,39 +30,51 @@ def study(points: list[Point], folder: Path, base: Point, limit: float, name: st
     Every run is the scene `name` with `base` and the point's parameters on top, in folder/runs/, and may take `limit`
     seconds. What is there already is not run again: finished runs, and failures of the same scene and code. A run
     that fails is a row like any other, with its exit code and message; NotInstalled, without FreeFem++, is raised.
+    Several studies may share a folder: what one is running, the others leave to it.
     """
-    freefem.find()
     places = [place(folder, point) for point in points]
-    tasks = {where.name: (where, base | point, name) for where, point in zip(places, points)}
-    found = dict(tqdm(_outcomes(tasks, limit), desc="runs", total=len(tasks), disable=None, leave=False))
-    return pd.DataFrame([point | found[where.name] for where, point in zip(places, points)])
+    tasks = {where: scene.load(name).override(base | point) for where, point in zip(places, points)}
+    found = {where: outcome for where, wanted in tasks.items() if (outcome := _there(where, wanted))}
+    to_do = {where: wanted for where, wanted in tasks.items() if where not in found}
+    if to_do:
+        freefem.find()
+    with tqdm(desc="runs", total=len(tasks), initial=len(found), disable=None, leave=False) as line:
+        for where, outcome in _outcomes(to_do, limit):
+            found[where] = outcome
+            line.update()
+    return pd.DataFrame([point | found[where] for where, point in zip(places, points)])
 
 
 def place(folder: Path, point: Point) -> Path:
     """The result folder of a point of the study in `folder`."""
-    return folder / "runs" / ",".join(f"{name}={value}" for name, value in point.items())
+    return folder / "runs" / (",".join(f"{name}={value}" for name, value in point.items()) or "run")
 
 
-def _outcomes(tasks: dict[str, tuple[Path, Point, str]], limit: float) -> Iterator[tuple[str, dict]]:
-    """(name, outcome) as they are ready, a process each; leaving this in any way ends them and their FreeFem++."""
+def _outcomes(tasks: dict[Path, scene.Scene], limit: float) -> Iterator[tuple[Path, dict]]:
+    """(folder, outcome) as they are ready, a process each; leaving this in any way ends them and their FreeFem++."""
     context = multiprocessing.get_context("fork")
-    waiting, running = list(tasks.items())[::-1], {}
+    waiting, running = deque(tasks), {}
     try:
         while waiting or running:
             while waiting and len(running) < CORES:
-                name, task = waiting.pop()
+                where = waiting.popleft()
                 receiver, sender = context.Pipe(duplex=False)
-                process = context.Process(target=_work, args=(sender, limit, *task))
+                process = context.Process(target=_work, args=(sender, os.getpid(), limit, where, tasks[where]))
                 process.start()
                 sender.close()
-                running[receiver] = name, process
+                running[receiver] = where, process
             for receiver in wait(running):
-                name, process = running.pop(receiver)
+                where, process = running.pop(receiver)
                 try:
-                    yield name, receiver.recv()
+                    outcome = receiver.recv()
                 except EOFError:
                     process.join()
-                    yield name, _row(1, f"its process ended with exit code {process.exitcode}", False, {})
+                    outcome = _row(1, f"its process ended with exit code {process.exitcode}", False, {})
+                if outcome:
+                    yield where, outcome
+                else:               # another study is at it: see later what came of it
+                    waiting.append(where)
+                    time.sleep(0.1)
     finally:
         for _, process in running.values():
             process.terminate()
@@ -69,26 +82,39 @@ def _outcomes(tasks: dict[str, tuple[Path, Point, str]], limit: float) -> Iterat
             process.join()
 
 
-def _work(sender: Connection, limit: float, folder: Path, values: Point, name: str) -> None:
+def _work(sender: Connection, parent: int, limit: float, folder: Path, wanted: scene.Scene) -> None:
     """One point in a process of its own."""
     def too_long(number, frame):
         raise Failure(f"no end after {limit:g} s: killed", TOO_LONG)
     signal.signal(signal.SIGINT, signal.SIG_IGN)         # Ctrl-C is for the parent, who then ends us
     signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(128 + number))   # run() tidies up on the way out
     signal.signal(signal.SIGALRM, too_long)              # likewise
-    ctypes.CDLL(None).prctl(1, signal.SIGTERM)           # PR_SET_PDEATHSIG
+    freefem.die_with_parent(parent, signal.SIGTERM)
     signal.setitimer(signal.ITIMER_REAL, limit)
-    sender.send(_outcome(folder, values, name))
+    sender.send(_outcome(folder, wanted))
 
 
-def _outcome(folder: Path, values: Point, name: str) -> dict:
-    """Exit code, message, whether it was there already, and the numbers of the summary, as far as the run came."""
-    wanted = scene.load(name).override(values)
+def _there(folder: Path, wanted: scene.Scene) -> dict | None:
+    """The outcome that is in `folder` already: a finished run, or a failure that FreeFem++ would only repeat."""
     if failed := _failed_before(wanted, folder):
         return _row(failed["exit_code"], failed["message"], True, failed)
     try:
+        result = run.reusable(wanted, folder)
+    except Failure:                                      # will be said by the run
+        return None
+    return result and _row(0, "", True, result.summary)
+
+
+def _outcome(folder: Path, wanted: scene.Scene) -> dict | None:
+    """Exit code, message, whether it was there already, and the numbers of the summary, as far as the run came; None
+    where another run is at it."""
+    if there := _there(folder, wanted):
+        return there
+    try:
         result = run.run(wanted, out=folder, pictures=False)
         return _row(0, "", result.reused, result.summary)
+    except Busy:
+        return None
     except Failure as failure:
         record = _read_json(failure.folder / "failure.json") if failure.folder else {}
         return _row(failure.code, str(failure), False, record)
@@ -135,4 +161,6 @@ def _cell(value, form: str) -> str:
 def save(frame: pd.DataFrame, path: Path) -> None:
     """Writes a tidy CSV, a row a run."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    frame.to_csv(path, index=False)
+    part = path.with_name(f"{path.name}.{os.getpid()}.part")
+    frame.to_csv(part, index=False)
+    os.replace(part, path)
