@@ -5,10 +5,10 @@ READY := .venv/.ready
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup disc-normal disc-oblique disc-rolling friction-laws test stress bench refine refine-oblique stick-slip clean
+.PHONY: help setup disc-normal disc-oblique disc-rolling friction-laws contact-time-svk law-comparison contact-time-neohookean calibrate stick-slip paper movie test stress bench refine refine-oblique clean
 
 help: ## list the targets
-	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 24
+	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
 
 setup: $(READY) ## install what is missing: FreeFem++, system libraries, .venv with the pinned packages
 $(READY): pyproject.toml orchestrate/setup.sh orchestrate/probe.edp
@@ -27,17 +27,34 @@ disc-rolling: $(READY) ## a disc is set down on the plane, slides and comes to r
 friction-laws: $(READY) ## draw the friction laws (figure 3)
 	@$(PYTHON) -m orchestrate $@ $(ARGS)
 
+SWEEPS := contact-time-svk law-comparison contact-time-neohookean calibrate
+$(SWEEPS): $(READY)
+	@$(PYTHON) -m orchestrate sweep $@ $(ARGS)
+contact-time-svk: ## sweep the speed with St. Venant-Kirchhoff (figure 6b)
+law-comparison: ## the force histories of both laws at 1 and 10 m/s (figure 7)
+contact-time-neohookean: ## sweep the speed with the neo-Hookean law (figure 8)
+calibrate: ## for which nu and k the paper's 0.0048 s at 8 m/s is met
+
+stick-slip: $(READY) ## search for the paper's order of sliding and sticking over epsilon, k, nu and the angle
+	@$(PYTHON) -m orchestrate $@ $(ARGS)
+
+paper: disc-normal disc-oblique disc-rolling friction-laws $(SWEEPS) stick-slip ## all of the above, and results/paper/report.html
+	@$(PYTHON) -m orchestrate $@ $(ARGS)
+
+movie: CASE := disc-oblique
+movie: $(READY) ## a film of a scene: make movie CASE=disc-oblique
+	@$(PYTHON) -m orchestrate $@ $(CASE) $(ARGS)
+
 test: $(READY) ## run all tests
 	@$(PYTHON) -m pytest -q tests $(ARGS)
 
-stress bench refine stick-slip: $(READY)
+stress bench refine: $(READY)
 	@$(PYTHON) -m orchestrate $@ $(ARGS)
 stress: ## run hard parameter sets and report which of them hold
 bench: ## time the program, at equal error
 refine: ## refine mesh and step, report the observed convergence
 refine-oblique: $(READY) ## the same for the oblique disc, with the slip velocity down to 0.01 m/s
 	@$(PYTHON) -m orchestrate refine disc-oblique $(ARGS)
-stick-slip: ## search for the paper's order of sliding and sticking over epsilon, k, nu and the angle
 
 clean: ## remove all results (keeps .venv)
 	@find results -mindepth 1 ! -name README.md -delete

@@ -8,6 +8,7 @@ import sys
 import time
 from collections import deque
 from collections.abc import Iterator
+from contextlib import contextmanager
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
 
@@ -160,7 +161,17 @@ def _cell(value, form: str) -> str:
 
 def save(frame: pd.DataFrame, path: Path) -> None:
     """Writes a tidy CSV, a row a run."""
+    with complete(path) as part:
+        frame.to_csv(part, index=False)
+
+
+@contextmanager
+def complete(path: Path) -> Iterator[Path]:
+    """A name to write to, which takes the name `path` in the end: a reader or a second writer never sees half a file."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_name(f"{path.name}.{os.getpid()}.part")
-    frame.to_csv(part, index=False)
-    os.replace(part, path)
+    part = path.with_name(f"part-{os.getpid()}-{path.name}")
+    try:
+        yield part
+        os.replace(part, path)
+    finally:
+        part.unlink(missing_ok=True)

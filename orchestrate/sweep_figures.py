@@ -1,0 +1,280 @@
+"""The figure of a sweep, and what it shows in words. [figure] of a sweep file is one of
+
+    kind = "lines"      x, y (one name or several), by: y over x, a line for each value of `by`, with error bars (default)
+    kind = "map"        x, y, colour, by: a panel for each value of `by`; level, band: where colour = level +- band
+    kind = "histories"  y (a column of history.csv), panel, by: y over time, a panel a value of `panel`, a line a value of `by`
+
+x, y of a map, by and panel are parameters that vary; the y of lines and colour are numbers that are collected.
+"""
+
+import itertools
+from collections.abc import Iterator
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+
+from . import parameters, report, study
+from .failure import BadInput
+from .figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE
+from .run import read_history
+
+KINDS = {"lines": ("x", "y", "by"), "map": ("x", "y", "colour", "by", "level", "band"), "histories": ("y", "panel", "by")}
+COLOURS, MARKERS = (BLUE, ORANGE, GREEN, PURPLE, GREY), "osd^v"
+SIGMAS = 1.0        # of the error bars of two neighbours, added in squares: a smaller rise is none
+
+
+def check(given: dict, varied: list[str], collected: list[str]) -> dict:
+    """The [figure] of a sweep, completed; empty if none was given. BadInput where a name cannot be drawn."""
+    if not given:
+        return {}
+    kind = given.get("kind", "lines")
+    if kind not in KINDS:
+        raise BadInput(f"figure: kind '{kind}' is not known (accepted: {'|'.join(KINDS)})")
+    for key in given:
+        if key not in ("kind", *KINDS[kind]):
+            raise BadInput(f"figure: {key}: no such entry for {kind} (accepted: {', '.join(KINDS[kind])})")
+    figure = {"kind": kind, "by": None, "panel": None, "level": None, "band": 0.0} | given
+    if kind != "map":
+        figure["y"] = [figure.get("y")] if isinstance(figure.get("y"), str) else figure.get("y") or []
+    asked = {"lines": [("x", varied), ("y", collected)], "histories": [("y", None)],
+             "map": [("x", varied), ("y", varied), ("colour", collected)]}[kind]
+    for key, accepted in asked + [(key, [*varied, None]) for key in ("by", "panel")]:
+        names = figure.get(key) if isinstance(figure.get(key), list) else [figure.get(key)]
+        if not names or (accepted is None and not all(isinstance(name, str) for name in names)):
+            raise BadInput(f"figure: {key} is missing (accepted: names of columns of history.csv)")
+        for name in names:
+            if accepted is not None and name not in accepted:
+                words = ", ".join(word for word in accepted if word)
+                raise BadInput(f"figure: {key} = '{name}' (accepted: {words})")
+    if any(figure[key] is not None and type(figure[key]) not in (int, float) for key in ("level", "band")):
+        raise BadInput(f"figure: level = {figure['level']}, band = {figure['band']} (accepted: numbers)")
+    return figure
+
+
+def draw(sweep, rows: pd.DataFrame, out: Path) -> None:
+    """Draws DIR/sweep.png, if the sweep has a figure."""
+    if not sweep.figure:
+        return
+    with plt.rc_context(STYLE):
+        figure = {"lines": _lines, "map": _map, "histories": _histories}[sweep.figure["kind"]](sweep, rows, out)
+        figure.suptitle(sweep.title, fontsize=9, color=BLACK)
+        with study.complete(out / "sweep.png") as part:
+            figure.savefig(part)
+        plt.close(figure)
+
+
+def findings(sweep, rows: pd.DataFrame, out: Path) -> list[str]:
+    """What the figure shows, in words: trends over x, the set that meets a level, the distances of histories."""
+    if not sweep.figure:
+        return []
+    kind = sweep.figure["kind"]
+    if kind == "lines":
+        if rows[sweep.figure["x"]].dtype == object:
+            return []
+        return [trend(group, sweep.figure["x"], y, words) for y in sweep.figure["y"]
+                for words, group in _groups(sweep, rows, "by")]
+    if kind == "map":
+        return [line for words, group in _groups(sweep, rows, "by") for line in _set(sweep.figure, words, group)]
+    return [f"{panel}: relative L2 difference of {y.replace('_', ' ')}, {a} and {b}: {100 * value:.1f} %"
+            + (f" (mesh and step change {100 * bar:.1f} %)" if sweep.refine else "")
+            for panel, y, a, b, value, bar in distances(sweep, rows, out)]
+
+
+def label(name: str) -> str:
+    """The words and the unit of a parameter or a number of the summary, for an axis."""
+    parameter, words = parameters.table().get(name), name.replace("_", " ")
+    unit = _unit(name).strip() or (parameter.unit if parameter and not _quantity(name) else "")
+    return words if unit in ("-", "", "of the start") else f"{words} [{unit}]"
+
+
+def _quantity(name: str) -> report.Quantity | None:
+    return {quantity.key: quantity for quantity in report.rows(per_metre=True)}.get(name)
+
+
+def _factor(name: str) -> float:
+    """From SI to the unit that `_unit` gives."""
+    quantity = _quantity(name)
+    return quantity.factor if quantity else 1.0
+
+
+def _unit(name: str) -> str:
+    """The unit of a number of the summary, with a space in front."""
+    quantity = _quantity(name)
+    return f" {quantity.unit}" if quantity and quantity.unit else ""
+
+
+def _value(name: str, value) -> str:
+    return LAWS.get(value, str(value)) if isinstance(value, str) else f"{name.replace('_', ' ').replace('nu', 'ν')} = {value:g}"
+
+
+def _groups(sweep, rows: pd.DataFrame, key: str) -> Iterator[tuple[str, pd.DataFrame]]:
+    """(words, rows) for each value of the parameter that [figure] names as `key`; all rows where it names none."""
+    name = sweep.figure[key]
+    if name is None:
+        yield "", rows
+        return
+    for value, group in rows.groupby(name, sort=False):
+        yield _value(name, value), group
+
+
+# ---- lines
+
+def _lines(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
+    x, names = sweep.figure["x"], sweep.figure["y"]
+    figure, grid = plt.subplots(len(names), figsize=(6.4, 3.9 if len(names) == 1 else 2.6 * len(names)), sharex=True, squeeze=False)
+    for axes, y in zip(grid[:, 0], names):
+        for (words, group), colour, marker in zip(_groups(sweep, rows, "by"), itertools.cycle(COLOURS), itertools.cycle(MARKERS)):
+            group = group.sort_values(x)
+            bars = _factor(y) * group[f"{y}_error"] if f"{y}_error" in group else None
+            there = group.exit == 0
+            axes.errorbar(group[x][there], _factor(y) * group[y][there], None if bars is None else bars[there], color=colour, marker=marker,
+                          markersize=3, linewidth=1.1, elinewidth=0.9, capsize=1.5, label=words or None)
+            for value in group[x][~there]:
+                axes.axvline(value, ymax=0.05, color=colour, linestyle="-", linewidth=1.2)
+                axes.plot(value, 0.05, marker="x", color=colour, transform=axes.get_xaxis_transform(), clip_on=False,
+                          label="failed" if value == group[x][~there].iloc[0] else None)
+        axes.set_ylabel(label(y))
+        axes.grid(alpha=0.3)
+        if _is_logarithmic(rows[x]):
+            axes.set_xscale("log")
+    grid[-1, 0].set_xlabel(label(x))
+    if grid[0, 0].get_legend_handles_labels()[0]:
+        grid[0, 0].legend()
+    return figure
+
+
+def _is_logarithmic(values: pd.Series) -> bool:
+    """Whether values are spaced evenly in their logarithm rather than linearly."""
+    if values.dtype == object or (values <= 0).any() or values.nunique() < 3:
+        return False
+    spread = lambda steps: steps.std() / steps.mean()   # noqa: E731
+    ordered = np.sort(values.unique())
+    return spread(np.diff(np.log(ordered))) < spread(np.diff(ordered))
+
+
+def trend(group: pd.DataFrame, x: str, y: str, words: str) -> str:
+    """Whether y falls or rises with x, and how many of the steps against the trend exceed the error bar of a step.
+
+    The error bar of a point is the larger of its own and the root mean square of those of the curve, as one difference of two
+    runs can be small by chance; that of a step is the sum of its ends' in squares.
+    """
+    there = group[group.exit == 0].sort_values(x)
+    name = f"{words}: " * bool(words) + f"{y.replace('_', ' ')} over {x.replace('_', ' ')}"
+    if len(there) < 3:
+        return f"{name}: too few points for a trend"
+    values = _factor(y) * there[y].to_numpy()
+    steps, unit = np.diff(values), _unit(y)
+    falls = values[-1] < values[0]
+    against = steps if falls else -steps
+    text = (f"{name}: {'falls' if falls else 'rises'} from {values[0]:.5g} to {values[-1]:.5g}{unit}; of {len(steps)} steps "
+            f"{(against > 0).sum()} {'rise' if falls else 'fall'}")
+    if f"{y}_error" not in there:
+        return text + " (no error bars: [refine] is not given)"
+    own = _factor(y) * there[f"{y}_error"].to_numpy()
+    typical = np.sqrt(np.nanmean(own**2))
+    bar = np.hypot(*(np.fmax(own, typical)[part] for part in (slice(1, None), slice(None, -1))))
+    most = against.max()
+    text += f", {(against > SIGMAS * bar).sum()} of them by more than their error bar"
+    if most > 0:
+        text += f"; the largest by {most:.2g}{unit} ({100 * most / abs(values).mean():.2f} %)"
+    return text + f"; error of a point {typical:.2g}{unit} ({100 * typical / abs(values).mean():.2f} %, rms)"
+
+
+# ---- maps
+
+def _map(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
+    wanted = sweep.figure
+    x, y, colour = (wanted[key] for key in ("x", "y", "colour"))
+    groups = list(_groups(sweep, rows, "by"))
+    figure, grid = plt.subplots(1, len(groups), figsize=(1.2 + 3.4 * len(groups), 3.6), sharey=True, squeeze=False)
+    values = _factor(colour) * rows[colour]
+    low, high = values.min(), values.max()
+    for axes, (words, group) in zip(grid[0], groups):
+        table = group.pivot(index=y, columns=x, values=colour) * _factor(colour)
+        picture = axes.pcolormesh(table.columns, table.index, table, shading="nearest", cmap="viridis", vmin=low, vmax=high)
+        for name, scale in ((x, axes.set_xscale), (y, axes.set_yscale)):
+            if _is_logarithmic(group[name]):
+                scale("log")
+        for _, row in group.iterrows():
+            if row.exit:
+                axes.plot(row[x], row[y], marker="x", color=BLACK)
+            else:
+                axes.text(row[x], row[y], f"{_factor(colour) * row[colour]:.2f}", ha="center", va="center", fontsize=6, color="white")
+        if wanted["level"] is not None:
+            level, band = (_factor(colour) * wanted[key] for key in ("level", "band"))
+            axes.contour(table.columns, table.index, table, levels=[level], colors=[ORANGE], linewidths=2)
+            if band:
+                axes.contour(table.columns, table.index, table, levels=[level - band, level + band], colors=[ORANGE],
+                             linewidths=1, linestyles="--")
+        axes.set(title=words, xlabel=label(x))
+    grid[0, 0].set_ylabel(label(y))
+    figure.colorbar(picture, ax=grid, label=label(colour))
+    return figure
+
+
+def _set(figure: dict, words: str, group: pd.DataFrame) -> list[str]:
+    """For each value of x the range of y in which colour is within the band of its level, between points interpolated in log y."""
+    if figure["level"] is None:
+        return []
+    x, y, colour = (figure[key] for key in ("x", "y", "colour"))
+    lines = [f"{words}: " * bool(words) + f"{colour.replace('_', ' ')} = {_factor(colour) * figure['level']:g} ± "
+             f"{_factor(colour) * figure['band']:g}{_unit(colour)} is met for"]
+    for value, column in group[group.exit == 0].groupby(x):
+        column = column.sort_values(y)
+        fine = np.geomspace(column[y].iloc[0], column[y].iloc[-1], 2001)
+        inside = np.abs(np.interp(np.log(fine), np.log(column[y]), column[colour]) - figure["level"]) <= figure["band"]
+        edges = np.flatnonzero(np.diff(np.concatenate([[0], inside.astype(int), [0]]))).reshape(-1, 2)
+        ranges = ", ".join(f"{fine[a]:.2g} to {fine[b - 1]:.2g}" for a, b in edges)
+        lines.append(f"  {x} = {value:g}: {y} {ranges}" if ranges else f"  {x} = {value:g}: no {y}")
+    return lines
+
+
+# ---- histories
+
+def _histories(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
+    panels, names = list(_groups(sweep, rows, "panel")), sweep.figure["y"]
+    figure, grid = plt.subplots(len(names), len(panels), figsize=(1 + 3.4 * len(panels), 0.6 + 2.8 * len(names)), squeeze=False)
+    for column, (title, part) in zip(grid.T, panels):
+        for axes, y in zip(column, names):
+            for (words, group), colour, line in zip(_groups(sweep, part, "by"), COLOURS, itertools.cycle(("-", "--"))):
+                for _, row in group[group.exit == 0].iterrows():
+                    t, values = _history(sweep, row, out, y, refined=bool(sweep.refine))
+                    axes.plot(1e3 * t, 1e-3 * values if "force" in y else values, color=colour, linestyle=line, label=words)
+            axes.set(xlabel="time [ms]", title=title)
+            axes.margins(x=0)
+            axes.grid(alpha=0.3)
+            if column is grid.T[0]:
+                axes.set_ylabel(f"{y.replace('_', ' ')}" + " [kN/m]" * ("force" in y))
+    grid[0, 0].legend()
+    return figure
+
+
+def _history(sweep, row: pd.Series, out: Path, y: str, refined: bool) -> tuple[np.ndarray, np.ndarray]:
+    """(t, values) of a point's run; forces, which are means of a step, at the middle of the step."""
+    point = row[sweep.axes].to_dict() | (sweep.refine if refined else {})
+    history = read_history(study.place(out, point))
+    if y not in history:
+        raise BadInput(f"figure: y = '{y}' (accepted: {', '.join(history)})")
+    return (history["t"] - history["dt"] / 2 if y.endswith("_force") else history["t"]), history[y]
+
+
+def distances(sweep, rows: pd.DataFrame, out: Path) -> Iterator[tuple[str, str, str, str, float, float]]:
+    """(panel, y, a, b, distance, error): ||y_b - y_a|| / ||y_a|| over time, of each line b and the first one a; error: the largest
+    such distance of a run and its refined run, nan without [refine]."""
+    refined = bool(sweep.refine)
+    for panel, part in _groups(sweep, rows, "panel"):
+        runs = [(words, row) for words, group in _groups(sweep, part, "by") for _, row in group[group.exit == 0].iterrows()]
+        for y, (b, row) in itertools.product(sweep.figure["y"], runs[1:]):
+            a, first = runs[0]
+            bars = [_distance(_history(sweep, each, out, y, True), _history(sweep, each, out, y, False))
+                    for each in (first, row) if refined]
+            yield panel, y, a, b, _distance(*(_history(sweep, each, out, y, refined) for each in (first, row))), max(bars, default=np.nan)
+
+
+def _distance(first: tuple[np.ndarray, np.ndarray], second: tuple[np.ndarray, np.ndarray]) -> float:
+    """||second - first|| / ||first|| in L2 over time; both are zero outside their times."""
+    t = np.union1d(first[0], second[0])
+    a, b = (np.interp(t, *each, left=0, right=0) for each in (first, second))
+    return float(np.sqrt(np.trapezoid((b - a) ** 2, t) / np.trapezoid(a**2, t)))

@@ -1,0 +1,276 @@
+"""Sweeps: the file and its errors, the table, kills and two drivers at once, Snakemake, trends, maps and histories."""
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from orchestrate import parameters, run, study, sweep, sweep_figures
+from orchestrate.failure import BadInput
+from orchestrate.figures import plt
+from test_cli import call, is_alive, start, wait_for
+
+COARSE = "[set]\nmesh_size = 0.02\ncontact_mesh_size = 0.01\n"
+SIX = COARSE + "[product]\nspeed = { from = 4, to = 8, points = 3 }\nnu = [0.3, 0.4]\n"
+DRAWN = SIX + '[figure]\nx = "speed"\ny = "contact_time"\nby = "nu"\n'
+TIMINGS = ["seconds"]
+
+
+def write(folder: Path, text: str) -> Path:
+    folder.mkdir(exist_ok=True)
+    path = folder / "case.toml"
+    path.write_text(text)
+    return path
+
+
+def table(out: Path) -> pd.DataFrame:
+    return pd.read_csv(out / "sweep.csv").drop(columns=TIMINGS)
+
+
+# ---- the file
+
+def test_points_are_products_of_axes_and_zips(tmp_path):
+    """Every combination of lists, ranges and zips, the first axis slowest; each point again with what refines it."""
+    wanted = sweep.load(str(write(tmp_path, 'scene = "disc-oblique"\n[product]\nspeed = { from = 1, to = 100, points = 3, spacing = "log" }\n'
+                                  '[[zip]]\nnu = [0.3, 0.4]\nlaw = ["svk", "neohookean"]\n[refine]\naccuracy = 0.001\n')))
+    assert [tuple(point.values()) for point in wanted.points] == [
+        (v, n, law) for v in (1.0, 10.0, 100.0) for n, law in ((0.3, "svk"), (0.4, "neohookean"))]
+    assert wanted.axes == ["speed", "nu", "law"] and wanted.scene == "disc-oblique" and wanted.base == {"fields": 0}
+    assert wanted.runs == wanted.points + [point | {"accuracy": 0.001} for point in wanted.points]
+    assert wanted.collect == run.summary_numbers() and "contact_time" in wanted.collect
+
+
+@pytest.mark.parametrize("text, words", [
+    ("[product]\nspede = [1]", "spede: no such parameter; did you mean speed"),
+    ("[product]\nspeed = [1, -2]", "speed: -2 is out of range"),
+    ("[product]\nspeed = []", "speed: [] (accepted: at least one value, none twice)"),
+    ("[product]\nspeed = [1, 1.0]", "none twice"),
+    ("[product]\nspeed = 3", "speed: '3' is not accepted (accepted: a list of values, or a range)"),
+    ("[product]\nspeed = { from = 1, to = 3 }", "is no range (accepted: from, to, points and perhaps spacing)"),
+    ("[product]\nspeed = { from = 1, to = 3, points = 1 }", "points = 1 (accepted: 2 to"),
+    ("[product]\nspeed = { from = 0, to = 3, points = 3, spacing = 'log' }", "from 0 to 3 (accepted: numbers, above 0)"),
+    ("[product]\nspeed = { from = 1, to = 3, points = 3, spacing = 'odd' }", "'odd' is not known (accepted: linear|log)"),
+    ("[product]\nspeed = { from = 1, to = 3, points = 30000 }", "points = 30000"),
+    ("[product]\nspeed = { from = 1, to = 3, points = 2000 }\nnu = { from = 0.1, to = 0.4, points = 20 }", "40000 runs (accepted: up to 20000)"),
+    ("", "nothing varies"),
+    ("[product]\nspeed = [1]\n[set]\nspeed = 2", "set: speed is given twice"),
+    ("[product]\nspeed = [1]\n[refine]\nspeed = 2", "refine: speed is given twice"),
+    ("[product]\nspeed = [1]\n[[zip]]\nspeed = [2]", "product: speed is given twice"),
+    ("[[zip]]\nspeed = [2]\nnu = [0.1, 0.2]", "zip: speed has 1 values, nu has 2 values (accepted: lists of one length)"),
+    ("[zip]\nspeed = [2]", "zip: "),
+    ("points = 3\n[product]\nspeed = [1]", "points: no such entry (accepted: title"),
+    ("scene = 'nothing'\n[product]\nspeed = [1]", "nothing: no such scene"),
+    ("scene = 3\n[product]\nspeed = [1]", "scene: '3' is not accepted"),
+    ("collect = ['contact_tim']\n[product]\nspeed = [1]", "collect: 'contact_tim' is not known (accepted: contact_time"),
+    ("limit = 0\n[product]\nspeed = [1]", "limit: 0 (accepted: seconds"),
+    ("[product]\nspeed = [1]\n[figure]\nx = 'nu'\ny = 'impulse'", "figure: x = 'nu' (accepted: speed)"),
+    ("[product]\nspeed = [1]\n[figure]\nx = 'speed'\ny = 'inpulse'", "figure: y = 'inpulse' (accepted: contact_time"),
+    ("[product]\nspeed = [1]\n[figure]\nx = 'speed'\ny = 'impulse'\nby = 'nu'", "figure: by = 'nu' (accepted: speed)"),
+    ("[product]\nspeed = [1]\n[figure]\nkind = 'pie'", "figure: kind 'pie' is not known (accepted: lines|map|histories)"),
+    ("[product]\nspeed = [1]\n[figure]\nkind = 'histories'", "figure: y is missing"),
+    ("[product]\nspeed = [1]\n[figure]\nx = 'speed'\ny = 'impulse'\ncolour = 'impulse'", "figure: colour: no such entry for lines"),
+    ("[product", "cannot be read"),
+])
+def test_bad_files_are_one_line(tmp_path, text, words):
+    """The line names the file, the entry, the value and what is accepted; nothing has run."""
+    path = write(tmp_path, text)
+    with pytest.raises(BadInput) as error:
+        sweep.load(str(path))
+    assert str(path) in str(error.value) and words in str(error.value) and "\n" not in str(error.value)
+    assert error.value.code == 10
+
+
+def test_unknown_sweep_and_run():
+    """Exit code 10, one line, what there is."""
+    code, _, err = call("sweep", "nothing")
+    assert code == 10 and "built in: calibrate, contact-time-neohookean" in err and err.count("\n") == 1
+    code, _, err = call("sweep", "law-comparison", "--run", "speed=3")
+    assert code == 10 and "--run: 'speed=3' is no run of law-comparison (accepted: see --list)" in err
+
+
+@pytest.mark.parametrize("name", sweep.built_in())
+def test_built_in_sweeps_are_sound(name):
+    """Each loads, has a title and a figure, and has its target in the Makefile."""
+    wanted = sweep.load(name)
+    assert wanted.title != name and wanted.figure and f" {name}" in (parameters.ROOT / "Makefile").read_text()
+
+
+def test_the_papers_sweeps_cover_what_it_draws():
+    """Figure 6b: at least 40 speeds from 0.5 to 11 m/s; figure 8: 0.5 to 20; both for nu = 0.3 and 0.45 with error bars."""
+    for name, top, least in (("contact-time-svk", 11, 40), ("contact-time-neohookean", 20, 15)):
+        wanted = sweep.load(name)
+        speeds = {point["speed"] for point in wanted.points if point["speed"] <= top}
+        assert len(speeds) >= least and min(speeds) == 0.5 and max(speeds) == top and wanted.refine
+        assert {point["nu"] for point in wanted.points} == {0.3, 0.45}
+
+
+# ---- the table
+
+def test_table_and_figure(fake, tmp_path, capsys):
+    """A row a point in the order of the file, every collected number, a figure, the file itself, and no half-written files."""
+    out = tmp_path / "out"
+    assert sweep.main([str(write(tmp_path, DRAWN)), "--out", str(out)]) == 0
+    rows = table(out)
+    assert rows[["speed", "nu"]].values.tolist() == [[v, n] for v in (4, 6, 8) for n in (0.3, 0.4)]
+    assert (rows.exit == 0).all() and (rows.impulse == 208.2).all() and fake.starts() == 6
+    assert {path.name for path in out.iterdir()} == {"runs", "sweep.csv", "sweep.png", "sweep.toml"}
+    assert (out / "sweep.toml").read_text() == DRAWN and plt.imread(out / "sweep.png").std() > 0
+    said = capsys.readouterr().out
+    assert "6 of 6 points finished" in said and "ν = 0.3: contact time over speed" in said and "no error bars" in said
+    assert all(run.read_scene(folder)["mesh_size"] == 0.02 for folder in (out / "runs").iterdir())
+
+
+@pytest.mark.parametrize("mode, code, returned", [("material", 12, 0), ("step", 11, 0), ("crash", 1, 1)])
+def test_failed_points_are_kept_with_their_reason(fake, tmp_path, capsys, mode, code, returned):
+    """They do not stop the rest; what would fail again is not run again, what was killed is."""
+    fake(mode)
+    path, out = write(tmp_path, DRAWN), tmp_path / "out"
+    assert sweep.main([str(path), "--out", str(out)]) == returned
+    rows, said = table(out), capsys.readouterr().out
+    assert (rows.exit == code).all() and rows.message.notna().all() and "0 of 6 points finished" in said
+    assert f"failed, exit {code}: speed=4.0,nu=0.3" in said and ("again" in said) == (returned == 1)
+    assert sweep.main([str(path), "--out", str(out)]) == returned and fake.starts() == (12 if returned else 6)
+
+
+def test_error_bars_are_what_refining_changes(tmp_path):
+    """With [refine] the number is that of the refined run, its error the difference to the plain one."""
+    text = "collect = ['impulse', 'dofs']\n[set]\ndegree = 1\nend_time = 1e-3\n[product]\nspeed = [4, 8]\n[refine]\naccuracy = 0.02\n"
+    wanted = sweep.load(str(write(tmp_path, text)))
+    rows = sweep.collect(wanted, tmp_path / "out")
+    plain, fine = (study.study([point | extra for point in wanted.points], tmp_path / "out", wanted.base, 60.0) for extra in ({}, wanted.refine))
+    assert plain.reused.all() and fine.reused.all() and (plain.dofs != fine.dofs).all()
+    assert rows.impulse.tolist() == fine.impulse.tolist() and (rows.impulse_error > 0).all()
+    assert rows.impulse_error.tolist() == (fine.impulse - plain.impulse).abs().tolist()
+    assert (rows.impulse_error < 0.05 * rows.impulse).all()
+
+
+# ---- kills
+
+def orphans(out: Path) -> list[Path]:
+    return [path for path in (out / "runs").glob("*.part")] if (out / "runs").exists() else []
+
+
+@pytest.mark.parametrize("after", [0.0, 0.3, 0.8])
+def test_killed_driver_leaves_nothing_running_and_is_taken_up(fake, tmp_path, monkeypatch, after):
+    """kill -9 of the driver ends its FreeFem++; the same command runs only what is not finished; the table is the same."""
+    path, out, calm = write(tmp_path, DRAWN), tmp_path / "out", tmp_path / "calm"
+    assert call("sweep", str(path), "--out", str(calm))[0] == 0
+    first = fake.starts()
+    monkeypatch.setenv("FAKE", "brief")
+    process = start("sweep", str(path), "--out", str(out))
+    wait_for(lambda: fake.starts() >= first + study.CORES)
+    try:
+        process.wait(after)
+    except subprocess.TimeoutExpired:
+        pass
+    process.kill()
+    process.wait()
+    wait_for(lambda: not any(map(is_alive, fake.pids())))
+    wait_for(lambda: not orphans(out))
+    done, before = len(list((out / "runs").glob("*/summary.json"))), fake.starts()
+    code, said, _ = call("sweep", str(path), "--out", str(out))
+    assert code == 0 and fake.starts() - before == 6 - done and "6 of 6" in said
+    pd.testing.assert_frame_equal(table(out), table(calm))
+
+
+def test_killed_freefem_costs_its_point_only(fake, tmp_path, monkeypatch):
+    """kill -9 of a FreeFem++: its point fails and says so, the others go on; the same command runs that point only."""
+    path, out = write(tmp_path, DRAWN), tmp_path / "out"
+    monkeypatch.setenv("FAKE", "brief")
+    process = start("sweep", str(path), "--out", str(out))
+    wait_for(lambda: fake.starts() >= 1)
+    os.kill(fake.pids()[0], signal.SIGKILL)
+    said, _ = process.communicate(timeout=60)
+    assert process.returncode == 1 and "5 of 6 points finished" in said and "was killed by SIGKILL" in said
+    before = fake.starts()
+    assert call("sweep", str(path), "--out", str(out))[0] == 0 and fake.starts() == before + 1
+    assert (table(out).exit == 0).all()
+
+
+def test_two_drivers_share_a_folder(fake, tmp_path, monkeypatch):
+    """Both end well with the same table, and no point is run twice."""
+    path, out = write(tmp_path, DRAWN), tmp_path / "out"
+    monkeypatch.setenv("FAKE", "brief")
+    both = [start("sweep", str(path), "--out", str(out)) for _ in range(2)]
+    for process in both:
+        said, err = process.communicate(timeout=60)
+        assert process.returncode == 0 and "6 of 6 points finished" in said, err
+    assert fake.starts() == 6 and (table(out).exit == 0).all() and not orphans(out)
+
+
+def test_one_run_of_the_list(fake, tmp_path):
+    """--list names the runs, --run does one of them; the sweep then takes it as done."""
+    path, out = write(tmp_path, SIX), tmp_path / "out"
+    names = call("sweep", str(path), "--out", str(out), "--list")[1].split()
+    assert len(names) == 6 and names[1] == "speed=4.0,nu=0.4"
+    assert call("sweep", str(path), "--out", str(out), "--run", names[1])[0] == 0 and fake.starts() == 1
+    assert not (out / "sweep.csv").exists()
+    assert call("sweep", str(path), "--out", str(out))[0] == 0 and fake.starts() == 6
+
+
+def test_snakemake_gives_the_same_table(fake, tmp_path):
+    """One job a run, the same results as the driver, which finds nothing left to do."""
+    pytest.importorskip("snakemake", reason="the optional snakemake is not installed")
+    path, out, calm = write(tmp_path, DRAWN), tmp_path / "out", tmp_path / "calm"
+    assert call("sweep", str(path), "--out", str(calm))[0] == 0
+    done = subprocess.run([sys.executable, "-m", "snakemake", "-s", str(parameters.ROOT / "orchestrate/Snakefile"), "--cores", "2",
+                           "--config", f"sweep={path}", f"out={out}"], cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    assert fake.starts() == 12 and "7 of 7 steps (100%) done" in done.stderr
+    pd.testing.assert_frame_equal(table(out), table(calm))
+    assert call("sweep", str(path), "--out", str(out))[0] == 0 and fake.starts() == 12
+
+
+# ---- what figures say
+
+def rows_over_speed(values, error=0.01) -> pd.DataFrame:
+    return pd.DataFrame({"speed": np.arange(1.0, 1 + len(values)), "contact_time": 1e-3 * np.array(values), "exit": 0,
+                         "contact_time_error": 1e-3 * error})
+
+
+def test_trend_counts_rises_beyond_the_error_bar():
+    """A rise counts as one where it exceeds the error bars of both its ends, added in squares."""
+    said = sweep_figures.trend(rows_over_speed([5.0, 4.8, 4.81, 4.7, 4.9, 4.6]), "speed", "contact_time", "")
+    assert "falls from 5 to 4.6 ms; of 5 steps 2 rise, 1 of them by more than their error bar" in said and "largest by 0.2 ms" in said
+    assert "0 of them by more" in sweep_figures.trend(rows_over_speed([5, 4.8, 4.9, 4.7, 4.6], 0.2), "speed", "contact_time", "")
+    assert "0 rise" in sweep_figures.trend(rows_over_speed([5, 4.9, 4.8]), "speed", "contact_time", "")
+    failed = rows_over_speed([5, 4.9, 4.8]).assign(exit=[0, 0, 12])
+    assert "too few points" in sweep_figures.trend(failed, "speed", "contact_time", "")
+
+
+def test_trend_does_not_trust_one_small_difference():
+    """A point whose two runs agree by chance has the error bar of its curve."""
+    rows = rows_over_speed([5.0, 4.8, 4.9, 4.7, 4.6]).assign(contact_time_error=[2e-4, 0, 0, 2e-4, 2e-4])
+    assert "1 rise, 0 of them by more" in sweep_figures.trend(rows, "speed", "contact_time", "")
+
+
+def test_set_of_a_level():
+    """The range of y in which the level is met within its band, interpolated in the logarithm."""
+    group = pd.DataFrame({"nu": 0.3, "penalty": [1e9, 1e10, 1e11], "contact_time": [5e-3, 4.8e-3, 4.6e-3], "exit": 0})
+    figure = {"x": "nu", "y": "penalty", "colour": "contact_time", "level": 4.8e-3, "band": 1e-4}
+    lines = sweep_figures._set(figure, "", group)
+    assert "4.8 ± 0.1 ms is met for" in lines[0] and lines[1] == "  nu = 0.3: penalty 3.2e+09 to 3.2e+10"
+    assert sweep_figures._set(figure | {"level": 1.0}, "", group)[1] == "  nu = 0.3: no penalty"
+
+
+def test_distance_of_histories():
+    """||b - a|| / ||a|| in L2 over time, on different time steps."""
+    fine, coarse = np.linspace(0, 1, 2001), np.linspace(0, 1, 101)
+    a, b = (fine, np.sin(np.pi * fine)), (coarse, 1.1 * np.sin(np.pi * coarse))
+    assert sweep_figures._distance(a, b) == pytest.approx(0.1, rel=1e-3) and sweep_figures._distance(a, a) == 0
+
+
+@pytest.mark.parametrize("figure, words", [
+    ('kind = "map"\nx = "nu"\ny = "speed"\ncolour = "contact_time"\nlevel = 4.67e-3\nband = 1e-5', "4.67 ± 0.01 ms is met for"),
+    ('kind = "histories"\ny = "normal_force"\npanel = "speed"\nby = "nu"', "speed = 4: relative L2 difference of normal force, ν = 0.3 and ν = 0.4: 0.0 %"),
+])
+def test_other_figures(fake, tmp_path, capsys, figure, words):
+    """Maps and histories are drawn and put into words."""
+    out = tmp_path / "out"
+    assert sweep.main([str(write(tmp_path, SIX + f"[figure]\n{figure}\n")), "--out", str(out)]) == 0
+    assert words in capsys.readouterr().out and plt.imread(out / "sweep.png").std() > 0
