@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from .failure import BadInput, NotInstalled
-from .parameters import ROOT
+from .parameters import ROOT, TABLE, Value
 
 FREE, AXIS = 1, 2          # boundary labels
 GROWTH = 0.3               # element size gained per length of distance from the contact arc
@@ -33,6 +33,12 @@ class Mesh:
     triangles: np.ndarray
     edges: np.ndarray
     labels: np.ndarray
+
+
+def accuracy_made(values: dict[str, Value]) -> float:
+    """The accuracy that mesh and steps of a scene are made for: finer with friction, by edp/core/parameters.idp."""
+    share = re.search(r"^real accuracyMade = frictionStatic > 0 \? accuracy / (\S+) : accuracy;", TABLE.read_text(), re.M)
+    return values["accuracy"] / (float(share[1]) if values["friction_static"] > 0 else 1)
 
 
 def sizes_from_accuracy(accuracy: float, radius: float) -> tuple[float, float]:

@@ -208,7 +208,7 @@ def _same(folder: Path, summary: dict, scene: Scene, mesh_file: Path | None, cod
 
 def _with_mesh_sizes(scene: Scene) -> Scene:
     values = scene.values
-    sizes = mesh.resolve_sizes(values["mesh_size"], values["contact_mesh_size"], values["accuracy"], values["radius"])
+    sizes = mesh.resolve_sizes(values["mesh_size"], values["contact_mesh_size"], mesh.accuracy_made(values), values["radius"])
     return scene.override(dict(zip(("mesh_size", "contact_mesh_size"), sizes)))
 
 

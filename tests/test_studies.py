@@ -137,11 +137,11 @@ def test_stress_holds_on_real_runs(tmp_path, monkeypatch, capsys):
 
 
 def test_converged_values_have_an_error_bar():
-    """Finest mesh; error: what the last refinements of mesh and step changed, added."""
+    """The mean of the finest runs of the three refinements; error: the farthest of the two finest of each."""
     wanted = refine.ANSWERS["disc-normal"]
     answers = lambda *values: pd.DataFrame({name: values for name in wanted})   # noqa: E731
-    best, error = refine.converged({"mesh": answers(1.3, 1.1, 1.0), "step": answers(2.0, 1.04, 1.02)}, wanted)
-    assert best.tolist() == [1.0] * 4 and error.tolist() == pytest.approx([0.12] * 4)
+    best, error = refine.converged({"mesh": answers(1.3, 1.1, 1.0), "step": answers(2.0, 1.04, 1.02), "accuracy": answers(0.98, 1.04)}, wanted)
+    assert best.tolist() == pytest.approx([1.02] * 4) and error.tolist() == pytest.approx([0.08] * 4)
 
 
 def test_refine_reports(fake, tmp_path, capsys):
