@@ -58,8 +58,19 @@ def test_snapshots_can_be_read(result):
     series = vtu.series(result.folder / "fields.pvd")
     assert len(series) == result.scene["fields"]
     snapshot = vtu.read(series[-1][1])
-    assert {"displacement", "velocity", "jacobian", "von_mises"} <= set(snapshot.fields)
+    assert {"displacement", "velocity", "jacobian", "von_mises", "cauchy_stress"} <= set(snapshot.fields)
     assert snapshot.points[:, 0].min() >= 0 and np.isfinite(snapshot.fields["von_mises"]).all()
+
+
+def test_stress_of_the_snapshots_agrees_with_its_von_mises_stress(result):
+    """A mean of stresses has at most the mean of their von Mises stresses, and nearly it where the mesh resolves the stress."""
+    snapshots = [vtu.read(path).fields for _, path in vtu.series(result.folder / "fields.pvd")]
+    largest = max(fields["von_mises"].max() for fields in snapshots)
+    for fields in snapshots:
+        xx, yy, zz, xy, yz, xz = fields["cauchy_stress"].T
+        lost = fields["von_mises"] - np.sqrt(((xx - yy)**2 + (yy - zz)**2 + (zz - xx)**2) / 2 + 3 * xy**2)
+        assert lost.min() >= -1e-7 * largest and lost.mean() < 0.03 * largest
+        assert not yz.any() and not xz.any()
 
 
 def direct(*flags: str) -> subprocess.CompletedProcess:
