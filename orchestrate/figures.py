@@ -9,6 +9,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.collections import TriMesh
 from matplotlib.tri import LinearTriInterpolator, Triangulation
 
 from . import vtu
@@ -20,6 +21,7 @@ BLUE, ORANGE, GREEN, PURPLE, BLACK, GREY = "#0072b2", "#d55e00", "#009e73", "#aa
 STYLE = {"font.size": 9, "axes.titlesize": 9, "axes.spines.top": False, "axes.spines.right": False,
          "axes.linewidth": 0.8, "lines.linewidth": 1.4, "legend.frameon": False, "figure.dpi": 100, "savefig.dpi": 150,
          "figure.constrained_layout.use": True, "figure.constrained_layout.w_pad": 0.08}
+STRESS = "von Mises stress [MPa]"
 SHAPES = 9   # small multiples at most
 DASHED = (0, (4, 2))
 
@@ -40,18 +42,18 @@ def draw(folder: Path) -> list[Path]:
             drawn["force"] = _force(contact)
         if snapshots:
             drawn["shapes"] = _shapes(snapshots)
-            if len(snapshots) > 2 and vtu.read(snapshots[0][1]).points[:, 0].min() < 0:   # a whole body
+            if len(snapshots) > 2 and not vtu.read(snapshots[0][1]).is_half:
                 drawn["flight"] = _flight(history, scene, snapshots)
         files = []
         for name, figure in drawn.items():
-            figure.suptitle(_title(scene), fontsize=9)
+            figure.suptitle(title(scene), fontsize=9)
             files.append(target / f"{name}.png")
             figure.savefig(files[-1])
             plt.close(figure)
     return files
 
 
-def _title(scene: dict[str, Value]) -> str:
+def title(scene: dict[str, Value]) -> str:
     """Law, nu, speed, the angle where the impact is oblique, and the friction law where there is one."""
     angle = "" if scene.get("angle", 90) == 90 else f" at {scene['angle']:g}°"
     text = f"{LAWS.get(scene['law'], scene['law'])}, ν = {scene['nu']:g}, {scene['speed']:g} m/s{angle}"
@@ -61,7 +63,7 @@ def _title(scene: dict[str, Value]) -> str:
     return text
 
 
-def _per(history: dict[str, np.ndarray]) -> str:
+def per_metre(history: dict[str, np.ndarray]) -> str:
     """Plane strain is per metre of thickness, a ball is not."""
     return "" if "vz" in history else "/m"
 
@@ -90,7 +92,7 @@ def _energies(history: dict[str, np.ndarray]) -> plt.Figure:
         top.plot(t, total, color=BLACK, linewidth=1.0, label="total")
     top.plot(t, balance, color=BLACK, linestyle="--", label=words)
     least = min(values.min() for values, _ in lines.values())
-    top.set(ylabel=f"energy [J{_per(history)}]", ylim=(min(0, 1.05 * least), 1.05 * max(total.max(), balance.max())))
+    top.set(ylabel=f"energy [J{per_metre(history)}]", ylim=(min(0, 1.05 * least), 1.05 * max(total.max(), balance.max())))
     columns = len(lines) + 1 if len(lines) == 3 else 3
     top.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncols=columns, handlelength=1.6, columnspacing=1.4)
     error = np.abs(history["balance"]) / start
@@ -105,7 +107,7 @@ def _force(history: dict[str, np.ndarray]) -> plt.Figure:
     """Normal force [kN/m] over time."""
     figure, axes = plt.subplots(figsize=(5.2, 3.2))
     axes.plot(1e3 * history["t"], 1e-3 * history["normal_force"], color=BLUE)
-    axes.set(xlabel="time [ms]", ylabel=f"normal force [kN{_per(history)}]", ylim=(0, None))
+    axes.set(xlabel="time [ms]", ylabel=f"normal force [kN{per_metre(history)}]", ylim=(0, None))
     axes.margins(x=0)
     return figure
 
@@ -115,7 +117,7 @@ def _friction(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fi
 
     The broken lines are the coefficients times the normal force: a body of which all points slide one way is on the dynamic one.
     """
-    t, per = 1e3 * history["t"], _per(history)
+    t, per = 1e3 * history["t"], per_metre(history)
     normal, friction = 1e-3 * history["normal_force"], 1e-3 * history["friction_force"]
     figure, grid = plt.subplots(2, 2, figsize=(7.6, 4.8), sharex="col", width_ratios=[1.7, 1])
     (force, share), (drag, zoom) = grid
@@ -314,13 +316,18 @@ def _pose(t: float, path: Path, history: dict[str, np.ndarray]) -> Pose:
     loop = [next(iter(following))]
     while following[loop[-1]] != loop[0]:
         loop.append(following[loop[-1]])
+    centre = np.array([np.interp(t, history["t"], history[name]) for name in ("x", "y")])
+    return Pose(t, centre, moved[loop + loop[:1]], diameter(snapshot))
+
+
+def diameter(snapshot: vtu.Snapshot) -> np.ndarray:
+    """The deformed places (m, 2) [m] of the upright material diameter of a whole body, from its top down."""
     low, high = snapshot.points.min(axis=0), snapshot.points.max(axis=0)
     x = np.full(41, (low[0] + high[0]) / 2)
     y = np.linspace(high[1], low[1], 43)[1:-1]   # not quite to the outline, which is a polygon here
     grid = Triangulation(*snapshot.points.T, snapshot.triangles)
-    line = np.ma.stack([LinearTriInterpolator(grid, values)(x, y) for values in moved.T], axis=1)
-    centre = np.array([np.interp(t, history["t"], history[name]) for name in ("x", "y")])
-    return Pose(t, centre, moved[loop + loop[:1]], np.ma.compress_rows(line))
+    moved = snapshot.points + snapshot.fields["displacement"][:, :2]
+    return np.ma.compress_rows(np.ma.stack([LinearTriInterpolator(grid, values)(x, y) for values in moved.T], axis=1))
 
 
 def _fly(pose: Pose, wait: float, row: int, history: dict[str, np.ndarray], scene: dict[str, Value]) -> Pose:
@@ -343,13 +350,8 @@ def _draw_pose(axes: plt.Axes, pose: Pose, colour, line, label: str | None) -> N
 def _shapes(series: list[tuple[float, Path]]) -> plt.Figure:
     """The body at up to SHAPES instants above the plane y = 0, coloured by the von Mises stress [MPa]."""
     picked = [series[k] for k in np.unique(np.linspace(0, len(series) - 1, SHAPES).round().astype(int))]
-    bodies = [_deformed(vtu.read(path)) for _, path in picked]
-    largest = max(stress.max() for _, _, stress in bodies)
-    left, right = min(points[:, 0].min() for points, _, _ in bodies), max(points[:, 0].max() for points, _, _ in bodies)
-    left, right = left - 0.03 * (right - left), right + 0.03 * (right - left)
-    low = min(points[:, 1].min() for points, _, _ in bodies)
-    high = 1.04 * max(points[:, 1].max() for points, _, _ in bodies)
-    floor = min(low, 0) - 0.08 * high
+    bodies = [deformed(vtu.read(path)) for _, path in picked]
+    left, right, floor, high = view = limits(bodies)
 
     columns = min(3, len(bodies))
     rows = -(-len(bodies) // columns)
@@ -358,21 +360,50 @@ def _shapes(series: list[tuple[float, Path]]) -> plt.Figure:
                                 squeeze=False)
     for axes in grid.flat:
         axes.set_axis_off()
-    for axes, (points, triangles, stress), (t, _) in zip(grid.flat, bodies, picked):
-        axes.fill_between([left, right], floor, 0, color="#d0d0d0", linewidth=0)
-        axes.axhline(0, color=BLACK, linewidth=0.8)
-        picture = axes.tripcolor(*points.T, triangles, stress, shading="gouraud", cmap="viridis", vmin=0, vmax=largest)
-        axes.set(xlim=(left, right), ylim=(floor, high), aspect="equal")
+    largest = max(body.stress.max() for body in bodies)
+    for axes, body, (t, _) in zip(grid.flat, bodies, picked):
+        draw_ground(axes, view)
+        picture = draw_body(axes, body, largest)
         axes.set_title(f"{1e3 * t:.2f} ms", pad=2)
-    figure.colorbar(picture, ax=grid, label="von Mises stress [MPa]", shrink=0.7, aspect=30)
+    figure.colorbar(picture, ax=grid, label=STRESS, shrink=0.7, aspect=30)
     return figure
 
 
-def _deformed(snapshot: vtu.Snapshot) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Deformed points (n, 2) in m, triangles (t, 3) and von Mises stress (n,) in MPa of the whole body."""
+@dataclass(frozen=True)
+class Body:
+    """The whole deformed body: points (n, 2) in m, triangles (t, 3), von Mises stress (n,) in MPa."""
+
+    points: np.ndarray
+    triangles: np.ndarray
+    stress: np.ndarray
+
+
+def deformed(snapshot: vtu.Snapshot) -> Body:
+    """The body of a snapshot; where half of it was computed, the other half is the mirror image."""
     points = snapshot.points + snapshot.fields["displacement"][:, :2]
     triangles, stress = snapshot.triangles, 1e-6 * snapshot.fields["von_mises"]
-    if snapshot.points[:, 0].min() >= 0:   # half a body: the other half is its mirror image
+    if snapshot.is_half:
         triangles = np.vstack([triangles, triangles + len(points)])
         points, stress = np.vstack([points, points * (-1, 1)]), np.concatenate([stress, stress])
-    return points, triangles, stress
+    return Body(points, triangles, stress)
+
+
+def limits(bodies: list[Body]) -> tuple[float, float, float, float]:
+    """Left, right, floor and top [m] of a picture that has room for all bodies and for the ground below y = 0."""
+    low, high = (np.array([end(body.points, axis=0) for body in bodies]) for end in (np.min, np.max))
+    left, right, top = low[:, 0].min(), high[:, 0].max(), 1.04 * high[:, 1].max()
+    margin = 0.03 * (right - left)
+    return left - margin, right + margin, min(low[:, 1].min(), 0) - 0.08 * top, top
+
+
+def draw_ground(axes: plt.Axes, view: tuple[float, float, float, float]) -> None:
+    """The ground below y = 0 in axes with the limits `view` [m]."""
+    left, right, floor, top = view
+    axes.fill_between([left, right], floor, 0, color="#d0d0d0", linewidth=0)
+    axes.axhline(0, color=BLACK, linewidth=0.8)
+    axes.set(xlim=(left, right), ylim=(floor, top), aspect="equal")
+
+
+def draw_body(axes: plt.Axes, body: Body, largest: float) -> TriMesh:
+    """The body coloured by its stress, on a scale from 0 to `largest` MPa."""
+    return axes.tripcolor(*body.points.T, body.triangles, body.stress, shading="gouraud", cmap="viridis", vmin=0, vmax=largest)

@@ -14,11 +14,17 @@ SPLIT = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]   # a quadratic triangle (c
 
 @dataclass(frozen=True)
 class Snapshot:
-    """points (n, 2) reference coordinates in m; triangles (t, 3) straight; fields by name, (n,) or (n, 3), SI units."""
+    """points (n, 2) reference coordinates in m; triangles (t, 3) straight; fields by name, SI units: (n,), (n, 3) for vectors,
+    (n, 6) for the Cauchy stress (xx yy zz xy yz xz)."""
 
     points: np.ndarray
     triangles: np.ndarray
     fields: dict[str, np.ndarray]
+
+    @property
+    def is_half(self) -> bool:
+        """Whether only the half x >= 0 of the body was computed."""
+        return self.points[:, 0].min() >= 0
 
 
 def read(path: Path) -> Snapshot:

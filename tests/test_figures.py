@@ -26,9 +26,9 @@ def test_half_a_body_is_mirrored(finished_folder):
     """The picture of half a disc shows the whole: symmetric in x, twice the area."""
     _, path = vtu.series(finished_folder / "fields.pvd")[0]
     snapshot = vtu.read(path)
-    points, triangles, stress = figures._deformed(snapshot)
-    assert points[:, 0].min() == -points[:, 0].max() < 0
-    assert len(triangles) == 2 * len(snapshot.triangles) and len(stress) == len(points)
+    body = figures.deformed(snapshot)
+    assert body.points[:, 0].min() == -body.points[:, 0].max() < 0
+    assert len(body.triangles) == 2 * len(snapshot.triangles) and len(body.stress) == len(body.points)
 
 
 def test_quadratic_triangles_are_split(finished_folder):
