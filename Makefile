@@ -5,7 +5,7 @@ READY := .venv/.ready
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup disc-normal disc-oblique disc-rolling friction-laws contact-time-svk law-comparison contact-time-neohookean calibrate stick-slip paper movie test stress bench refine refine-oblique clean
+.PHONY: help setup disc-normal disc-oblique disc-rolling friction-laws oblique contact-time-svk law-comparison contact-time-neohookean calibrate stick-slip paper movie test stress bench refine refine-oblique clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
@@ -27,9 +27,10 @@ disc-rolling: $(READY) ## a disc is set down on the plane, slides and comes to r
 friction-laws: $(READY) ## draw the friction laws (figure 3)
 	@$(PYTHON) -m orchestrate $@ $(ARGS)
 
-SWEEPS := contact-time-svk law-comparison contact-time-neohookean calibrate
+SWEEPS := oblique contact-time-svk law-comparison contact-time-neohookean calibrate
 $(SWEEPS): $(READY)
 	@$(PYTHON) -m orchestrate sweep $@ $(ARGS)
+oblique: ## the oblique impact over nu, with error bars (section 3.1)
 contact-time-svk: ## sweep the speed with St. Venant-Kirchhoff (figure 6b)
 law-comparison: ## the force histories of both laws at 1 and 10 m/s (figure 7)
 contact-time-neohookean: ## sweep the speed with the neo-Hookean law (figure 8)

@@ -63,7 +63,7 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | Non
         mesh_file = mesh_file.resolve()
         mesh.read(mesh_file)
     else:
-        scene = _with_mesh_sizes(scene)
+        scene = with_mesh_sizes(scene)
     finished = _finished(folder, force)
     if not force and (there := reusable(scene, folder, mesh_file)):
         return there
@@ -156,7 +156,7 @@ def reusable(scene: Scene, folder: Path, mesh_file: Path | None = None) -> RunRe
     """The finished run in `folder` if it is of this very scene, mesh and code, else None; Unreadable if it is not ours."""
     summary = _finished(folder, force=False)
     if not mesh_file:
-        scene = _with_mesh_sizes(scene)
+        scene = with_mesh_sizes(scene)
     same = summary and _same(folder, summary, scene, mesh_file, code_hash())
     return RunResult(folder, summary, reused=True) if same else None
 
@@ -206,7 +206,8 @@ def _same(folder: Path, summary: dict, scene: Scene, mesh_file: Path | None, cod
 
 # ---- the mesh
 
-def _with_mesh_sizes(scene: Scene) -> Scene:
+def with_mesh_sizes(scene: Scene) -> Scene:
+    """The scene with the mesh sizes that its accuracy stands for, where they are 0."""
     values = scene.values
     sizes = mesh.resolve_sizes(values["mesh_size"], values["contact_mesh_size"], mesh.accuracy_made(values), values["radius"])
     return scene.override(dict(zip(("mesh_size", "contact_mesh_size"), sizes)))

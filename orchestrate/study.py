@@ -16,7 +16,7 @@ import pandas as pd
 from tqdm import tqdm
 
 from . import freefem, run, scene
-from .failure import Busy, Failure, Unreadable
+from .failure import Busy, Failure
 from .parameters import Value
 
 CORES = len(os.sched_getaffinity(0))
@@ -132,10 +132,10 @@ def _failed_before(wanted: scene.Scene, folder: Path) -> dict | None:
         record = _read_json(place / "failure.json")
         if record.get("exit_code") in (11, 12) and record["provenance"]["code"] == run.code_hash():
             try:
-                used = run.read_scene(place)
-            except Unreadable:
+                used, asked = run.read_scene(place), run.with_mesh_sizes(wanted).values
+            except Failure:
                 continue
-            if all(used.get(name) == value for name, value in wanted.values.items()):
+            if all(used.get(name) == value for name, value in asked.items()):
                 return record
     return None
 

@@ -9,6 +9,7 @@ x, y of a map, by and panel are parameters that vary; the y of lines and colour 
 
 import itertools
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -22,7 +23,6 @@ from .run import read_history
 
 KINDS = {"lines": ("x", "y", "by"), "map": ("x", "y", "colour", "by", "level", "band"), "histories": ("y", "panel", "by")}
 COLOURS, MARKERS = (BLUE, ORANGE, GREEN, PURPLE, GREY), "osd^v"
-SIGMAS = 1.0        # of the error bars of two neighbours, added in squares: a smaller rise is none
 
 
 def check(given: dict, varied: list[str], collected: list[str]) -> dict:
@@ -154,32 +154,56 @@ def _is_logarithmic(values: pd.Series) -> bool:
     return spread(np.diff(np.log(ordered))) < spread(np.diff(ordered))
 
 
-def trend(group: pd.DataFrame, x: str, y: str, words: str) -> str:
-    """Whether y falls or rises with x, and how many of the steps against the trend exceed the error bar of a step.
+@dataclass(frozen=True)
+class Trend:
+    """How y goes with x: first and last value, typical error of a point (nan without), how many of the steps between neighbours
+    go against the trend, how many of those beyond the error bar of the step, and the largest of them."""
+
+    first: float
+    last: float
+    typical: float
+    steps: int
+    against: int
+    beyond: int
+    largest: float
+
+    @property
+    def falls(self) -> bool:
+        """Whether y falls with x."""
+        return self.last < self.first
+
+
+def steps_against(group: pd.DataFrame, x: str, y: str) -> Trend:
+    """The trend of the finished points of `group`, SI units.
 
     The error bar of a point is the larger of its own and the root mean square of those of the curve, as one difference of two
     runs can be small by chance; that of a step is the sum of its ends' in squares.
     """
     there = group[group.exit == 0].sort_values(x)
+    values = there[y].to_numpy()
+    against = np.diff(values) * (1 if values[-1] < values[0] else -1)
+    own = there[f"{y}_error"].to_numpy() if f"{y}_error" in there else np.full(len(values), np.nan)
+    typical = float(np.sqrt(np.mean(own**2)))
+    bars = np.fmax(own, typical)
+    beyond = against > np.hypot(bars[1:], bars[:-1])
+    return Trend(values[0], values[-1], typical, len(against), int((against > 0).sum()), int(beyond.sum()), float(against.max()))
+
+
+def trend(group: pd.DataFrame, x: str, y: str, words: str) -> str:
+    """The same in words."""
     name = f"{words}: " * bool(words) + f"{y.replace('_', ' ')} over {x.replace('_', ' ')}"
-    if len(there) < 3:
+    if (group.exit == 0).sum() < 3:
         return f"{name}: too few points for a trend"
-    values = _factor(y) * there[y].to_numpy()
-    steps, unit = np.diff(values), _unit(y)
-    falls = values[-1] < values[0]
-    against = steps if falls else -steps
-    text = (f"{name}: {'falls' if falls else 'rises'} from {values[0]:.5g} to {values[-1]:.5g}{unit}; of {len(steps)} steps "
-            f"{(against > 0).sum()} {'rise' if falls else 'fall'}")
-    if f"{y}_error" not in there:
+    found, factor, unit = steps_against(group, x, y), _factor(y), _unit(y)
+    size = abs(group[group.exit == 0][y]).mean()
+    text = (f"{name}: {'falls' if found.falls else 'rises'} from {factor * found.first:.5g} to {factor * found.last:.5g}{unit}; of {found.steps} "
+            f"steps {found.against} {'rise' if found.falls else 'fall'}")
+    if np.isnan(found.typical):
         return text + " (no error bars: [refine] is not given)"
-    own = _factor(y) * there[f"{y}_error"].to_numpy()
-    typical = np.sqrt(np.nanmean(own**2))
-    bar = np.hypot(*(np.fmax(own, typical)[part] for part in (slice(1, None), slice(None, -1))))
-    most = against.max()
-    text += f", {(against > SIGMAS * bar).sum()} of them by more than their error bar"
-    if most > 0:
-        text += f"; the largest by {most:.2g}{unit} ({100 * most / abs(values).mean():.2f} %)"
-    return text + f"; error of a point {typical:.2g}{unit} ({100 * typical / abs(values).mean():.2f} %, rms)"
+    text += f", {found.beyond} of them by more than their error bar"
+    if found.largest > 0:
+        text += f"; the largest by {factor * found.largest:.2g}{unit} ({100 * found.largest / size:.2f} %)"
+    return text + f"; error of a point {factor * found.typical:.2g}{unit} ({100 * found.typical / size:.2f} %, rms)"
 
 
 # ---- maps

@@ -2,6 +2,7 @@
 
 import os
 import signal
+import sys
 
 import pandas as pd
 import pytest
@@ -37,10 +38,12 @@ def test_failing_points_are_rows(fake, tmp_path, mode, code, words):
     assert ("steps" in rows) == (code != 1)
 
 
+@pytest.mark.parametrize("sizes", [{"mesh_size": 0.02, "contact_mesh_size": 0.01}, {"accuracy": 0.02}], ids=["sizes", "accuracy"])
 @pytest.mark.parametrize("mode, again", [("ok", 0), ("step", 0), ("material", 0), ("crash", 4)])
-def test_what_is_done_is_not_done_again(fake, tmp_path, monkeypatch, mode, again):
+def test_what_is_done_is_not_done_again(fake, tmp_path, monkeypatch, mode, again, sizes):
     """Finished runs and failures of the same code are reused, crashes are not; with other code all is run again."""
     fake(mode)
+    monkeypatch.setattr(sys.modules[__name__], "BASE", sizes | {"fields": 0})
     first = go(tmp_path)
     second = go(tmp_path)
     assert fake.starts() == 4 + again and (second.reused == (again == 0)).all()

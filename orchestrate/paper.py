@@ -1,0 +1,401 @@
+"""The paper's statements beside this program's numbers: results/paper/report.html, one self-contained page.
+
+Reads what the cases left in results/ (`make paper` makes them first) and computes no number that is not in them. Every verdict
+follows from the numbers by the rule written at its statement; a printed number of the paper counts as known to half a unit of
+its last digit.
+"""
+
+import argparse
+import base64
+import json
+import tomllib
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from datetime import datetime
+from html import escape
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from . import parameters, run, stick_slip, study, sweep, sweep_figures
+from .failure import Failure, Unreadable
+from .parameters import ROOT, Value
+from .run import shown
+
+AGREES, DIFFERS, PARTLY, OPEN = "agrees", "does not agree", "partly", "not yet in this program"
+COLOURS = {AGREES: "#009e73", DIFFERS: "#d55e00", PARTLY: "#b8860b", OPEN: "#777777"}
+RUNS = ("disc-normal", "disc-oblique", "disc-oblique-svk", "disc-rolling")
+TARGETS = {"disc-oblique-svk": "disc-oblique"}   # the make target of a case, where it is not the case's own name
+OUTSIDE = 1e-9              # of the energy at the start: below, an energy is constant
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What we found: the verdict, our number in words, the pictures, and the folders of the runs it rests on."""
+
+    verdict: str
+    ours: str
+    figures: list[Path] = field(default_factory=list)
+    runs: list[Path] = field(default_factory=list)
+
+
+def main(argv: list[str]) -> int:
+    """Writes the page; Failure that lists every case that is missing or was made with other code."""
+    parser = argparse.ArgumentParser(prog="python -m orchestrate paper", description=__doc__)
+    parser.add_argument("--results", metavar="DIR", type=Path, default=ROOT / "results", help="where the cases are (default: results)")
+    options = parser.parse_args(argv)
+    results = Results(options.results.resolve())
+    results.require()
+    findings = [(item, text, find(results)) for item, text, find in STATEMENTS]
+    target = results.folder / "paper/report.html"
+    with study.complete(target) as part:
+        part.write_text(page(findings))
+    for item, text, found in findings:
+        print(f"{item}: {text}\n    {found.verdict.upper()}: {found.ours}\n")
+    print(", ".join(f"{sum(found.verdict == verdict for *_, found in findings)} {verdict}" for verdict in COLOURS))
+    print(shown(target))
+    return 0
+
+
+class Results:
+    """The finished cases in a folder of results."""
+
+    def __init__(self, folder: Path):
+        self.folder = folder
+
+    def run(self, name: str) -> Path:
+        """The folder of a run."""
+        return self.folder / name
+
+    def summary(self, name: str) -> dict:
+        """The summary of a run."""
+        return run.read_summary(self.run(name))
+
+    def history(self, name: str) -> dict[str, np.ndarray]:
+        """The history of a run."""
+        return run.read_history(self.run(name))
+
+    def sweep(self, name: str) -> Path:
+        """The folder of a sweep."""
+        return self.folder / "sweeps" / name
+
+    def table(self, name: str) -> pd.DataFrame:
+        """The points of a sweep that finished."""
+        rows = pd.read_csv(self.sweep(name) / "sweep.csv")
+        return rows[rows.exit == 0]
+
+    def sweep_runs(self, name: str) -> list[Path]:
+        """The folders of the runs of a sweep."""
+        return [study.place(self.sweep(name), point) for point in sweep.load(name).runs]
+
+    def require(self) -> None:
+        """Failure with one line that names every make target without whose result the page has a hole."""
+        code, missing = run.code_hash(), {}
+        for name in RUNS:
+            self._look(self.run(name) / "summary.json", code, TARGETS.get(name, name), missing)
+        for name in sweep.built_in():
+            place = self.sweep(name)
+            if not (place / "sweep.png").exists() or not (place / "sweep.csv").exists():
+                missing.setdefault(name, "is missing")
+            elif (place / "sweep.toml").read_text() != sweep.load(name).text:
+                missing.setdefault(name, "is of another sweep file")
+            else:
+                for folder in self.sweep_runs(name):
+                    if not (folder / "failure.json").exists():
+                        self._look(folder / "summary.json", code, name, missing)
+        for path in (self.folder / "friction-laws/friction-laws.png", self.folder / "stick-slip/stick-slip.csv"):
+            if not path.exists():
+                missing[path.parent.name] = "is missing"
+        if missing:
+            raise Failure("paper: " + ", ".join(f"{name} {why}" for name, why in missing.items())
+                          + f"; run: make {' '.join(missing)}   (or: make paper)", Unreadable("").code)
+
+    @staticmethod
+    def _look(path: Path, code: str, target: str, missing: dict[str, str]) -> None:
+        if not path.exists():
+            missing.setdefault(target, "is missing")
+        elif json.loads(path.read_text())["provenance"].get("code") != code:
+            missing.setdefault(target, "was made with other code")
+
+
+# ---- the statements, in the order of the paper
+
+STATEMENTS: list[tuple[str, str, Callable[[Results], Finding]]] = []
+
+
+def states(item: str, text: str) -> Callable:
+    """Registers how a statement of the paper is judged."""
+    def register(find: Callable[[Results], Finding]) -> Callable[[Results], Finding]:
+        STATEMENTS.append((item, text, find))
+        return find
+    return register
+
+
+def within(value: float, paper: float, half_digit: float, error: float = 0.0) -> bool:
+    """Whether the paper's number is met: to half a unit of its last digit, and our error bar."""
+    return abs(value - paper) <= half_digit + error
+
+
+@states("Figure 3", "Coulomb's law, its three regularisations, and the law with a static and a dynamic coefficient")
+def friction_laws(results: Results) -> Finding:
+    return Finding(AGREES, "Drawn from the functions that the solver runs. The paper prints v/(2ε) in the middle branch of φ³ (13), which would jump "
+                   "from ½ to 1 at |v| = ε; v/ε is used, the printed form is linear-printed.", [results.folder / "friction-laws/friction-laws.png"])
+
+
+@states("Section 3.1, figure 4b", "the angles of incidence and reflection are different")
+def angles(results: Results) -> Finding:
+    """Agrees where they differ by more than a degree."""
+    end = results.summary("disc-oblique")
+    out = float(np.degrees(np.arctan2(end["rebound_vy"], end["rebound_vx"])))
+    return Finding(AGREES if abs(out - 60) > 1 else DIFFERS, f"60° in, {out:.1f}° out (neo-Hookean, ν = 0.45).",
+                   [results.run("disc-oblique") / "figures/flight.png"], [results.run("disc-oblique")])
+
+
+@states("Section 3.1", "oblique disc, SVK, 12 m/s at π/3, μ_d = 0.5, μ_e = 0.7: contact time 0.0045 s, as the paper may have run it")
+def oblique_coarse(results: Results) -> Finding:
+    """Half a unit of the last digit; the law breaks down here, so that a coarse mesh decides."""
+    end = results.summary("disc-oblique-svk")
+    met = within(end["contact_time"], 4.5e-3, 0.5e-4)
+    broken = "" if end["breakdown_time"] is None else f"; det F ≤ 0 from {1e3 * end['breakdown_time']:.2f} ms on"
+    return Finding(PARTLY if met else DIFFERS, f"{1e3 * end['contact_time']:.3f} ms on one coarse mesh of linear triangles ({end['dofs']} dofs). The number "
+                   f"has no error bar: the law softens below a stretch of 0.577, the smallest one here is {end['min_stretch']:.3f}{broken}; finer "
+                   "meshes give other times.", [results.run("disc-oblique-svk") / "figures/force.png"], [results.run("disc-oblique-svk")])
+
+
+@states("Section 3.1", "the same contact time, 0.0045 s, against the converged neo-Hookean disc")
+def oblique_converged(results: Results) -> Finding:
+    """Half a unit of the last digit and the error bar, for any of the ν that were run."""
+    rows = results.table("oblique")
+    met = [within(row.contact_time, 4.5e-3, 0.5e-4, row.contact_time_error) for row in rows.itertuples()]
+    text = "; ".join(f"ν = {row.nu:g}: {1e3 * row.contact_time:.2f} ± {1e3 * row.contact_time_error:.2f} ms" for row in rows.itertuples())
+    return Finding(AGREES if all(met) else PARTLY if any(met) else DIFFERS, text + ".", [results.sweep("oblique") / "sweep.png"],
+                   results.sweep_runs("oblique"))
+
+
+@states("Section 3.1, figure 5a", "the normal force oscillates, by reflections of the impact waves")
+def oscillates(results: Results) -> Finding:
+    """Agrees where the force has several maxima that stand out by more than 2 % of its largest value."""
+    history = results.history("disc-oblique")
+    count = maxima(history["normal_force"], 0.02 * history["normal_force"].max())
+    return Finding(AGREES if count > 1 else DIFFERS, f"{count} maxima that stand out by more than 2 % of the largest force.",
+                   [results.run("disc-oblique") / "figures/force.png"], [results.run("disc-oblique")])
+
+
+@states("Section 3.1, figure 5b", "static and dynamic friction alternate: stick and slip")
+def alternates(results: Results) -> Finding:
+    """Agrees where the share of the load that slides rises and falls more than once by over 2 % of the load."""
+    history = results.history("disc-oblique")
+    share = np.where(history["normal_force"] > 0, history["sliding_fraction"], 0)
+    count = maxima(share, 0.02)
+    return Finding(AGREES if count > 1 else DIFFERS, f"the share of the load that slides has {count} maxima that stand out by over 2 % of the load.",
+                   [results.run("disc-oblique") / "figures/rolling.png"], [results.run("disc-oblique")])
+
+
+@states("Section 3.1, figure 6a", "the energy is constant before and after the contact, and falls in it by friction")
+def energy(results: Results) -> Finding:
+    """Agrees where the total changes by less than 1e-9 of its start after the last touch, and never grows in the contact."""
+    history = results.history("disc-oblique")
+    total = history["kinetic"] + history["elastic"] + history["contact"]
+    touching = np.flatnonzero(history["normal_force"] > 0)
+    after = np.ptp(total[touching[-1]:]) / total[0]
+    grows = max(0.0, float(np.diff(total).max()) / total[0])
+    lost = history["friction_work"][-1] / total[0]
+    drift = np.abs(history["balance"]).max() / total[0]
+    good = after < OUTSIDE and grows < OUTSIDE and lost > 0
+    return Finding(AGREES if good else DIFFERS, f"constant to {after:.0e} after the contact (before it the flight is exact); {100 * lost:.1f} % are lost "
+                   f"to friction; with them the balance closes to {drift:.0e}.", [results.run("disc-oblique") / "figures/energies.png"],
+                   [results.run("disc-oblique")])
+
+
+@states("Section 3.1", "the disc slides first and sticks in about the last third of the contact, in which the energy is constant again")
+def sliding_first(results: Results) -> Finding:
+    """Over the search of ε, k, ν, law and two readings of π/3: agrees where all runs at 60° from the plane do it, partly where some run does."""
+    rows = pd.read_csv(results.folder / "stick-slip/stick-slip.csv")
+    parts = []
+    for angle, group in rows.groupby("angle", sort=False):
+        parts.append(f"{int(group['order'].sum())} of {len(group)} runs at {angle:g}° from the plane "
+                     f"({int((group['order'] & group['quiet']).sum())} of them with at most {100 * stick_slip.QUIET:g} % of the friction work in the last third)")
+    share = rows[rows.angle == 60]["order"].mean()
+    verdict = AGREES if share == 1 else PARTLY if rows["order"].any() else DIFFERS
+    return Finding(verdict, "slides first and sticks last in " + ", and ".join(parts) + ". With 60° from the plane most of the load sticks from the start "
+                   "and slips back at the end.", [results.folder / "stick-slip/stick-slip.png"],
+                   [path for path in sorted((results.folder / "stick-slip/runs").iterdir()) if (path / "summary.json").exists()])
+
+
+@states("Section 3.1", "a disc that impacts and rolls")
+def rolls(results: Results) -> Finding:
+    """Agrees where the disc, set down at v₀, ends rolling at 2/3 v₀ within 1 %, as a rigid one."""
+    end, scene = results.summary("disc-rolling"), run.read_scene(results.run("disc-rolling"))
+    ratio = end["rebound_vx"] / scene["speed"]
+    rim = -scene["radius"] * end["spin"] / scene["speed"]
+    good = abs(ratio / (2 / 3) - 1) < 0.01 and abs(rim / (2 / 3) - 1) < 0.01
+    return Finding(AGREES if good else DIFFERS, f"set down on the plane it comes to roll: centre {ratio:.4f} v₀, rim {rim:.4f} v₀ (rigid: 2/3).",
+                   [results.run("disc-rolling") / "figures/rolling.png"], [results.run("disc-rolling")])
+
+
+@states("Figure 6b", "normal impact, SVK: the contact time falls with the speed in steps, with small rises between")
+def stepped(results: Results) -> Finding:
+    """Agrees where for every ν it falls and has a rise beyond the error bar of its step; partly where only some ν do, or only falls."""
+    return _trend(results, "contact-time-svk", lambda falls, rises, beyond: falls and beyond > 0, 11.0)
+
+
+@states("Figure 7a", "1 m/s: no noticeable difference between the force histories of SVK and neo-Hookean")
+def same_at_low_speed(results: Results) -> Finding:
+    """Agrees where they differ by less than 10 % in L2 over time."""
+    distance, bar = _distance(results, 1)
+    return Finding(AGREES if distance < 0.1 else DIFFERS, f"they differ by {100 * distance:.1f} % in L2 over time (mesh and step change {100 * bar:.1f} %).",
+                   [results.sweep("law-comparison") / "sweep.png"], results.sweep_runs("law-comparison"))
+
+
+@states("Figure 7b", "10 m/s: the contact lasts longer with SVK")
+def longer_at_high_speed(results: Results) -> Finding:
+    """Agrees where it does by more than both error bars."""
+    rows = results.table("law-comparison")
+    svk, neo = (rows[(rows.speed == 10) & (rows.law == law)].iloc[0] for law in ("svk", "neohookean"))
+    bar = svk.contact_time_error + neo.contact_time_error
+    distance, _ = _distance(results, 10)
+    return Finding(AGREES if svk.contact_time - neo.contact_time > bar else DIFFERS,
+                   f"SVK {1e3 * svk.contact_time:.3f} ± {1e3 * svk.contact_time_error:.3f} ms, neo-Hookean {1e3 * neo.contact_time:.3f} ± "
+                   f"{1e3 * neo.contact_time_error:.3f} ms; the histories differ by {100 * distance:.0f} % in L2.",
+                   [results.sweep("law-comparison") / "sweep.png"], results.sweep_runs("law-comparison"))
+
+
+@states("Figure 8", "normal impact, neo-Hookean: the contact time falls monotonically with the speed")
+def monotone(results: Results) -> Finding:
+    """Agrees where for every ν it falls and no rise exceeds the error bar of its step."""
+    return _trend(results, "contact-time-neohookean", lambda falls, rises, beyond: falls and beyond == 0, 20.0)
+
+
+@states("Section 3.2, figure 9", "a disc on a free block: the disc rebounds, the block moves down, the total energy is constant")
+def block(results: Results) -> Finding:
+    return Finding(OPEN, "two deformable bodies are to come.")
+
+
+@states("Section 3.3", "the 2D disc at 8 m/s: contact time 0.0048 s")
+def disc_time(results: Results) -> Finding:
+    """Agrees where some (ν, k) of the map meet it with SVK: the paper states neither."""
+    rows = results.table("calibrate")
+    svk = rows[rows.law == "svk"]
+    met = svk[[within(time, 4.8e-3, 0.5e-4) for time in svk.contact_time]]
+    default = results.summary("disc-normal")["contact_time"]
+    nus = ", ".join(f"{nu:g}" for nu in sorted(met.nu.unique()))
+    text = (f"met by {len(met)} of {len(svk)} points (ν, k) of the map with SVK, for ν = {nus}" if len(met) else "met by no point of the map")
+    return Finding(AGREES if len(met) else DIFFERS, f"{text}; the default run (ν = 0.45, k = 10¹⁰ Pa/m) gives {1e3 * default:.3f} ms.",
+                   [results.sweep("calibrate") / "sweep.png"], results.sweep_runs("calibrate") + [results.run("disc-normal")])
+
+
+@states("Section 3.3, figure 10", "normal impact without friction: the energy is constant (here for the disc)")
+def conserves(results: Results) -> Finding:
+    """Agrees below 1e-9 of the energy at the start."""
+    end = results.summary("disc-normal")
+    return Finding(AGREES if end["energy_drift"] < OUTSIDE else DIFFERS, f"constant to {end['energy_drift']:.0e} over the whole run.",
+                   [results.run("disc-normal") / "figures/energies.png"], [results.run("disc-normal")])
+
+
+@states("Section 3.3", "ball, SVK, 8 m/s: contact time 0.00603 s")
+def ball(results: Results) -> Finding:
+    return Finding(OPEN, "the ball is to come.")
+
+
+@states("Figure 11", "accelerations of the centres of mass: of disc SVK, disc neo-Hookean and ball SVK the ball's contact is the longest")
+def accelerations(results: Results) -> Finding:
+    return Finding(OPEN, "the ball is to come; the forces of both discs are in figure 7.")
+
+
+def maxima(values: np.ndarray, least: float) -> int:
+    """How many maxima stand out: between two of them the values fall and rise again by more than `least`."""
+    count, low, high, rising = 0, values[0], values[0], True
+    for value in values:
+        if rising and value < high - least:
+            count, rising, low = count + 1, False, value
+        elif not rising and value > low + least:
+            rising, high = True, value
+        low, high = min(low, value), max(high, value)
+    return count
+
+
+def _trend(results: Results, name: str, agrees: Callable[[bool, int, int], bool], top: float) -> Finding:
+    """Judges the contact time over the speed, for each ν."""
+    rows = results.table(name)
+    verdicts, words = [], []
+    for nu, group in rows[rows.speed <= top].groupby("nu"):
+        trend = sweep_figures.steps_against(group, "speed", "contact_time")
+        verdicts.append(agrees(trend.falls, trend.against, trend.beyond))
+        words.append(f"ν = {nu:g}: {1e3 * trend.first:.3f} to {1e3 * trend.last:.3f} ms (± {1e3 * trend.typical:.3f} ms rms), {trend.against} of "
+                     f"{trend.steps} steps rise, {trend.beyond} of them beyond their error bar")
+    every = pd.read_csv(results.sweep(name) / "sweep.csv")
+    if (every.exit == 12).any():
+        words.append("the law breaks down at and above " + ", ".join(f"{group.speed.min():g} m/s (ν = {nu:g})" for nu, group in every[every.exit == 12].groupby("nu")))
+    return Finding(AGREES if all(verdicts) else PARTLY if any(verdicts) else DIFFERS, "; ".join(words) + ".",
+                   [results.sweep(name) / "sweep.png"], results.sweep_runs(name))
+
+
+def _distance(results: Results, speed: float) -> tuple[float, float]:
+    """Relative L2 difference of the two laws' force histories at a speed, and the error of it."""
+    wanted, out = sweep.load("law-comparison"), results.sweep("law-comparison")
+    rows = pd.read_csv(out / "sweep.csv")
+    *_, value, bar = next(iter(sweep_figures.distances(wanted, rows[rows.speed == speed], out)))
+    return value, bar
+
+
+# ---- the page
+
+def page(findings: list[tuple[str, str, Finding]]) -> str:
+    """The page as HTML, pictures and all."""
+    counts = ", ".join(f"{sum(found.verdict == verdict for *_, found in findings)} {verdict}" for verdict in COLOURS)
+    rows = "\n".join(f"<tr><td>{escape(item)}</td><td>{escape(text)}</td><td>{escape(found.ours)}</td>"
+                     f'<td style="color:{COLOURS[found.verdict]}"><a href="#s{k}">{found.verdict}</a></td></tr>'
+                     for k, (item, text, found) in enumerate(findings))
+    sections = "\n".join(_section(k, *each) for k, each in enumerate(findings) if each[2].figures)
+    return f"""<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8"><title>The paper's statements and our numbers</title>
+<style>
+body {{ font: 15px/1.45 system-ui, sans-serif; color: #222; max-width: 60em; margin: 2em auto; padding: 0 1em }}
+table {{ border-collapse: collapse; width: 100% }} td, th {{ border-bottom: 1px solid #ddd; padding: .35em .6em; text-align: left; vertical-align: top }}
+td a {{ color: inherit }} img {{ max-width: 100% }} h2 {{ margin-top: 2.2em; font-size: 1.1em }} details {{ font-size: .85em }} pre {{ white-space: pre-wrap }}
+</style></head><body>
+<h1>The paper's statements and our numbers</h1>
+<p>Buezas, Rosales and Filipich, <i>Nonlinear deformable bodies with unilateral contact including friction</i>. The paper states neither ν (only
+“ν → 0.5”) nor the contact stiffness, ε, mesh or step; a number that it prints is taken as known to half a unit of its last digit.
+Error bars of ours are what refining mesh and step changes. Verdicts follow from the numbers by fixed rules (orchestrate/paper.py).</p>
+<p><b>{counts}</b></p>
+<table><tr><th>where</th><th>the paper</th><th>here</th><th>verdict</th></tr>
+{rows}
+</table>
+{sections}
+<p>Made {datetime.now():%Y-%m-%d %H:%M} by ffimpact.</p>
+</body></html>
+"""
+
+
+def _section(k: int, item: str, text: str, found: Finding) -> str:
+    pictures = "\n".join(f'<img alt="{escape(path.stem)}" src="data:image/png;base64,{base64.b64encode(path.read_bytes()).decode()}">'
+                         for path in found.figures)
+    return (f'<h2 id="s{k}">{escape(item)}: {escape(text)}</h2>\n<p><b style="color:{COLOURS[found.verdict]}">{found.verdict}</b>: {escape(found.ours)}</p>\n'
+            f"{pictures}\n{_provenance(found.runs)}")
+
+
+def _provenance(folders: list[Path]) -> str:
+    """Parameters that differ from their defaults, common to all runs and by run, and where the runs come from."""
+    scenes = [tomllib.loads((folder / "scene.toml").read_text()) for folder in folders if (folder / "scene.toml").exists()]
+    if not scenes:
+        return ""
+    standard = parameters.defaults()
+    common = {name: value for name, value in scenes[0].items()
+              if all(scene.get(name) == value for scene in scenes) and (name == "script" or standard.get(name) != value)}
+    varied = {name: sorted({scene.get(name) for scene in scenes}, key=str) for name in scenes[0]
+              if any(scene.get(name) != scenes[0][name] for scene in scenes)}
+    made = [json.loads(path.read_text())["provenance"] for folder in folders
+            for path in (folder / "summary.json", folder / "failure.json") if path.exists()]
+    lines = [f"runs          {len(scenes)}", "parameters    " + ", ".join(f"{name} = {value}" for name, value in common.items())]
+    lines += [f"varied        {name}: {_shown(values)}" for name, values in varied.items()]
+    for name, words in (("git", "commit"), ("code", "code sha256"), ("freefem", "FreeFem++"), ("gmsh", "gmsh")):
+        lines.append(f"{words:<14}" + ", ".join(sorted({str(each.get(name)) for each in made})))
+    meshes = sorted({str(each.get("mesh")) for each in made})
+    lines.append("mesh sha256   " + (", ".join(meshes) if len(meshes) <= 4 else f"{len(meshes)} meshes, in each run's summary.json"))
+    return f"<details><summary>parameters and provenance</summary><pre>{escape(chr(10).join(lines))}</pre></details>"
+
+
+def _shown(values: list[Value]) -> str:
+    return ", ".join(map(str, values)) if len(values) <= 8 else f"{len(values)} values from {values[0]} to {values[-1]}"
