@@ -247,21 +247,22 @@ def _lock(stage: Path, folder: Path) -> int:
     while True:
         try:
             stage.mkdir(parents=True, exist_ok=True)
-            lock = os.open(stage, os.O_RDONLY)
-        except FileNotFoundError:   # put in its place between the two calls
-            continue
         except OSError as error:
             raise Unreadable(f"{stage} cannot be made: {error.strerror}; choose another --out") from None
+        try:
+            lock = os.open(stage, os.O_RDONLY)
+        except FileNotFoundError:   # its run has just put it in its place
+            continue
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
             if os.path.samestat(os.fstat(lock), os.stat(stage)):
                 return lock
-        except FileNotFoundError:
+        except FileNotFoundError:   # likewise, while we locked it
             pass
         except BlockingIOError:
             os.close(lock)
             raise Busy(f"{folder} is being written by another run; wait, or choose another --out") from None
-        os.close(lock)              # locked too late: its run has just put it in its place
+        os.close(lock)
 
 
 def _replace(stage: Path, folder: Path) -> None:

@@ -1,0 +1,135 @@
+"""The report of the paper: verdicts follow from the numbers, the page is self-contained, a missing case stops it."""
+
+import json
+import re
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import fake_freefem
+from orchestrate import paper, run, scene, sweep
+from orchestrate.__main__ import main
+from orchestrate.paper import AGREES, DIFFERS, OPEN, PARTLY
+
+FIND = {find.__name__: find for _, _, find in paper.STATEMENTS}
+
+
+class Stub(paper.Results):
+    """Results that are given as they are: summaries and histories by run, tables by sweep."""
+
+    def __init__(self, folder, **given):
+        super().__init__(folder)
+        self.given = given
+
+    def summary(self, name):
+        return self.given["summary"]
+
+    def history(self, name):
+        return {column: np.array(values, dtype=float) for column, values in self.given["history"].items()}
+
+    def table(self, name):
+        return pd.DataFrame(self.given["table"])
+
+    def sweep_runs(self, name):
+        return []
+
+
+def speeds(times, error=1e-5, nu=(0.3, 0.45)) -> dict:
+    n = len(times)
+    return {"speed": list(np.linspace(1, 11, n)) * len(nu), "nu": np.repeat(nu, n), "contact_time": list(times) * len(nu),
+            "contact_time_error": error, "exit": 0}
+
+
+@pytest.mark.parametrize("name, given, verdict, words", [
+    ("angles", {"summary": dict(rebound_vx=3.0, rebound_vy=8.7)}, AGREES, "60° in, 71.0° out"),
+    ("angles", {"summary": dict(rebound_vx=6.0, rebound_vy=6 * 3**0.5)}, DIFFERS, "60.0° out"),
+    ("oblique_coarse", {"summary": dict(contact_time=4.5e-3, breakdown_time=None, min_stretch=0.578, dofs=300)}, PARTLY, "4.500 ms"),
+    ("oblique_coarse", {"summary": dict(contact_time=4.6e-3, breakdown_time=2e-3, min_stretch=0.1, dofs=300)}, DIFFERS, "det F ≤ 0 from 2.00 ms on"),
+    ("oblique_converged", {"table": dict(nu=[0.3, 0.45], contact_time=[4.4e-3, 4.1e-3], contact_time_error=[6e-5, 1e-5])}, PARTLY, "ν = 0.3: 4.40 ± 0.06"),
+    ("oblique_converged", {"table": dict(nu=[0.3, 0.45], contact_time=[4.2e-3, 4.1e-3], contact_time_error=[1e-5, 1e-5])}, DIFFERS, ""),
+    ("oscillates", {"history": dict(normal_force=[0, 5, 3, 6, 0])}, AGREES, "2 maxima"),
+    ("oscillates", {"history": dict(normal_force=[0, 5, 6, 0])}, DIFFERS, "1 maxima"),
+    ("alternates", {"history": dict(normal_force=[0, 1, 1, 1, 1], sliding_fraction=[0, 0.5, 0.1, 0.5, 0])}, AGREES, "2 maxima"),
+    ("alternates", {"history": dict(normal_force=[0, 1, 1, 1, 1], sliding_fraction=[0, 0, 0.01, 0, 1])}, DIFFERS, "0 maxima"),
+    ("energy", {"history": dict(kinetic=[9, 5, 8, 8], elastic=[0, 2, 0, 0], contact=[0, 1, 0, 0], normal_force=[0, 1, 1, 0],
+                                friction_work=[0, 1, 1, 1], balance=[0, 0, 0, 1e-10])}, AGREES, "11.1 % are lost"),
+    ("energy", {"history": dict(kinetic=[9, 5, 8, 8.1], elastic=[0, 2, 0, 0], contact=[0, 1, 0, 0], normal_force=[0, 1, 1, 0],
+                                friction_work=[0, 1, 1, 1], balance=[0, 0, 0, 0.1])}, DIFFERS, ""),
+    ("conserves", {"summary": dict(energy_drift=1e-11)}, AGREES, "1e-11"),
+    ("conserves", {"summary": dict(energy_drift=1e-6)}, DIFFERS, ""),
+    ("stepped", {"table": speeds([5e-3, 4.8e-3, 4.9e-3, 4.5e-3])}, AGREES, "1 of 3 steps rise, 1 of them beyond"),
+    ("stepped", {"table": speeds([5e-3, 4.8e-3, 4.9e-3, 4.5e-3], error=1e-4)}, DIFFERS, "1 of 3 steps rise, 0 of them beyond"),
+    ("stepped", {"table": speeds([4.5e-3, 4.9e-3, 4.8e-3, 5e-3])}, DIFFERS, ""),
+    ("monotone", {"table": speeds([5e-3, 4.8e-3, 4.7e-3, 4.5e-3])}, AGREES, "0 of 3 steps rise"),
+    ("monotone", {"table": speeds([5e-3, 4.8e-3, 4.9e-3, 4.5e-3])}, DIFFERS, ""),
+    ("disc_time", {"table": dict(law=["svk", "svk"], nu=[0.3, 0.45], contact_time=[4.83e-3, 4.67e-3]), "summary": dict(contact_time=4.67e-3)},
+     AGREES, "met by 1 of 2 points (ν, k) of the map with SVK, for ν = 0.3"),
+    ("disc_time", {"table": dict(law=["neohookean"], nu=[0.3], contact_time=[4.8e-3]), "summary": dict(contact_time=4.67e-3)}, DIFFERS, "met by no point"),
+])
+def test_verdicts_follow_from_the_numbers(tmp_path, name, given, verdict, words):
+    """Each statement is judged by its rule, whatever the numbers are."""
+    if "table" in given:   # the sweep's own file, which tells where runs failed
+        for each in sweep.built_in():
+            (tmp_path / "sweeps" / each).mkdir(parents=True)
+            pd.DataFrame(given["table"]).assign(exit=0).to_csv(tmp_path / "sweeps" / each / "sweep.csv", index=False)
+    found = FIND[name](Stub(tmp_path, **given))
+    assert found.verdict == verdict and words in found.ours
+
+
+def test_longer_contact_must_exceed_both_error_bars(tmp_path, monkeypatch):
+    """Figure 7b."""
+    monkeypatch.setattr(paper, "_distance", lambda *_: (0.3, 0.01))
+    rows = lambda longer: {"table": dict(speed=10, law=["svk", "neohookean"], contact_time=[4e-3 + longer, 4e-3], contact_time_error=1e-5)}   # noqa: E731
+    assert FIND["longer_at_high_speed"](Stub(tmp_path, **rows(1e-4))).verdict == AGREES
+    assert FIND["longer_at_high_speed"](Stub(tmp_path, **rows(1.5e-5))).verdict == DIFFERS
+
+
+def test_every_statement_of_the_paper_is_there():
+    """Every item of the paper that has a number or a claim, those of bodies that are to come included, as open."""
+    items = " ".join(item for item, _, _ in paper.STATEMENTS)
+    assert all(word in items for word in ("4b", "5a", "5b", "6a", "6b", "7a", "7b", "Figure 8", "figure 9", "figure 10", "Figure 11"))
+    for name in ("block", "ball", "accelerations"):
+        assert FIND[name](None).verdict == OPEN
+
+
+def test_maxima_must_stand_out():
+    """Wiggles below the threshold are none."""
+    t = np.linspace(0, 1, 400)
+    assert paper.maxima(np.sin(np.pi * t), 0.01) == 1
+    assert paper.maxima(np.sin(np.pi * t) + 0.2 * np.sin(20 * np.pi * t), 0.02) > 3
+    assert paper.maxima(np.sin(np.pi * t) + 0.001 * np.sin(200 * np.pi * t), 0.02) == 1
+    assert paper.maxima(np.zeros(5), 0.01) == 0
+
+
+def test_page_holds_everything_itself(tmp_path):
+    """Pictures inside, no link to other places, every statement with its verdict, parameters and provenance of its runs."""
+    fake_freefem.write_scene(tmp_path, dict(script="disc-plane", law="svk", nu="0.45", speed="7"))
+    (tmp_path / "summary.json").write_text(json.dumps({"provenance": dict(git="abc", code="def", freefem="4.9", gmsh="4", mesh="0123")}))
+    (tmp_path / "a.png").write_bytes(b"\x89PNG picture")
+    text = paper.page([("Figure 1", "a < b", paper.Finding(AGREES, "2 & 3", [tmp_path / "a.png"], [tmp_path])),
+                       ("Figure 2", "later", paper.Finding(OPEN, "to come"))])
+    assert "a &lt; b" in text and "2 &amp; 3" in text and text.count("data:image/png;base64,") == 1
+    assert not re.search(r'(src|href)="(?!data:|#)', text) and "1 agrees, 0 does not agree" in text
+    assert all(word in text for word in ("speed = 7", "code sha256   def", "mesh sha256   0123", "to come"))
+    assert "nu = 0.45" not in text, "a parameter at its default"
+
+
+def test_a_missing_case_stops_it(tmp_path, capsys):
+    """One line names every make target that is missing, exit code 14, and no page is written."""
+    assert main(["paper", "--results", str(tmp_path)]) == 14
+    err = capsys.readouterr().err
+    assert err.count("\n") == 1 and "disc-normal is missing" in err and not (tmp_path / "paper").exists()
+    assert "run: make disc-normal disc-oblique disc-rolling calibrate contact-time-neohookean" in err and "friction-laws stick-slip" in err
+
+
+def test_results_of_other_code_stop_it(fake, tmp_path):
+    """A case that was made with other code is as good as missing."""
+    run.run(scene.load("disc-normal"), out=tmp_path / "disc-normal")
+    with pytest.raises(paper.Failure) as error:
+        paper.Results(tmp_path).require()
+    assert "disc-normal" not in str(error.value)
+    path = tmp_path / "disc-normal/summary.json"
+    path.write_text(path.read_text().replace(run.code_hash(), "other"))
+    with pytest.raises(paper.Failure, match="disc-normal was made with other code"):
+        paper.Results(tmp_path).require()
