@@ -219,9 +219,12 @@ def report(wanted: Sweep, rows: pd.DataFrame, out: Path) -> str:
     """What was found, point by point where the table is short, failures with their reasons, where the files are."""
     lines = [wanted.title]
     if len(rows) <= 60:
-        forms = {name: ("" if rows[name].dtype == object else "g") for name in wanted.axes} | {
-            name: ".5g" for column in wanted.collect[:SHOWN] for name in (column, f"{column}_error") if name in rows}
-        lines += [study.table(rows, forms), ""]
+        text = rows[wanted.axes].copy()
+        for name in wanted.collect[:SHOWN]:
+            text[name] = [f"{value:.5g}" for value in rows[name]]
+            if wanted.refine:
+                text[name] += [f" ± {error:.0e}" for error in rows[f"{name}_error"]]
+        lines += [study.table(text, {name: "g" if name in wanted.axes and pd.api.types.is_numeric_dtype(rows[name]) else "" for name in text}), ""]
     failed = rows[rows.exit != 0]
     for (code, message), group in failed.groupby(["exit", "message"], sort=False):
         where = "; ".join(study.place(Path(), point).name for point in group[wanted.axes].to_dict("records"))

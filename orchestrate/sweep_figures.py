@@ -71,7 +71,7 @@ def findings(sweep, rows: pd.DataFrame, out: Path) -> list[str]:
         return []
     kind = sweep.figure["kind"]
     if kind == "lines":
-        if rows[sweep.figure["x"]].dtype == object:
+        if not pd.api.types.is_numeric_dtype(rows[sweep.figure["x"]]):
             return []
         return [trend(group, sweep.figure["x"], y, words) for y in sweep.figure["y"]
                 for words, group in _groups(sweep, rows, "by")]
@@ -147,7 +147,7 @@ def _lines(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
 
 def _is_logarithmic(values: pd.Series) -> bool:
     """Whether values are spaced evenly in their logarithm rather than linearly."""
-    if values.dtype == object or (values <= 0).any() or values.nunique() < 3:
+    if not pd.api.types.is_numeric_dtype(values) or (values <= 0).any() or values.nunique() < 3:
         return False
     spread = lambda steps: steps.std() / steps.mean()   # noqa: E731
     ordered = np.sort(values.unique())

@@ -274,3 +274,10 @@ def test_other_figures(fake, tmp_path, capsys, figure, words):
     out = tmp_path / "out"
     assert sweep.main([str(write(tmp_path, SIX + f"[figure]\n{figure}\n")), "--out", str(out)]) == 0
     assert words in capsys.readouterr().out and plt.imread(out / "sweep.png").std() > 0
+
+
+def test_words_as_axes(fake, tmp_path, capsys):
+    """A parameter with words may vary, be an axis of a figure and stand in the table."""
+    text = COARSE + '[product]\nlaw = ["svk", "neohookean"]\nspeed = [4, 8]\n[figure]\nx = "law"\ny = "contact_time"\nby = "speed"\n'
+    assert sweep.main([str(write(tmp_path, text)), "--out", str(tmp_path / "out")]) == 0
+    assert "| neohookean |" in capsys.readouterr().out and (tmp_path / "out/sweep.png").exists()
