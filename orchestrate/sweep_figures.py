@@ -15,6 +15,7 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
+from matplotlib.ticker import LogLocator, NullLocator
 
 from . import parameters, report, study
 from .failure import BadInput
@@ -22,6 +23,7 @@ from .figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE
 from .run import read_history
 
 KINDS = {"lines": ("x", "y", "by"), "map": ("x", "y", "colour", "by", "level", "band"), "histories": ("y", "panel", "by")}
+WORDS = {"nu": "ν", "penalty": "k"}
 COLOURS, MARKERS = (BLUE, ORANGE, GREEN, PURPLE, GREY), "osd^v"
 
 
@@ -84,7 +86,7 @@ def findings(sweep, rows: pd.DataFrame, out: Path) -> list[str]:
 
 def label(name: str) -> str:
     """The words and the unit of a parameter or a number of the summary, for an axis."""
-    parameter, words = parameters.table().get(name), name.replace("_", " ")
+    parameter, words = parameters.table().get(name), WORDS.get(name, name.replace("_", " "))
     unit = _unit(name).strip() or (parameter.unit if parameter and not _quantity(name) else "")
     return words if unit in ("-", "", "of the start") else f"{words} [{unit}]"
 
@@ -106,7 +108,11 @@ def _unit(name: str) -> str:
 
 
 def _value(name: str, value) -> str:
-    return LAWS.get(value, str(value)) if isinstance(value, str) else f"{name.replace('_', ' ').replace('nu', 'ν')} = {value:g}"
+    """A value of a parameter in words, with its unit."""
+    if isinstance(value, str):
+        return LAWS.get(value, value)
+    unit = parameters.table()[name].unit
+    return f"{WORDS.get(name, name.replace('_', ' '))} = {value:g}" + f" {unit}" * (unit != "-")
 
 
 def _groups(sweep, rows: pd.DataFrame, key: str) -> Iterator[tuple[str, pd.DataFrame]]:
@@ -131,14 +137,16 @@ def _lines(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
             there = group.exit == 0
             axes.errorbar(group[x][there], _factor(y) * group[y][there], None if bars is None else bars[there], color=colour, marker=marker,
                           markersize=3, linewidth=1.1, elinewidth=0.9, capsize=1.5, label=words or None)
-            for value in group[x][~there]:
-                axes.axvline(value, ymax=0.05, color=colour, linestyle="-", linewidth=1.2)
-                axes.plot(value, 0.05, marker="x", color=colour, transform=axes.get_xaxis_transform(), clip_on=False,
-                          label="failed" if value == group[x][~there].iloc[0] else None)
+            if not there.all():
+                axes.plot(group[x][~there], np.full((~there).sum(), 0.03), marker="x", linestyle="", markersize=4, color=colour,
+                          transform=axes.get_xaxis_transform(), label=f"{words}: the run failed".removeprefix(": "))
         axes.set_ylabel(label(y))
         axes.grid(alpha=0.3)
         if _is_logarithmic(rows[x]):
             axes.set_xscale("log")
+            axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+            axes.xaxis.set_major_formatter("{x:g}")
+            axes.xaxis.set_minor_locator(NullLocator())
     grid[-1, 0].set_xlabel(label(x))
     if grid[0, 0].get_legend_handles_labels()[0]:
         grid[0, 0].legend()
@@ -217,42 +225,54 @@ def _map(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
     low, high = values.min(), values.max()
     for axes, (words, group) in zip(grid[0], groups):
         table = group.pivot(index=y, columns=x, values=colour) * _factor(colour)
-        picture = axes.pcolormesh(table.columns, table.index, table, shading="nearest", cmap="viridis", vmin=low, vmax=high)
-        for name, scale in ((x, axes.set_xscale), (y, axes.set_yscale)):
-            if _is_logarithmic(group[name]):
-                scale("log")
-        for _, row in group.iterrows():
-            if row.exit:
-                axes.plot(row[x], row[y], marker="x", color=BLACK)
-            else:
-                axes.text(row[x], row[y], f"{_factor(colour) * row[colour]:.2f}", ha="center", va="center", fontsize=6, color="white")
+        cells = np.where(group.pivot(index=y, columns=x, values="exit") == 0, table, np.nan)   # evenly spaced, whatever the values
+        picture = axes.imshow(cells, origin="lower", aspect="auto", cmap="viridis", vmin=low, vmax=high)
+        for (row, column), value in np.ndenumerate(cells):
+            axes.text(column, row, "failed" if np.isnan(value) else f"{value:.3g}", ha="center", va="center", fontsize=7,
+                      color="black" if np.isnan(value) or value > (low + high) / 2 else "white")
         if wanted["level"] is not None:
             level, band = (_factor(colour) * wanted[key] for key in ("level", "band"))
-            axes.contour(table.columns, table.index, table, levels=[level], colors=[ORANGE], linewidths=2)
+            axes.contour(cells, levels=[level], colors=[ORANGE], linewidths=2)
             if band:
-                axes.contour(table.columns, table.index, table, levels=[level - band, level + band], colors=[ORANGE],
-                             linewidths=1, linestyles="--")
+                axes.contour(cells, levels=[level - band, level + band], colors=[ORANGE], linewidths=1, linestyles="--")
+        axes.set_xticks(range(len(table.columns)), [f"{value:g}" for value in table.columns])
+        axes.set_yticks(range(len(table.index)), [f"{value:.2g}" for value in table.index])
         axes.set(title=words, xlabel=label(x))
+        axes.spines[:].set_visible(False)
     grid[0, 0].set_ylabel(label(y))
     figure.colorbar(picture, ax=grid, label=label(colour))
     return figure
 
 
-def _set(figure: dict, words: str, group: pd.DataFrame) -> list[str]:
-    """For each value of x the range of y in which colour is within the band of its level, between points interpolated in log y."""
-    if figure["level"] is None:
-        return []
+def level_set(figure: dict, group: pd.DataFrame) -> dict[float, list[tuple[float, float]]]:
+    """For each value of x the ranges of y in which colour is within the band of its level; between the points interpolated in
+    the logarithm of y. For maps of two numbers, y above 0."""
     x, y, colour = (figure[key] for key in ("x", "y", "colour"))
-    lines = [f"{words}: " * bool(words) + f"{colour.replace('_', ' ')} = {_factor(colour) * figure['level']:g} ± "
-             f"{_factor(colour) * figure['band']:g}{_unit(colour)} is met for"]
+    found = {}
     for value, column in group[group.exit == 0].groupby(x):
         column = column.sort_values(y)
         fine = np.geomspace(column[y].iloc[0], column[y].iloc[-1], 2001)
         inside = np.abs(np.interp(np.log(fine), np.log(column[y]), column[colour]) - figure["level"]) <= figure["band"]
         edges = np.flatnonzero(np.diff(np.concatenate([[0], inside.astype(int), [0]]))).reshape(-1, 2)
-        ranges = ", ".join(f"{fine[a]:.2g} to {fine[b - 1]:.2g}" for a, b in edges)
-        lines.append(f"  {x} = {value:g}: {y} {ranges}" if ranges else f"  {x} = {value:g}: no {y}")
+        found[value] = [(float(fine[first]), float(fine[last - 1])) for first, last in edges]
+    return found
+
+
+def _set(figure: dict, words: str, group: pd.DataFrame) -> list[str]:
+    """The level set in words, a line for each value of x."""
+    if figure["level"] is None:
+        return []
+    x, y, colour = (figure[key] for key in ("x", "y", "colour"))
+    lines = [f"{words}: " * bool(words) + f"{colour.replace('_', ' ')} = {_factor(colour) * figure['level']:g} ± "
+             f"{_factor(colour) * figure['band']:g}{_unit(colour)} is met for"]
+    for value, ranges in level_set(figure, group).items():
+        lines.append(f"  {_value(x, value)}: " + (f"{label(y)} " + spans(ranges) if ranges else f"no {label(y)}"))
     return lines
+
+
+def spans(ranges: list[tuple[float, float]]) -> str:
+    """Ranges of numbers in words."""
+    return ", ".join(f"{first:.2g} to {last:.2g}" for first, last in ranges)
 
 
 # ---- histories
@@ -260,8 +280,8 @@ def _set(figure: dict, words: str, group: pd.DataFrame) -> list[str]:
 def _histories(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
     panels, names = list(_groups(sweep, rows, "panel")), sweep.figure["y"]
     figure, grid = plt.subplots(len(names), len(panels), figsize=(1 + 3.4 * len(panels), 0.6 + 2.8 * len(names)), squeeze=False)
-    for column, (title, part) in zip(grid.T, panels):
-        for axes, y in zip(column, names):
+    for k, (title, part) in enumerate(panels):
+        for axes, y in zip(grid[:, k], names):
             for (words, group), colour, line in zip(_groups(sweep, part, "by"), COLOURS, itertools.cycle(("-", "--"))):
                 for _, row in group[group.exit == 0].iterrows():
                     t, values = _history(sweep, row, out, y, refined=bool(sweep.refine))
@@ -269,7 +289,7 @@ def _histories(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
             axes.set(xlabel="time [ms]", title=title)
             axes.margins(x=0)
             axes.grid(alpha=0.3)
-            if column is grid.T[0]:
+            if k == 0:
                 axes.set_ylabel(f"{y.replace('_', ' ')}" + " [kN/m]" * ("force" in y))
     grid[0, 0].legend()
     return figure

@@ -254,8 +254,8 @@ def test_set_of_a_level():
     group = pd.DataFrame({"nu": 0.3, "penalty": [1e9, 1e10, 1e11], "contact_time": [5e-3, 4.8e-3, 4.6e-3], "exit": 0})
     figure = {"x": "nu", "y": "penalty", "colour": "contact_time", "level": 4.8e-3, "band": 1e-4}
     lines = sweep_figures._set(figure, "", group)
-    assert "4.8 ± 0.1 ms is met for" in lines[0] and lines[1] == "  nu = 0.3: penalty 3.2e+09 to 3.2e+10"
-    assert sweep_figures._set(figure | {"level": 1.0}, "", group)[1] == "  nu = 0.3: no penalty"
+    assert "4.8 ± 0.1 ms is met for" in lines[0] and lines[1] == "  ν = 0.3: k [Pa/m^m] 3.2e+09 to 3.2e+10"
+    assert sweep_figures._set(figure | {"level": 1.0}, "", group)[1] == "  ν = 0.3: no k [Pa/m^m]"
 
 
 def test_distance_of_histories():
@@ -267,7 +267,7 @@ def test_distance_of_histories():
 
 @pytest.mark.parametrize("figure, words", [
     ('kind = "map"\nx = "nu"\ny = "speed"\ncolour = "contact_time"\nlevel = 4.67e-3\nband = 1e-5', "4.67 ± 0.01 ms is met for"),
-    ('kind = "histories"\ny = "normal_force"\npanel = "speed"\nby = "nu"', "speed = 4: relative L2 difference of normal force, ν = 0.3 and ν = 0.4: 0.0 %"),
+    ('kind = "histories"\ny = "normal_force"\npanel = "speed"\nby = "nu"', "speed = 4 m/s: relative L2 difference of normal force, ν = 0.3 and ν = 0.4: 0.0 %"),
 ])
 def test_other_figures(fake, tmp_path, capsys, figure, words):
     """Maps and histories are drawn and put into words."""
