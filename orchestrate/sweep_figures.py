@@ -228,7 +228,7 @@ def _map(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
         cells = np.where(group.pivot(index=y, columns=x, values="exit") == 0, table, np.nan)   # evenly spaced, whatever the values
         picture = axes.imshow(cells, origin="lower", aspect="auto", cmap="viridis", vmin=low, vmax=high)
         for (row, column), value in np.ndenumerate(cells):
-            axes.text(column, row, "failed" if np.isnan(value) else f"{value:.3g}", ha="center", va="center", fontsize=7,
+            axes.text(column, row, "failed" if np.isnan(value) else f"{value:#.3g}", ha="center", va="center", fontsize=7,
                       color="black" if np.isnan(value) or value > (low + high) / 2 else "white")
         if wanted["level"] is not None:
             level, band = (_factor(colour) * wanted[key] for key in ("level", "band"))
