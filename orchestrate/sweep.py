@@ -221,9 +221,9 @@ def report(wanted: Sweep, rows: pd.DataFrame, out: Path) -> str:
     if len(rows) <= 60:
         text = rows[wanted.axes].copy()
         for name in wanted.collect[:SHOWN]:
-            text[name] = [f"{value:.5g}" for value in rows[name]]
+            text[name] = ["" if np.isnan(value) else f"{value:.5g}" for value in rows[name]]
             if wanted.refine:
-                text[name] += [f" ± {error:.0e}" for error in rows[f"{name}_error"]]
+                text[name] += ["" if np.isnan(error) else f" ± {error:.0e}" for error in rows[f"{name}_error"]]
         lines += [study.table(text, {name: "g" if name in wanted.axes and pd.api.types.is_numeric_dtype(rows[name]) else "" for name in text}), ""]
     failed = rows[rows.exit != 0]
     for (code, message), group in failed.groupby(["exit", "message"], sort=False):
