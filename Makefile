@@ -5,7 +5,7 @@ READY := .venv/.ready
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup disc-normal disc-oblique disc-rolling friction-laws oblique contact-time-svk law-comparison contact-time-neohookean calibrate stick-slip paper movie test stress bench refine refine-oblique clean
+.PHONY: help setup disc-normal disc-oblique disc-rolling friction-laws oblique contact-time-svk law-comparison contact-time-neohookean calibrate stick-slip paper movie test stress bench bench-quick textbook skipping costs refine refine-oblique clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
@@ -49,10 +49,15 @@ movie: $(READY) ## a film of a scene: make movie CASE=disc-oblique
 test: $(READY) ## run all tests
 	@$(PYTHON) -m pytest -q tests $(ARGS)
 
-stress bench refine: $(READY)
+stress bench textbook skipping costs refine: $(READY)
 	@$(PYTHON) -m orchestrate $@ $(ARGS)
 stress: ## run hard parameter sets and report which of them hold
-bench: ## time the program, at equal error
+bench: ## run time against error: meshes, steps, integrators, and other programs where installed
+bench-quick: $(READY) ## the same for one case, coarse
+	@$(PYTHON) -m orchestrate bench --quick $(ARGS)
+textbook: ## seconds a step beside a plain textbook script
+skipping: ## what each saving saves, and that it does not change the answer
+costs: ## where the time goes, its floor, and how it grows with the mesh
 refine: ## refine mesh and step, report the observed convergence
 refine-oblique: $(READY) ## the same for the oblique disc, with the slip velocity down to 0.01 m/s
 	@$(PYTHON) -m orchestrate refine disc-oblique $(ARGS)

@@ -25,11 +25,11 @@ tqdm.monitor_interval = 0   # no thread beside us: we fork
 Point = dict[str, Value]    # the parameters that tell this run from the others of the study
 
 
-def study(points: list[Point], folder: Path, base: Point, limit: float, name: str = "disc-normal") -> pd.DataFrame:
+def study(points: list[Point], folder: Path, base: Point, limit: float, name: str = "disc-normal", cores: int = CORES) -> pd.DataFrame:
     """A row for each of `points`, in their order: its parameters, exit, message, reused, and the numbers of its summary.
 
     Every run is the scene `name` with `base` and the point's parameters on top, in folder/runs/, and may take `limit`
-    seconds. What is there already is not run again: finished runs, and failures of the same scene and code. A run
+    seconds; `cores` of them run at a time. What is there already is not run again: finished runs, and failures of the same scene and code. A run
     that fails is a row like any other, with its exit code and message; NotInstalled, without FreeFem++, is raised.
     Several studies may share a folder: what one is running, the others leave to it.
     """
@@ -40,7 +40,7 @@ def study(points: list[Point], folder: Path, base: Point, limit: float, name: st
     if to_do:
         freefem.find()
     with tqdm(desc="runs", total=len(tasks), initial=len(found), disable=None, leave=False) as line:
-        for where, outcome in _outcomes(to_do, limit):
+        for where, outcome in _outcomes(to_do, limit, cores):
             found[where] = outcome
             line.update()
     return pd.DataFrame([point | found[where] for where, point in zip(places, points)])
@@ -51,13 +51,13 @@ def place(folder: Path, point: Point) -> Path:
     return folder / "runs" / (",".join(f"{name}={value}" for name, value in point.items()) or "run")
 
 
-def _outcomes(tasks: dict[Path, scene.Scene], limit: float) -> Iterator[tuple[Path, dict]]:
+def _outcomes(tasks: dict[Path, scene.Scene], limit: float, cores: int) -> Iterator[tuple[Path, dict]]:
     """(folder, outcome) as they are ready, a process each; leaving this in any way ends them and their FreeFem++."""
     context = multiprocessing.get_context("fork")
     waiting, running = deque(tasks), {}
     try:
         while waiting or running:
-            while waiting and len(running) < CORES:
+            while waiting and len(running) < cores:
                 where = waiting.popleft()
                 receiver, sender = context.Pipe(duplex=False)
                 process = context.Process(target=_work, args=(sender, os.getpid(), limit, where, tasks[where]))

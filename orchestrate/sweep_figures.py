@@ -312,12 +312,12 @@ def distances(sweep, rows: pd.DataFrame, out: Path) -> Iterator[tuple[str, str, 
         runs = [(words, row) for words, group in _groups(sweep, part, "by") for _, row in group[group.exit == 0].iterrows()]
         for y, (b, row) in itertools.product(sweep.figure["y"], runs[1:]):
             a, first = runs[0]
-            bars = [_distance(_history(sweep, each, out, y, True), _history(sweep, each, out, y, False))
+            bars = [distance(_history(sweep, each, out, y, True), _history(sweep, each, out, y, False))
                     for each in (first, row) if refined]
-            yield panel, y, a, b, _distance(*(_history(sweep, each, out, y, refined) for each in (first, row))), max(bars, default=np.nan)
+            yield panel, y, a, b, distance(*(_history(sweep, each, out, y, refined) for each in (first, row))), max(bars, default=np.nan)
 
 
-def _distance(first: tuple[np.ndarray, np.ndarray], second: tuple[np.ndarray, np.ndarray]) -> float:
+def distance(first: tuple[np.ndarray, np.ndarray], second: tuple[np.ndarray, np.ndarray]) -> float:
     """||second - first|| / ||first|| in L2 over time; both are zero outside their times."""
     t = np.union1d(first[0], second[0])
     a, b = (np.interp(t, *each, left=0, right=0) for each in (first, second))

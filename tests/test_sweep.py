@@ -262,7 +262,7 @@ def test_distance_of_histories():
     """||b - a|| / ||a|| in L2 over time, on different time steps."""
     fine, coarse = np.linspace(0, 1, 2001), np.linspace(0, 1, 101)
     a, b = (fine, np.sin(np.pi * fine)), (coarse, 1.1 * np.sin(np.pi * coarse))
-    assert sweep_figures._distance(a, b) == pytest.approx(0.1, rel=1e-3) and sweep_figures._distance(a, a) == 0
+    assert sweep_figures.distance(a, b) == pytest.approx(0.1, rel=1e-3) and sweep_figures.distance(a, a) == 0
 
 
 @pytest.mark.parametrize("figure, words", [
