@@ -49,9 +49,12 @@ movie: $(READY) ## a film of a scene: make movie CASE=disc-oblique
 test: $(READY) ## run all tests
 	@$(PYTHON) -m pytest -q tests $(ARGS)
 
-stress bench textbook skipping costs refine: $(READY)
+stress: $(READY) ## hard parameter sets: every combination of some, and hundreds drawn from all; which hold, which fail and why
+	@$(PYTHON) -m orchestrate stress $(ARGS)
+	@$(PYTHON) -m orchestrate stress-map
+
+bench textbook skipping costs refine: $(READY)
 	@$(PYTHON) -m orchestrate $@ $(ARGS)
-stress: ## run hard parameter sets and report which of them hold
 bench: ## run time against error: meshes, steps, integrators, and other programs where installed
 bench-quick: $(READY) ## the same for one case, coarse
 	@$(PYTHON) -m orchestrate bench --quick $(ARGS)
