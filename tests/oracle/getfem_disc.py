@@ -37,7 +37,7 @@ GAUSS = np.array([(1 - LOCAL) * (1 - 2 * LOCAL), 4 * LOCAL * (1 - LOCAL), LOCAL 
 def curved_mesh(options) -> getfem.Mesh:
     """Isoparametric P2 triangles, middle nodes of the circle on it; regions CIRCLE, SYMMETRY and ARC (lowest 45 degrees)."""
     half = peer.half_disc(options)
-    middle, of_triangle, _ = peer.middles(half, options.radius)
+    middle, of_triangle = peer.middles(half, options.radius)
     points = np.vstack([half.points, middle])
     a, b, c = half.triangles.T
     ab, bc, ca = len(half.points) + of_triangle.T
@@ -45,10 +45,9 @@ def curved_mesh(options) -> getfem.Mesh:
     nodes = points[np.column_stack([a, ab, b, ca, bc, c])]       # GetFEM's order on the reference triangle
     result.add_convex(getfem.GeoTrans("GT_PK(2,2)"), nodes.transpose(2, 1, 0))
     faces = result.outer_faces()
-    ends = [result.pid_in_faces(faces[:, [i]]) for i in range(faces.shape[1])]
-    where = np.array([result.pts(pids)[:, 1] for pids in ends])  # the middle node of each face
-    axis = where[:, 0] < 1e-9 * options.radius
-    arc = ~axis & (where[:, 1] < options.radius * (1 - math.cos(math.pi / 4)))
+    nodes = np.array([result.pts(result.pid_in_faces(faces[:, [i]])) for i in range(faces.shape[1])])     # (faces, 2, 3)
+    axis = nodes[:, 0].max(axis=1) < 1e-9 * options.radius
+    arc = ~axis & (nodes[:, 1].max(axis=1) < options.radius * (1 - math.cos(math.pi / 4)) + 1e-9 * options.radius)
     for region, chosen in ((CIRCLE, ~axis), (SYMMETRY, axis), (ARC, arc)):
         result.set_region(region, faces[:, chosen])
     return result

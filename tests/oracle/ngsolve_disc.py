@@ -2,7 +2,7 @@
 
 plain: as its users would write it: one nonlinear form, contact on the whole circle, full Newton with UMFPACK.
 tuned: compiled forms, constant mass matrix, contact on the lowest arc alone, a symmetric tangent factorised by sparse
-       Cholesky and kept until Newton's method slows down.
+       Cholesky and kept until Newton's method slows down; the exact tangent once a step needs it.
 tuned-realcompile: the same with its forms through the C++ compiler, some 10 s of set-up.
 """
 
@@ -19,6 +19,7 @@ import peer
 
 TINY = 1e-30
 SLOW = 0.4                  # contraction of the residual's work from which the tuned form makes a new factorisation
+PATIENCE = 30               # iterations after which the tuned form starts a step again and stays with the exact tangent
 
 
 def disc_mesh(radius: float, mesh_size: float, contact_mesh_size: float) -> ng.Mesh:
@@ -157,23 +158,31 @@ class Tuned(Disc):
         u, w = self.space.TnT()
         os.environ["PATH"] = f"{sys.prefix}/bin:" + os.environ["PATH"]   # of NGSolve's compiler script
         how = dict(realcompile=True, wait=True) if options.form == "tuned-realcompile" else {}
+        stress = InnerProduct(self.mean_piola(Grad(u)), Grad(w)).Compile(**how) * dx
         contact = (-self.mean_traction(u[1]) * w[1]).Compile(**how) * ds("arc")
         # the residual, for the displacement in self.u
         self.force = ng.BilinearForm(self.space, nonassemble=True)
-        self.force += InnerProduct(self.mean_piola(Grad(u)), Grad(w)).Compile(**how) * dx
+        self.force += stress
         self.force += contact
         # the tangent of the midpoint rule, which is symmetric and differs by the order of dt
         middle = Id(2) + 0.5 * (Grad(u) + Grad(self.u0))
-        self.tangent = ng.BilinearForm(self.space, symmetric=True)
-        self.tangent += Variation((2 * self.strain_energy(middle.trans * middle)).Compile(**how) * dx)
-        self.tangent += (2 * options.density / self.dt ** 2 * InnerProduct(u, w)).Compile() * dx
-        self.tangent += contact
-        self.inertia, self.predicted = self.u.vec.CreateVector(), self.u.vec.CreateVector()
-        self.inverse = None
+        inertia = (2 * options.density / self.dt ** 2 * InnerProduct(u, w)).Compile() * dx
+        self.symmetric = ng.BilinearForm(self.space, symmetric=True)
+        self.symmetric += Variation((2 * self.strain_energy(middle.trans * middle)).Compile(**how) * dx)
+        self.symmetric += inertia
+        self.symmetric += contact
+        # the tangent itself, used from the first step on that does not converge with the other
+        self.exact = ng.BilinearForm(self.space)
+        self.exact += stress
+        self.exact += inertia
+        self.exact += contact
+        self.inertia, self.predicted, self.start = (self.u.vec.CreateVector() for _ in range(3))
+        self.tangent, self.inverse = (self.symmetric, "sparsecholesky"), None
 
     def factorize(self):
-        self.tangent.AssembleLinearization(self.u.vec)
-        self.inverse = self.tangent.mat.Inverse(self.free, inverse="sparsecholesky")
+        form, solver = self.tangent
+        form.AssembleLinearization(self.u.vec)
+        self.inverse = form.mat.Inverse(self.free, inverse=solver)
         self.factorizations += 1
 
     def out_of_balance(self):
@@ -184,11 +193,16 @@ class Tuned(Disc):
 
     def solve(self):
         self.predicted.data = self.u0.vec + self.dt * self.v0.vec
+        self.start.data = self.u.vec
         self.out_of_balance()
         work_before, fresh = math.inf, False
         if self.inverse is None:
             self.factorize()
-        for _ in range(200):
+        for iteration in range(200):
+            if iteration == PATIENCE:
+                self.tangent, work_before, fresh = (self.exact, "umfpack"), 0.0, False
+                self.u.vec.data = self.start
+                self.out_of_balance()
             self.change.data = self.inverse * self.residual
             self.newton_iterations += 1
             work = ng.InnerProduct(self.change, self.residual)

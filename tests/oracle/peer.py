@@ -72,9 +72,9 @@ def half_disc(options: argparse.Namespace) -> mesh.Mesh:
     return mesh.disc(options.radius, options.mesh_size, options.contact_mesh_size, half=True)
 
 
-def middles(half: mesh.Mesh, radius: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Middle nodes for curved P2 triangles: points (m, 2), of the edges of each triangle (t, 3) in the order
-    12, 23, 31, and of the boundary edges (e,). Those of the circle lie on it."""
+def middles(half: mesh.Mesh, radius: float) -> tuple[np.ndarray, np.ndarray]:
+    """Middle nodes for curved P2 triangles: points (m, 2), those of the circle on it; and which of them belong to each
+    triangle (t, 3), in the order of its sides 12, 23, 31."""
     a, b, c = half.triangles.T
     pairs = np.vstack([np.column_stack(pair) for pair in ((a, b), (b, c), (c, a))] + [half.edges])
     edges, which = np.unique(np.sort(pairs, axis=1), axis=0, return_inverse=True)
@@ -83,7 +83,7 @@ def middles(half: mesh.Mesh, radius: float) -> tuple[np.ndarray, np.ndarray, np.
     on_circle = np.unique(which[3 * len(half.triangles):][half.labels == mesh.FREE])
     rays = points[on_circle] - (0.0, radius)
     points[on_circle] = (0.0, radius) + radius * rays / np.linalg.norm(rays, axis=1, keepdims=True)
-    return points, which[:3 * len(half.triangles)].reshape(3, -1).T, which[3 * len(half.triangles):]
+    return points, which[:3 * len(half.triangles)].reshape(3, -1).T
 
 
 def main(build: Callable[[argparse.Namespace], Model], options: argparse.Namespace) -> None:
