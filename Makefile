@@ -39,8 +39,9 @@ calibrate: ## for which nu and k the paper's 0.0048 s at 8 m/s is met
 stick-slip: $(READY) ## search for the paper's order of sliding and sticking over epsilon, k, nu and the angle
 	@$(PYTHON) -m orchestrate $@ $(ARGS)
 
+paper: override ARGS :=
 paper: disc-normal disc-oblique disc-rolling friction-laws $(SWEEPS) stick-slip ## all of the above, and results/paper/report.html
-	@$(PYTHON) -m orchestrate $@ $(ARGS)
+	@$(PYTHON) -m orchestrate $@
 
 movie: CASE := disc-oblique
 movie: $(READY) ## a film of a scene: make movie CASE=disc-oblique

@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
-from . import mesh, peers, study
+from . import mesh, peers, scene, study, textbook
 from .figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE
 from .parameters import ROOT, defaults
 from .run import read_history, shown
@@ -18,6 +18,10 @@ from .sweep_figures import distance
 
 LEVELS = (5.0, 1.0, 0.1)    # % of error
 LIMIT = 600.0               # seconds a run may take
+# Other programs: program, form, mesh factor, dt [s]. Their coarse settings are the cheap ones for 0.5 %.
+PEERS = [(program, form, factor, dt) for program, form in (("ngsolve", "tuned"), ("ngsolve", "plain"), ("getfem", "plain"), ("textbook", "FreeFEM"))
+         for factor, dt in ((2, 1e-4), (1, 1e-4), (1, 5e-5), (1, 2e-5))]
+PEERS_QUICK = [("ngsolve", "tuned", 1, 1e-4), ("textbook", "FreeFEM", 2, 1e-4)]
 BULK, CONTACT = mesh.sizes_from_accuracy(defaults()["accuracy"], defaults()["radius"])   # [m], the default sizes
 
 
@@ -49,7 +53,8 @@ def main(argv: list[str]) -> int:
         if name not in CASES:
             parser.error(f"'{name}' is not known (accepted: {', '.join(CASES)})")
     out, tables, pages = options.out.resolve(), [], []
-    for name in options.cases[:1] if options.quick else options.cases:
+    cases = options.cases[:1] if options.quick else options.cases
+    for name in cases:
         rows, bars = measure(name, out, options.quick)
         draw(name, rows, bars, out / f"{name}.png")
         tables.append(rows)
@@ -58,7 +63,7 @@ def main(argv: list[str]) -> int:
     text = HEAD + "\n\n".join(pages) + "\n"
     with study.complete(out / "bench.md") as part:
         part.write_text(text)
-    print(text + f"\n{shown(out)}/bench.csv, bench.md, " + ", ".join(f"{name}.png" for name in options.cases))
+    print(text + f"\n{shown(out)}/bench.csv, bench.md, " + ", ".join(f"{name}.png" for name in cases))
     return 0
 
 
@@ -129,7 +134,7 @@ def measure(name: str, out: Path, quick: bool) -> tuple[pd.DataFrame, dict[str, 
     found["force_error"] = [100 * distance(histories[0], _force(study.place(folder, point))) if code == 0 else np.nan
                             for (_, point), code in zip(labels, rows.exit)]
     if name == "normal-svk":
-        found = pd.concat([found, _peers(best, histories[0], out, quick).assign(case=name)], ignore_index=True)
+        found = pd.concat([found, _peers(best, histories[0], out / "peers", quick).assign(case=name)], ignore_index=True)
     return found, bars
 
 
@@ -146,17 +151,35 @@ def _words(point: study.Point) -> str:
 
 
 def _peers(best: pd.Series, force: tuple[np.ndarray, np.ndarray], out: Path, quick: bool) -> pd.DataFrame:
-    """The same rows for the other programs that are installed; a row with the reason for one that is not."""
+    """The same rows for the other programs: one with the reason for each that is not installed or failed."""
     rows = []
-    for result in peers.run_all(out / "peers", quick):
-        row = {"program": result["program"], "family": f"{result['program']} {result['form']}".strip(), "setting": result.get("setting", ""),
-               "exit": 0 if "impulse" in result else 1, "message": result.get("message", "")}
-        if "impulse" in result:
-            row |= {"dofs": result["dofs"], "steps": result["steps"], "seconds": result["cpu_seconds"]}
-            row |= {f"{answer}_error": 100 * abs(result[answer] / best[answer] - 1) for answer in ("impulse", "rebound_vy", "contact_time")}
-            row["force_error"] = 100 * distance(force, result["force"]) if "force" in result else np.nan
-        rows.append(row)
+    for program, form, factor, dt in (PEERS_QUICK if quick else PEERS):
+        sizes = sized(factor)
+        history = out / f"{program}-{form}-{factor:g}-{dt:g}.csv"
+        history.parent.mkdir(parents=True, exist_ok=True)
+        row = {"program": f"{program}, {form}", "family": f"{program}, {form}", "setting": _words(sizes | {"dt": dt}), "exit": 1}
+        if program == "textbook":
+            found, reason = _textbook(sizes, dt, out), ""
+        else:
+            found, reason = peers.run(program, form, sizes["mesh_size"], sizes["contact_mesh_size"], dt, LIMIT, history=str(history))
+        if found:
+            row |= {"exit": 0, "dofs": found["dofs"], "steps": found["steps"], "seconds": found["cpu_seconds"]}
+            row |= {f"{answer}_error": 100 * abs(found[answer] / best[answer] - 1) for answer in ("impulse", "rebound_vy", "contact_time")
+                    if answer in found}
+            if history.exists():
+                t, values = np.loadtxt(history, delimiter=",", skiprows=1).T
+                row["force_error"] = 100 * distance(force, (t - dt / 2, values))
+        rows.append(row | {"message": reason})
     return pd.DataFrame(rows)
+
+
+def _textbook(sizes: study.Point, dt: float, out: Path) -> dict:
+    """The textbook FreeFEM script on our mesh of these sizes."""
+    wanted = scene.load("disc-normal").override(sizes | {"dt": dt, "end_time": 5.2e-3})
+    path = out / f"textbook-{sizes['mesh_size']:g}.msh"
+    mesh.write(mesh.disc(wanted.values["radius"], sizes["mesh_size"], sizes["contact_mesh_size"], half=True), path)
+    found = textbook.textbook(wanted, path)
+    return found | {"contact_time": found["contact_end"]}
 
 
 # ---- the page

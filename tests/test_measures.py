@@ -40,12 +40,13 @@ def test_bench_on_coarse_runs(tmp_path, monkeypatch, capsys):
     """A row a setting with its time and errors, which fall with refinement; the page, the figure and the CSV are there."""
     monkeypatch.setattr(bench, "settings", lambda *_: {"adaptive, P2": [{"accuracy": 0.1}, {"accuracy": 0.02}], "bdf2": [{"accuracy": 0.1, "integrator": "bdf2"}]})
     monkeypatch.setattr(bench, "references", lambda *_: [{"accuracy": 0.01}, {"accuracy": 0.008}])
-    monkeypatch.setattr(bench.peers, "run_all", lambda *_: [{"program": "other", "form": "", "message": "is not installed"}])
+    monkeypatch.setattr(bench, "PEERS_QUICK", [("ngsolve", "tuned", 2, 1e-4), ("textbook", "FreeFEM", 2, 1e-4)])
+    monkeypatch.setattr(bench.peers, "run", lambda *_, **__: (None, "is not installed"))
     assert bench.main(["--quick", "--out", str(tmp_path)]) == 0
     table = pd.read_csv(tmp_path / "bench.csv")
-    assert len(table) == 4 and table.seconds[:3].notna().all() and table.force_error[0] > table.force_error[1] > 0
+    assert len(table) == 5 and table.seconds[:3].notna().all() and table.impulse_error[4] < 5 and table.force_error[0] > table.force_error[1] > 0
     text = (tmp_path / "bench.md").read_text()
-    assert "Cheapest setting" in text and "- other" in text and "is not installed" in text and (tmp_path / "normal-svk.png").exists()
+    assert "Cheapest setting" in text and "- ngsolve" in text and "is not installed" in text and (tmp_path / "normal-svk.png").exists()
     assert text.strip() in capsys.readouterr().out
 
 
