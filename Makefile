@@ -5,7 +5,7 @@ READY := .venv/.ready
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup disc-normal disc-oblique disc-rolling friction-laws oblique contact-time-svk law-comparison contact-time-neohookean calibrate stick-slip paper movie test stress bench bench-quick textbook skipping costs refine refine-oblique clean
+.PHONY: help setup disc-normal disc-oblique disc-rolling friction-laws oblique contact-time-svk law-comparison contact-time-neohookean calibrate stick-slip verify paper movie test stress bench bench-quick textbook skipping costs refine refine-oblique clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
@@ -39,8 +39,11 @@ calibrate: ## for which nu and k the paper's 0.0048 s at 8 m/s is met
 stick-slip: $(READY) ## search for the paper's order of sliding and sticking over epsilon, k, nu and the angle
 	@$(PYTHON) -m orchestrate $@ $(ARGS)
 
+verify: $(READY) ## exact solutions with convergence: bar, rod, Hertz, rigid bodies, friction, manufactured motions
+	@$(PYTHON) -m orchestrate $@ $(ARGS)
+
 paper: override ARGS :=
-paper: disc-normal disc-oblique disc-rolling friction-laws $(SWEEPS) stick-slip ## all of the above, and results/paper/report.html
+paper: disc-normal disc-oblique disc-rolling friction-laws $(SWEEPS) stick-slip verify ## all of the above, and results/paper/report.html
 	@$(PYTHON) -m orchestrate $@
 
 movie: CASE := disc-oblique

@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from . import parameters, run, scene, stick_slip, study, sweep, sweep_figures
+from . import parameters, run, scene, stick_slip, study, sweep, sweep_figures, verify
 from .failure import Failure, Unreadable
 from .parameters import ROOT, Value
 from .run import shown
@@ -50,7 +50,7 @@ def main(argv: list[str]) -> int:
     findings = [(item, text, find(results)) for item, text, find in STATEMENTS]
     target = results.folder / "paper/report.html"
     with study.complete(target) as part:
-        part.write_text(page(findings))
+        part.write_text(page(findings, verification(results.folder / "verify")))
     for item, text, found in findings:
         print(f"{item}: {text}\n    {found.verdict.upper()}: {found.ours}\n")
     print(", ".join(f"{sum(found.verdict == verdict for *_, found in findings)} {verdict}" for verdict in COLOURS))
@@ -108,6 +108,8 @@ class Results:
         picture, laws = self.folder / "friction-laws/friction-laws.png", (ROOT / "edp/core/friction.idp", ROOT / "edp/friction-laws.edp")
         if not picture.exists() or any(picture.stat().st_mtime < law.stat().st_mtime for law in laws):
             missing["friction-laws"] = None
+        if not verify.there(self.folder / "verify"):
+            missing["verify"] = None
         if missing:
             raise Failure(f"paper: no results of the present scenes and code for {', '.join(missing)}; run: make {' '.join(missing)}   "
                           "(or: make paper)", Unreadable("").code)
@@ -363,8 +365,8 @@ def _distance(results: Results, speed: float) -> tuple[float, float]:
 
 # ---- the page
 
-def page(findings: list[tuple[str, str, Finding]]) -> str:
-    """The page as HTML, pictures and all."""
+def page(findings: list[tuple[str, str, Finding]], more: str = "") -> str:
+    """The page as HTML, pictures and all; `more` comes behind the statements."""
     counts = ", ".join(f"{sum(found.verdict == verdict for *_, found in findings)} {verdict}" for verdict in COLOURS)
     rows = "\n".join(f"<tr><td>{escape(item)}</td><td>{escape(text)}</td><td>{escape(found.ours)}</td>"
                      f'<td style="color:{COLOURS[found.verdict]}"><a href="#s{k}">{found.verdict}</a></td></tr>'
@@ -375,7 +377,7 @@ def page(findings: list[tuple[str, str, Finding]]) -> str:
 <style>
 body {{ font: 15px/1.45 system-ui, sans-serif; color: #222; max-width: 60em; margin: 2em auto; padding: 0 1em }}
 table {{ border-collapse: collapse; width: 100% }} td, th {{ border-bottom: 1px solid #ddd; padding: .35em .6em; text-align: left; vertical-align: top }}
-td a {{ color: inherit }} img {{ max-width: 100% }} h2 {{ margin-top: 2.2em; font-size: 1.1em }} details {{ font-size: .85em }} pre {{ white-space: pre-wrap }}
+td a {{ color: inherit }} img {{ max-width: 100% }} h2 {{ margin-top: 2.2em; font-size: 1.1em }} h3 {{ margin-top: 1.6em; font-size: 1em }} details {{ font-size: .85em }} pre {{ white-space: pre-wrap }}
 </style></head><body>
 <h1>The paper's statements and our numbers</h1>
 <p>Buezas, Rosales and Filipich, <i>Nonlinear deformable bodies with unilateral contact including friction</i>. The paper states neither ν (only
@@ -386,16 +388,42 @@ Error bars of ours are what refining mesh and step changes. Verdicts follow from
 {rows}
 </table>
 {sections}
+{more}
 <p>Made {datetime.now():%Y-%m-%d %H:%M} by ffimpact.</p>
 </body></html>
 """
 
 
 def _section(k: int, item: str, text: str, found: Finding) -> str:
-    pictures = "\n".join(f'<img alt="{escape(path.stem)}" src="data:image/png;base64,{base64.b64encode(path.read_bytes()).decode()}">'
-                         for path in found.figures)
     return (f'<h2 id="s{k}">{escape(item)}: {escape(text)}</h2>\n<p><b style="color:{COLOURS[found.verdict]}">{found.verdict}</b>: {escape(found.ours)}</p>\n'
-            f"{pictures}\n{_provenance(found.runs)}")
+            + "\n".join(map(_picture, found.figures)) + f"\n{_provenance(found.runs)}")
+
+
+def _picture(path: Path) -> str:
+    return f'<img alt="{escape(path.stem)}" src="data:image/png;base64,{base64.b64encode(path.read_bytes()).decode()}">'
+
+
+def verification(folder: Path) -> str:
+    """The section with what `make verify` left in `folder`: a table of the cases, then each with its figure and numbers."""
+    frame = pd.read_csv(folder / "verify.csv")
+    judged = verify.judged(frame)
+    table = _table(verify.overview(frame), verify.FORMATS)
+    parts = []
+    for case in verify.CASES:
+        rows, asked = frame[frame.case == case.name], judged[judged.case == case.name]
+        figure = folder / f"{verify.slug(case)}.png"
+        parts.append(f"<h3>{escape(case.name)}: {escape(case.title)}</h3>\n<p>{escape(case.note)}</p>\n{_picture(figure) if figure.exists() else ''}\n"
+                     f"<details><summary>all numbers ({len(rows)}, of which {len(asked)} are judged)</summary>{_table(rows, verify.NUMBERS)}</details>")
+    return ("<h2>Verification</h2>\n<p>Against exact solutions, by tolerances fixed beforehand (make verify): "
+            f"<b>{'all pass' if judged['pass'].all() else 'NOT all pass'}</b>. A row a case, with the number that is nearest to its tolerance; order: observed, of the "
+            f"largest error between the coarsest and the finest size.</p>\n{table}\n" + "\n".join(parts))
+
+
+def _table(frame: pd.DataFrame, formats: dict[str, str]) -> str:
+    """The columns named in `formats` as an HTML table."""
+    rows = [[*formats], *zip(*([study.cell(value, form) for value in frame[name]] for name, form in formats.items()))]
+    return "<table>" + "\n".join("<tr>" + "".join(f"<{tag}>{escape(text)}</{tag}>" for text in row) + "</tr>"
+                                 for tag, row in zip(["th"] + ["td"] * len(frame), rows)) + "</table>"
 
 
 def _provenance(folders: list[Path]) -> str:

@@ -158,13 +158,14 @@ def _read_json(path: Path) -> dict:
 
 def table(frame: pd.DataFrame, formats: dict[str, str]) -> str:
     """The columns named in `formats` (column: format, such as ".3f"; "" as it is) as a table of text in markdown."""
-    cells = [[_cell(value, form) for value in frame[name]] for name, form in formats.items()]
+    cells = [[cell(value, form) for value in frame[name]] for name, form in formats.items()]
     widths = [max(map(len, [name, *column])) for name, column in zip(formats, cells)]
     lines = [list(formats), ["-" * (width - 1) + ":" for width in widths], *zip(*cells)]
     return "\n".join("| " + " | ".join(f"{cell:>{width}}" for cell, width in zip(line, widths)) + " |" for line in lines)
 
 
-def _cell(value, form: str) -> str:
+def cell(value, form: str) -> str:
+    """A value as text in a format; nothing where there is no value."""
     return "" if pd.isna(value) else format(value, form)
 
 

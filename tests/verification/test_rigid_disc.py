@@ -4,15 +4,14 @@ import math
 
 import pytest
 
-# A pressure wave crosses this disc in 35 us and its contact lasts 1.4 ms: rigid, on the penalty alone.
-# Its stresses are large beside its energy: round-off allows 1e-10 of the energy at the start, not the default 5e-12.
-RADIUS = 0.05
-STIFF = dict(young=1e10, nu=0.3, speed=1, penalty=1e10, slip_velocity=1e-3, accuracy=0.05, tolerance=1e-10)
+from orchestrate.verify import STIFF
+
+RADIUS = STIFF["radius"]
 
 
 def impact(disc, friction: float, angle: float, **given):
     """The summary of an impact, its speeds along and across the plane before it, and e."""
-    found = disc(**STIFF | dict(angle=angle, friction_static=friction, friction_dynamic=friction) | given).summary
+    found = disc(**STIFF | dict(penalty=1e10, angle=angle, friction_static=friction, friction_dynamic=friction) | given).summary
     along, across = math.cos(math.radians(angle)), math.sin(math.radians(angle))
     assert found["energy_drift"] < 1e-8
     return found, along, across, found["rebound_vy"] / across

@@ -4,9 +4,10 @@ import math
 
 import pytest
 
-GRAVITY = 10
-BLOCK = dict(young=1e9, nu=0.3, penalty=1e9, gravity=GRAVITY, radius=0.005, slip_velocity=1e-3, dt=1e-3)
-MASS = 1722 * 0.1 * 0.01
+from orchestrate import verify
+from orchestrate.verify import BLOCK_MASS as MASS, GRAVITY
+
+BLOCK = verify.BLOCK | dict(slip_velocity=1e-3, dt=1e-3)
 
 
 @pytest.mark.parametrize("law, static, dynamic", [

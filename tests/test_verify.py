@@ -1,0 +1,115 @@
+"""make verify: the verdicts follow from the numbers, the table names the worst, the exit code says whether all pass."""
+
+import json
+import math
+
+import pandas as pd
+import pytest
+
+from orchestrate import paper, verify
+from orchestrate.__main__ import main
+from orchestrate.failure import Failure
+from orchestrate.verify import Case, Row
+
+
+def case(numbers, **given) -> Case:
+    """A case with these numbers: (what, size, value, expected[, order])."""
+    def measured(folder):
+        yield from (Row(*row) for row in numbers)
+    return Case(**dict(name="V0", title="nothing", axis="size", tolerance=0.01, rows=measured) | given)
+
+
+def passes(rows, **given) -> bool:
+    wanted = case(rows, **given)
+    return bool(verify.judged(verify.judge(wanted, list(wanted.rows(None))))["pass"].all())
+
+
+@pytest.mark.parametrize("values, good", [
+    ((1.1, 1.05, 1.009), True), ((1.1, 1.05, 1.011), False),     # only the finest is asked for
+    ((1.001, 1.0, 1.002), False), ((0.9, 1.2, 0.995), True),      # it must be nearer than the coarsest
+    ((1.1, 1.05, math.nan), False)])
+def test_a_case_passes_within_its_tolerance_and_converging(values, good):
+    """Within the tolerance at the finest size, and the largest error there below that at the coarsest, in any order of the rows."""
+    rows = [("a", size, value, 1) for size, value in zip((4, 2, 1), values)]
+    assert passes(rows) is passes(rows[::-1]) is good
+
+
+def test_every_number_of_a_case_counts():
+    """One number beyond its tolerance fails the case; one that has a single size is judged there."""
+    good = [("a", 2, 1.05, 1), ("a", 1, 1.005, 1)]
+    assert passes(good + [("b", 1, 3.02, 3)]) and not passes(good + [("b", 1, 3.04, 3)])
+
+
+@pytest.mark.parametrize("fine, good", [(1 / 4, True), (1 / 2 ** 1.86, True), (1 / 2 ** 1.84, False), (1 / 2 ** 2.2, False)])
+def test_orders_are_taken_from_the_two_finest_sizes(fine, good):
+    """Between them the order must be the expected one to the tolerance, from above and below; the coarsest may be anything."""
+    assert passes([("e", 4, 9, 0, 2), ("e", 2, 1, 0, 2), ("e", 1, fine, 0, 2)], by_order=True, tolerance=0.15) is good
+
+
+def test_errors_are_relative():
+    """To what is expected; where 0 is expected the number itself is the error."""
+    assert Row("a", 1, 2.2, 2).error == pytest.approx(0.1) and Row("a", 1, -0.3, 0).error == 0.3
+
+
+@pytest.fixture
+def cases(monkeypatch, fake):
+    """cases(case, ...): in the place of the real ones."""
+    return lambda *given: monkeypatch.setattr(verify, "CASES", given)
+
+
+FINE = [("half: a", 0.2, 1.05, 1, 1), ("half: b", 0.2, 1e-9, 0), ("half: a", 0.1, 1.004, 1, 1), ("half: b", 0.1, 1e-9, 0)]
+
+
+def test_all_pass(cases, tmp_path, capsys):
+    """Exit code 0, a table with a row a case, all numbers in verify.csv, a figure a case, and the page of the report."""
+    def beside(axes, folder):
+        axes.plot([0, 1], [1, 0])
+    cases(case(FINE, name="V1 space", beside=beside), case([("e", 2, 0.4, 0, 2), ("e", 1, 0.1, 0, 2)], name="V2", by_order=True, tolerance=0.15))
+    assert main(["verify", "--out", str(tmp_path)]) == 0
+    out = capsys.readouterr().out
+    assert "all pass" in out and "NOT" not in out and out.count(" pass |") == 2 and "half: a" in out and "order of e" in out
+    frame = pd.read_csv(tmp_path / "verify.csv")
+    assert list(frame) == verify.COLUMNS and len(frame) == 4 + 1 + 2 + 1 and frame.tolerance.notna().sum() == 3 + 1
+    assert (tmp_path / "v1-space.png").exists() and (tmp_path / "v2.png").exists()
+    assert json.loads((tmp_path / "summary.json").read_text())["provenance"]["code"] == verify.code_hash()
+    page = paper.verification(tmp_path)
+    assert page.count("data:image/png") == 2 and "<b>all pass</b>" in page and "<td>half: a</td>" in page
+
+
+def test_a_case_that_fails_is_named(cases, tmp_path, capsys):
+    """Exit code 1; its number, what was expected, and the tolerance; the page says so too."""
+    cases(case(FINE), case([("depth", 2, 1.3, 1), ("depth", 1, 1.2, 1)], name="V9"))
+    assert main(["verify", "--out", str(tmp_path)]) == 1
+    out = capsys.readouterr().out
+    assert "NOT all pass" in out and "FAILED  V9, depth: 1.2, expected 1, error 0.2 > 0.01" in out and " FAIL |" in out and " pass |" in out
+    assert "NOT all pass" in paper.verification(tmp_path) and not json.loads((tmp_path / "summary.json").read_text())["passed"]
+
+
+def test_a_case_that_does_not_run_fails(cases, tmp_path, capsys):
+    """Its message takes the place of the numbers, the other cases are run."""
+    def broken(folder):
+        yield Row("a", 1, 1, 1)
+        raise Failure("rod.edp: exit code 8")
+    cases(case([], name="V5", rows=broken), case(FINE))
+    assert main(["verify", "--out", str(tmp_path)]) == 1
+    out = capsys.readouterr().out
+    assert "FAILED  V5, rod.edp: exit code 8" in out and " pass |" in out and not (tmp_path / "v5.png").exists()
+
+
+def test_a_run_that_was_cut_short_leaves_no_verdict(cases, tmp_path):
+    """summary.json is of a finished verification only: the report then asks for it again."""
+    cases(case(FINE))
+    assert main(["verify", "--out", str(tmp_path)]) == 0
+    cases(case([], rows=lambda folder: 1 / 0))
+    assert main(["verify", "--out", str(tmp_path)]) == 0, "what the same code has left is taken as it is"
+    def stopped(folder):
+        raise KeyboardInterrupt
+        yield
+    cases(case([], rows=stopped))
+    assert main(["verify", "--force", "--out", str(tmp_path)]) == 130 and not (tmp_path / "summary.json").exists()
+
+
+def test_tolerances_are_the_documented_ones():
+    """They were fixed before the cases were run."""
+    assert {each.name: each.tolerance for each in verify.CASES} == {
+        "V1 space": 0.15, "V1 time": 0.15, "V4": 0.01, "V5": 0.01, "V6": 0.02, "V8": 0.01, "V9": 0.01, "V10": 0.03}
