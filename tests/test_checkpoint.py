@@ -17,9 +17,10 @@ from test_cli import call, is_alive, start, wait_for
 
 COARSE = dict(law="neohookean", nu=0.4)
 SCENES = {   # flags of edp/disc-plane.edp, steps between checkpoints, rows of history that the last checkpoint must know
-    "energy-momentum": (COARSE | dict(accuracy=0.1, angle=60, friction_static=0.7, friction_dynamic=0.5, fields=2), 7, 20),
+    "energy-momentum": (COARSE | dict(accuracy=0.1, angle=60, friction_static=0.7, friction_dynamic=0.5, fields=5), 7, 20),
     "svk": (dict(accuracy=0.05, exponent=1.5, penalty=1e11, height=1e-3, gravity=9.81), 7, 20),
-    "midpoint": (COARSE | dict(accuracy=0.1, spin=50, integrator="midpoint", degree=1, friction_static=0.5, friction_dynamic=0.5), 7, 20),
+    "midpoint": (COARSE | dict(accuracy=0.1, spin=50, friction_static=0.5, friction_dynamic=0.5, degree=1, integrator="midpoint"),
+                 7, 20),
     "newmark": (COARSE | dict(accuracy=0.05, dt=2e-5, integrator="newmark"), 10, 100),
     "backward-euler": (COARSE | dict(accuracy=0.05, dt=2e-5, integrator="backward-euler"), 10, 100),
     "bdf2": (COARSE | dict(accuracy=0.05, dt=2e-5, integrator="bdf2"), 10, 100),
@@ -34,7 +35,8 @@ def direct(flags: dict, out: Path) -> subprocess.Popen:
     program = freefem.find()
     words = [word for name, value in (flags | {"out": out}).items() for word in (f"-{name}", str(value))]
     return subprocess.Popen([program.command, "-nw", "-v", "0", "edp/disc-plane.edp", *words], cwd=parameters.ROOT,
-                            env=program.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+                            env=program.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                            text=True)
 
 
 def rows_known(checkpoint: Path) -> int:
@@ -181,7 +183,8 @@ def test_interrupted_run(tmp_path, straight):
     assert_same(out, straight.folder)
 
 
-@pytest.mark.parametrize("changed", [{"speed": 7.5}, {"force": True}, {"mesh_file": True}, {}], ids=["scene", "force", "mesh", "code"])
+@pytest.mark.parametrize("changed", [{"speed": 7.5}, {"force": True}, {"mesh_file": True}, {}],
+                         ids=["scene", "force", "mesh", "code"])
 def test_another_run_starts_anew(out, straight, monkeypatch, changed):
     """Another scene, mesh or code, and --force, do not go on from the checkpoint that is there: it goes."""
     if "mesh_file" in changed:
