@@ -1,4 +1,4 @@
-"""Command line: python -m orchestrate run|compare|list|parameters|figures|movie|friction-laws|stick-slip|sweep|paper|stress|bench|refine."""
+"""Command line: python -m orchestrate run|compare|list|parameters|figures|movie|friction-laws|stick-slip|sweep|paper|stress|stress-map|bench|textbook|skipping|costs|promise|refine."""
 
 import argparse
 import importlib
@@ -9,7 +9,7 @@ from pathlib import Path
 
 from .failure import BadInput, Failure, Unreadable
 
-OWN_MAIN = ("compare", "movie", "friction-laws", "stick-slip", "sweep", "paper", "stress", "bench", "refine")   # modules with a main(argv)
+OWN_MAIN = ("compare", "movie", "friction-laws", "stick-slip", "sweep", "paper", "stress", "stress-map", "bench", "textbook", "skipping", "costs", "promise", "refine")   # modules with a main(argv)
 
 
 def main(argv: list[str]) -> int:

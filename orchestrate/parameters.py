@@ -1,6 +1,7 @@
 """The parameters of a run, read from THE TABLE of edp/core/parameters.idp: nothing is copied by hand."""
 
 import difflib
+import math
 import re
 from dataclasses import dataclass
 from functools import cache
@@ -47,9 +48,12 @@ class Parameter:
             return given
         wanted = "a whole number" if self.kind == "int" else "a number"
         is_number = _NUMBER.fullmatch(given) if isinstance(given, str) else type(given) in (int, float)
-        if not is_number or (self.kind == "int" and float(given) % 1 != 0):
+        if not is_number or (self.kind == "int" and not isinstance(given, int) and float(given) % 1 != 0):
             raise BadInput(f"{self.name}: '{given}' is not {wanted} (accepted: {self.accepted})")
-        value = float(given)
+        try:
+            value = float(given)
+        except OverflowError:
+            value = math.inf
         if not self.low <= value <= self.high:
             raise BadInput(f"{self.name}: {given} is out of range (accepted: {self.accepted})")
         return int(value) if self.kind == "int" else value

@@ -61,6 +61,8 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | Non
     """
     scene = scene.override(overrides or {})
     folder = (out or ROOT / "results" / scene.name).resolve()
+    if "'" in str(folder):
+        raise BadInput(f"--out: {folder} has an apostrophe in it, which FreeFem++ cannot read (accepted: any other path)")
     if mesh_file:
         mesh_file = mesh_file.resolve()
         mesh.read(mesh_file)
@@ -139,6 +141,8 @@ def read_summary(folder: Path) -> dict:
         summary = json.loads((folder / "summary.json").read_text())
         if summary["status"] != "ok":
             raise ValueError(f"status is {summary['status']!r}")
+        if not isinstance(summary.get("provenance", {}), dict):
+            raise ValueError("provenance is no table")
         return summary
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise Unreadable(f"{folder / 'summary.json'} cannot be read: {_why(error)}") from None
@@ -160,7 +164,7 @@ def reusable(scene: Scene, folder: Path, mesh_file: Path | None = None) -> RunRe
     summary = _finished(folder, force=False)
     if not mesh_file:
         scene = with_mesh_sizes(scene)
-    same = summary and _same(folder, summary, scene, mesh_file, code_hash())
+    same = summary and (folder / "history.csv").exists() and _same(folder, summary, scene, mesh_file, code_hash())
     return RunResult(folder, summary, reused=True) if same else None
 
 
