@@ -14,6 +14,8 @@ TABLE = ROOT / "edp/core/parameters.idp"
 
 Value = float | int | str
 
+NOT_DECISIVE = ("checkpoint_every",)   # parameters that do not change the answer
+
 _NUMBER = re.compile(r"[+-]?(\d+(\.\d+)?|\.\d+)([eE][+-]?\d+)?")
 _ROW = re.compile(
     r"""^(?:real|int|string)\s+\w+\s*=\s*parameter(?P<kind>Real|Int|Word|Path)\(\s*"(?P<name>\w+)",\s*"""
@@ -79,6 +81,11 @@ def table() -> dict[str, Parameter]:
 def names() -> list[str]:
     """The parameters that a scene can set (files and folders are not part of a scene)."""
     return [p.name for p in table().values() if p.kind != "path"]
+
+
+def decisive(values: dict[str, Value]) -> dict[str, Value]:
+    """Those of a scene's values that decide its answer: two scenes that agree in them are one run."""
+    return {name: value for name, value in values.items() if name not in NOT_DECISIVE}
 
 
 def check(given: dict[str, Value]) -> dict[str, Value]:

@@ -17,7 +17,7 @@ from tqdm import tqdm
 
 from . import freefem, run, scene
 from .failure import Busy, Failure, Unreadable
-from .parameters import Value
+from .parameters import Value, decisive
 
 CORES = len(os.sched_getaffinity(0))
 TOO_LONG = 124              # exit code of a run that its time limit ended, as of timeout(1)
@@ -143,7 +143,7 @@ def _failed_before(wanted: scene.Scene, folder: Path) -> dict | None:
                 used, asked = run.read_scene(place), run.with_mesh_sizes(wanted).values
             except Failure:
                 continue
-            if all(used.get(name) == value for name, value in asked.items()):
+            if all(used.get(name) == value for name, value in decisive(asked).items()):
                 return record
     return None
 
