@@ -58,7 +58,8 @@ def _start(script: str, flags: tuple[str, ...], folder: Path) -> str:
     try:
         process = subprocess.run([program.command, "-nw", "-ne", "-v", "0", script, *flags], cwd=folder, env=program.environment,
                                  stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                                 errors="replace", timeout=LIMIT, preexec_fn=partial(freefem.die_with_parent, os.getpid(), signal.SIGKILL))
+                                 errors="replace", timeout=LIMIT,
+                                 preexec_fn=partial(freefem.die_with_parent, os.getpid(), signal.SIGKILL))
     except subprocess.TimeoutExpired:
         raise Failure(f"{script}: no end after {LIMIT} s: killed") from None
     if process.returncode != 0:

@@ -377,7 +377,9 @@ def page(findings: list[tuple[str, str, Finding]], more: str = "") -> str:
 <style>
 body {{ font: 15px/1.45 system-ui, sans-serif; color: #222; max-width: 60em; margin: 2em auto; padding: 0 1em }}
 table {{ border-collapse: collapse; width: 100% }} td, th {{ border-bottom: 1px solid #ddd; padding: .35em .6em; text-align: left; vertical-align: top }}
-td a {{ color: inherit }} img {{ max-width: 100% }} h2 {{ margin-top: 2.2em; font-size: 1.1em }} h3 {{ margin-top: 1.6em; font-size: 1em }} details {{ font-size: .85em }} pre {{ white-space: pre-wrap }}
+td a {{ color: inherit }} img {{ max-width: 100% }} h2 {{ margin-top: 2.2em; font-size: 1.1em }}
+h3 {{ margin-top: 1.6em; font-size: 1em }}
+details {{ font-size: .85em }} pre {{ white-space: pre-wrap }}
 </style></head><body>
 <h1>The paper's statements and our numbers</h1>
 <p>Buezas, Rosales and Filipich, <i>Nonlinear deformable bodies with unilateral contact including friction</i>. The paper states neither ν (only
@@ -412,11 +414,13 @@ def verification(folder: Path) -> str:
     for case in verify.CASES:
         rows, asked = frame[frame.case == case.name], judged[judged.case == case.name]
         figure = folder / f"{verify.slug(case)}.png"
-        parts.append(f"<h3>{escape(case.name)}: {escape(case.title)}</h3>\n<p>{escape(case.note)}</p>\n{_picture(figure) if figure.exists() else ''}\n"
-                     f"<details><summary>all numbers ({len(rows)}, of which {len(asked)} are judged)</summary>{_table(rows, verify.NUMBERS)}</details>")
+        parts.append(f"<h3>{escape(case.name)}: {escape(case.title)}</h3>\n<p>{escape(case.note)}</p>\n"
+                     f"{_picture(figure) if figure.exists() else ''}\n<details><summary>all numbers ({len(rows)}, of which "
+                     f"{len(asked)} are judged)</summary>{_table(rows, verify.NUMBERS)}</details>")
     return ("<h2>Verification</h2>\n<p>Against exact solutions, by tolerances fixed beforehand (make verify): "
-            f"<b>{'all pass' if judged['pass'].all() else 'NOT all pass'}</b>. A row a case, with the number that is nearest to its tolerance; order: observed, of the "
-            f"largest error between the coarsest and the finest size.</p>\n{table}\n" + "\n".join(parts))
+            f"<b>{'all pass' if judged['pass'].all() else 'NOT all pass'}</b>. A row a case, with the number that is nearest to "
+            f"its tolerance; order: observed, of the largest error between the coarsest and the finest size.</p>\n{table}\n"
+            + "\n".join(parts))
 
 
 def _table(frame: pd.DataFrame, formats: dict[str, str]) -> str:

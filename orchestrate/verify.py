@@ -5,6 +5,7 @@ import argparse
 import hashlib
 import json
 import math
+import shutil
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -47,8 +48,8 @@ class Row:
 class Case:
     """A case of the table of checks: its numbers, from coarse to fine, and what is asked of them.
 
-    by_order: the observed order between the two finest sizes, within `tolerance` of the expected one. Otherwise: every number at its finest
-    size within the relative `tolerance`, and the largest error there below the largest at the coarsest size.
+    by_order: the observed order between the two finest sizes, within `tolerance` of the expected one. Otherwise: every number
+    at its finest size within the relative `tolerance`, and the largest error there below the largest at the coarsest size.
     """
 
     name: str
@@ -72,11 +73,13 @@ def in_space(folder: Path) -> Iterator[Row]:
     for degree in (1, 2):
         for law, name in LAWS.items():
             for h in (0.25, 0.125, 0.0625):
-                found = measure("manufactured", law=law, degree=degree, mesh_size=h, dt=0.0025, end_time=0.025, tolerance=1e-12, **SOFT)
+                found = measure("manufactured", law=law, degree=degree, mesh_size=h, dt=0.0025, end_time=0.025,
+                                tolerance=1e-12, **SOFT)
                 yield Row(f"P{degree}: {name}", h, found["error"], 0, degree + 1)
     for law, name in LAWS.items():
         for h in (0.5, 0.25, 0.125):
-            found = measure("manufactured-disc", law=law, radius=1, mesh_size=h, dt=0.005, end_time=0.025, tolerance=1e-12, **SOFT)
+            found = measure("manufactured-disc", law=law, radius=1, mesh_size=h, dt=0.005, end_time=0.025,
+                            tolerance=1e-12, **SOFT)
             yield Row(f"P2, disc: {name}", h, found["error"], 0, 3)
 
 
@@ -115,8 +118,9 @@ def rod(elements: int) -> Iterator[Row]:
     """A clamped rod meets the wall, t in units of L/c; strains of 5e-5, and a penalty of 1000 E/L."""
     found = measure("rod", young=1, density=1, nu=0, speed=1e-4, penalty=1e3, mesh_size=1 / elements, dt=0.5 / elements)
     for what, value, expected in (
-            ("contact begins", found["start"], 1), ("contact ends", found["leave"], 2), ("period", found["again"] - found["start"], 3),
-            ("stress: mean", found["mean"], 1 / 2), ("stress: middle", found["stress"], 1 / 2), ("energy", found["energy"], 1 / 8)):
+            ("contact begins", found["start"], 1), ("contact ends", found["leave"], 2),
+            ("period", found["again"] - found["start"], 3), ("stress: mean", found["mean"], 1 / 2),
+            ("stress: middle", found["stress"], 1 / 2), ("energy", found["energy"], 1 / 8)):
         yield Row(what, 1 / elements, value, expected, FRONT)
 
 
@@ -158,8 +162,9 @@ def hertz(folder: Path, share: float, law: str = "neohookean", nu: float = 0.3) 
     folder.mkdir(parents=True, exist_ok=True)
     stiffness = 1 / (1 - nu**2)
     load = math.pi * stiffness * NARROW**2 / 4
-    found = measure("hertz", law=law, young=1, nu=nu, density=1, radius=1, speed=0, gravity=load / math.pi, integrator="backward-euler", dt=20,
-                    penalty=10 * stiffness / (share * NARROW), mesh_size=0.2, contact_mesh_size=share * NARROW, out=folder)
+    found = measure("hertz", law=law, young=1, nu=nu, density=1, radius=1, speed=0, gravity=load / math.pi, dt=20,
+                    integrator="backward-euler", penalty=10 * stiffness / (share * NARROW), mesh_size=0.2,
+                    contact_mesh_size=share * NARROW, out=folder)
     if abs(found["imbalance"]) > 1e-6 or found["kinetic"] > 1e-9:
         raise Failure("hertz: not at rest")
     yield Row("half-width b", share, found["width"], NARROW, 1)
@@ -179,7 +184,8 @@ def ellipse(axes: plt.Axes, folder: Path) -> None:
     axes.plot(x, np.sqrt(1 - x**2), color=BLACK, linewidth=1, label="exact")
     for size, colour, marker in ((sizes[0], ORANGE, "s"), (sizes[-1], BLUE, ".")):
         rows = pd.read_csv(folder / f"{size:g}/pressure.csv").sort_values("x")
-        axes.plot(rows.x / NARROW, rows.p / peak, color=colour, marker=marker, markersize=4, linestyle="none", label=f"elements of {size:g} b")
+        axes.plot(rows.x / NARROW, rows.p / peak, color=colour, marker=marker, markersize=4, linestyle="none",
+                  label=f"elements of {size:g} b")
     axes.set(xlabel="$x/b$", ylabel="$p/p_0$", xlim=(0, 1.4), ylim=(-0.03, 1.15))
     axes.legend(loc="upper right")
 
@@ -196,12 +202,13 @@ def block(folder: Path) -> Iterator[Row]:
     with the step."""
     top = math.atan(1.05 * 0.7)
     for dt in (8e-3, 4e-3, 2e-3, 1e-3):
-        found = measure("sliding-block", speed=1, angle=0, end_time=0.24, friction_static=0.7, friction_dynamic=0.5, slip_velocity=dt, dt=dt, **BLOCK)
+        found = measure("sliding-block", speed=1, angle=0, end_time=0.24, friction_static=0.7, friction_dynamic=0.5,
+                        slip_velocity=dt, dt=dt, **BLOCK)
         yield Row("stop: time", dt, found["stop"], 1 / (0.5 * GRAVITY), 1)
         yield Row("stop: way", dt, found["distance"], 1 / (2 * 0.5 * GRAVITY))
         yield Row("stop: friction work", dt, found["work"], BLOCK_MASS / 2)
-        found = measure("sliding-block", speed=0, angle=math.degrees(top), end_time=0.6, friction_static=0.7, friction_dynamic=0.4,
-                        slip_velocity=0.02 * dt, dt=dt, **BLOCK)
+        found = measure("sliding-block", speed=0, angle=math.degrees(top), end_time=0.6, friction_static=0.7,
+                        friction_dynamic=0.4, slip_velocity=0.02 * dt, dt=dt, **BLOCK)
         yield Row("starts to slide: tan α", dt, found["breakaway"], 0.7)
         for law, creep in {"linear": 0.9, "sqrt": 0.9 / math.sqrt(1 - 0.9**2), "tanh": math.atanh(0.9)}.items():
             found = measure("sliding-block", speed=0, angle=math.degrees(math.atan(0.6 * 0.9)), end_time=0.2, friction_static=0.6,
@@ -221,7 +228,8 @@ def oblique(folder: Path) -> Iterator[Row]:
     v_t - mu (1+e) v_n and 2 mu (1+e) v_n where it slides throughout, else 2/3 v_t."""
     for penalty in (1e11, 3e10, 1e10, 3e9):
         for law, friction, angle in (("neohookean", 0.2, 30), ("svk", 0.3, 20), ("neohookean", 0.2, 60), ("svk", 0.2, 75)):
-            found = disc(folder, law=law, angle=angle, friction_static=friction, friction_dynamic=friction, penalty=penalty, **STIFF).summary
+            found = disc(folder, law=law, angle=angle, friction_static=friction, friction_dynamic=friction, penalty=penalty,
+                         **STIFF).summary
             along, across = math.cos(math.radians(angle)), math.sin(math.radians(angle))
             lost = friction * (across + found["rebound_vy"]) / along
             slides, size = 1 > 3 * lost, penalty * STIFF["radius"] / STIFF["young"]
@@ -231,26 +239,29 @@ def oblique(folder: Path) -> Iterator[Row]:
 
 
 CASES = (
-    Case("V1 space", "manufactured motions at large strain, L² error of the displacement", "element size", 0.15, in_space, by_order=True,
-         note="Both laws on the unit square and on the disc with curved elements, energy-momentum steps so small that only the error in space is seen."),
-    Case("V1 time", "manufactured motions at large strain, L² error of the displacement", "time step", 0.15, in_time, by_order=True,
-         note="A motion that P2 holds exactly, so that only the error in time is seen."),
+    Case("V1 space", "manufactured motions at large strain, L² error of the displacement", "element size", 0.15, in_space,
+         by_order=True, note="Both laws on the unit square and on the disc with curved elements, energy-momentum steps so small "
+                             "that only the error in space is seen."),
+    Case("V1 time", "manufactured motions at large strain, L² error of the displacement", "time step", 0.15, in_time,
+         by_order=True, note="A motion that P2 holds exactly, so that only the error in time is seen."),
     Case("V4", "bar on a wall: contact 2L/c, stress ρcv, restitution 1", "element size / length", 0.01, bars,
-         note="v/c = 8·10⁻⁴, steps of half an element's transit. A second-order scheme smears the front over h^(2/3): the order to expect. The stress is "
-              "the mean of the middle 80 % of the contact."),
-    Case("V5", "clamped rod against a wall: contact in [1, 2], stress 1/2, period 3, energy 1/8", "element size / length", 0.01, rods,
-         note="Compressed by 5·10⁻⁵ and let go, scaled back to the linear rod; the finite strain leaves 5·10⁻⁵ in the energy, the penalty (1000 E/L) some "
-              "5·10⁻⁴ in the instants. Mean stress: impulse over contact time; middle: t in [1.1, 1.9]."),
+         note="v/c = 8·10⁻⁴, steps of half an element's transit. A second-order scheme smears the front over h^(2/3): the order "
+              "to expect. The stress is the mean of the middle 80 % of the contact."),
+    Case("V5", "clamped rod against a wall: contact in [1, 2], stress 1/2, period 3, energy 1/8", "element size / length", 0.01,
+         rods, note="Compressed by 5·10⁻⁵ and let go, scaled back to the linear rod; the finite strain leaves 5·10⁻⁵ in the energy."
+                    " Penalty 1000 E/L. Mean stress: impulse over contact time; middle: t in [1.1, 1.9]."),
     Case("V6", "cylinder pressed on a plane: Hertz", "element size / b", 0.02, cylinder, beside=ellipse,
-         note="b/R = 0.005, neo-Hookean, ν = 0.3, penalty 10 E*/h; b and p₀ are those of the ellipse fitted to the tractions at the contact points."),
+         note="b/R = 0.005, neo-Hookean, ν = 0.3, penalty 10 E*/h; b and p₀ are those of the ellipse fitted to the tractions at "
+              "the contact points."),
     Case("V8", "rigid body on the penalty: depth and contact time", "time step [s]", 0.01, rigids,
          note="E = 10¹² Pa; the depth is the largest at the steps. m = 1.5 and 2 besides m = 1."),
     Case("V9", "stiff block: sliding to a stop, starting to slide, creeping", "time step [s]", 0.01, block,
-         note="The slip velocity goes with the step. The block is set down in the equilibrium of a rigid one; its weight shortens it by 0.5 % of the "
-              "penetration, it vibrates, and its normal load with it: by that the start and the creep are off once the step resolves it."),
+         note="The slip velocity goes with the step. The block is set down in the equilibrium of a rigid one; its weight shortens "
+              "it by 0.5 % of the penetration, it vibrates, and its normal load with it: by that the start and the creep are off "
+              "once the step resolves it."),
     Case("V10", "stiff oblique disc: sliding throughout, rolling", "penalty × radius / E", 0.03, oblique,
-         note="With the measured restitution. A stiff penalty leaves the disc's own compliance, which springs back along the plane; a soft one lets it sink in (0.8 % "
-              "of its radius at the softest), which shortens the lever of friction."),
+         note="With the measured restitution. A stiff penalty leaves the disc's own compliance, which springs back along the "
+              "plane; a soft one lets it sink in (0.8 % of its radius at the softest), which shortens the lever of friction."),
 )
 
 
@@ -289,7 +300,8 @@ def code_hash() -> str:
 def run_all(out: Path) -> pd.DataFrame:
     """Runs every case; all numbers, also in verify.csv, with the figures beside it. summary.json last."""
     program, frames = freefem.find(), []
-    (out / "summary.json").unlink(missing_ok=True)
+    for old in (out / "summary.json", *out.glob("*.png")):
+        old.unlink(missing_ok=True)
     for case in tqdm(CASES, disable=None, leave=False):
         rows, message = perform(case, out)
         frames.append(judge(case, rows, message))
@@ -306,7 +318,8 @@ def run_all(out: Path) -> pd.DataFrame:
 def perform(case: Case, out: Path) -> tuple[list[Row], str]:
     """The numbers of a case, as far as it came, and why it did not come to its end."""
     folder, rows = out / "runs" / slug(case), []
-    folder.mkdir(parents=True, exist_ok=True)
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
     try:
         for row in case.rows(folder):
             rows.append(row)
@@ -325,9 +338,10 @@ def slug(case: Case) -> str:
 def judge(case: Case, rows: list[Row], message: str = "") -> pd.DataFrame:
     """The numbers as rows of COLUMNS, those that are judged with their tolerance, and what is judged over several sizes."""
     asked = math.nan if case.by_order else case.tolerance
-    lines = [(row.what, row.size, row.value, row.expected, row.error, asked if row.size == series(rows, row.what)[-1].size else math.nan)
-             for row in rows]
     names = list(dict.fromkeys(row.what for row in rows))
+    finest = {name: series(rows, name)[-1].size for name in names}
+    lines = [(row.what, row.size, row.value, row.expected, row.error, asked if row.size == finest[row.what] else math.nan)
+             for row in rows]
     if message:
         lines.append((message.splitlines()[0][:200], *[math.nan] * 4, case.tolerance))
     elif case.by_order:
@@ -347,7 +361,7 @@ def series(rows: list[Row], what: str) -> list[Row]:
 
 
 def observed(rows: list[Row]) -> tuple[float, float]:
-    """The order of the largest error between the coarsest and the finest size, of the numbers that have several; the finest size."""
+    """The order of the largest error between the coarsest and the finest size, of the numbers that have several; the finest."""
     several = [each for what in dict.fromkeys(row.what for row in rows) if len(each := series(rows, what)) > 1]
     first, last = max(each[0].error for each in several), max(each[-1].error for each in several)
     return math.log(first / last) / math.log(several[0][0].size / several[0][-1].size), several[0][-1].size
@@ -359,18 +373,21 @@ def judged(frame: pd.DataFrame) -> pd.DataFrame:
     return rows.assign(**{"pass": rows.error <= rows.tolerance})
 
 
-NUMBERS = {"what": "", "size": "g", "value": ".7g", "expected": ".7g", "error": ".2g", "tolerance": "g"}     # how columns are shown
-FORMATS = {"case": "", "checks": "d", "worst": "", "value": ".6g", "expected": ".6g", "error": ".2g", "tolerance": "g", "order": ".2f", "verdict": ""}
+# How columns are shown: of all numbers, and of the overview
+NUMBERS = {"what": "", "size": "g", "value": ".7g", "expected": ".7g", "error": ".2g", "tolerance": "g"}
+FORMATS = {"case": "", "checks": "d", "worst": "", "value": ".6g", "expected": ".6g", "error": ".2g", "tolerance": "g",
+           "order": ".2f", "verdict": ""}
 
 
 def overview(frame: pd.DataFrame) -> pd.DataFrame:
-    """A row a case: how many numbers are judged, the one nearest to (or farthest beyond) its tolerance, the observed order, the verdict."""
+    """A row a case: how many numbers are judged, the one nearest to (or farthest beyond) its tolerance, order and verdict."""
     lines = []
     for name, rows in judged(frame).groupby("case", sort=False):
         near = (rows.error / rows.tolerance).where(rows["pass"], math.inf).fillna(0)
         worst, order = rows.loc[near.idxmax()], rows[rows.what == CONVERGES].value
-        lines.append({"case": name, "checks": len(rows), "worst": worst.what, **worst[["value", "expected", "error", "tolerance"]],
-                      "order": order.iloc[0] if len(order) else math.nan, "verdict": "pass" if rows["pass"].all() else "FAIL"})
+        lines.append({"case": name, "checks": len(rows), "worst": worst.what}
+                     | worst[["value", "expected", "error", "tolerance"]].to_dict()
+                     | {"order": order.iloc[0] if len(order) else math.nan, "verdict": "pass" if rows["pass"].all() else "FAIL"})
     return pd.DataFrame(lines)
 
 
@@ -405,18 +422,19 @@ def draw_errors(axes: plt.Axes, case: Case, rows: list[Row]) -> None:
         axes.loglog([row.size for row in line], [max(row.error, SHOWN) for row in line], label=name,
                     color=COLOURS[list(groups).index(group) % len(COLOURS)], **LOOKS[groups[group] % len(LOOKS)])
     for order in dict.fromkeys(row.order for row in rows if row.order):
-        line = max((series(rows, name) for name in {row.what for row in rows if row.order == order}), key=lambda line: line[-1].error)
+        line = max((series(rows, row.what) for row in rows if row.order == order), key=lambda line: line[-1].error)
         sizes = np.array([row.size for row in line])
         errors = 0.6 * min(row.error / row.size**order for row in line) * sizes**order
         axes.loglog(sizes, errors, color=GREY, linewidth=1)
-        axes.annotate(f"order {order:.2g}", (sizes[-2], errors[-2]), (3, -3), textcoords="offset points", color="#666666", ha="left", va="top",
-                      bbox=dict(facecolor="white", edgecolor="none", alpha=0.8, pad=1))
+        axes.annotate(f"order {order:.2g}", (sizes[-2], errors[-2]), (3, -3), textcoords="offset points", color="#666666",
+                      ha="left", va="top", bbox=dict(facecolor="white", edgecolor="none", alpha=0.8, pad=1))
     if not case.by_order:
         axes.axhline(case.tolerance, color=BLACK, linestyle="--", linewidth=0.8, label="asked of the finest")
     sizes = sorted({row.size for row in rows})
     axes.set_xticks(sizes, [f"{size:.4g}" for size in sizes])
     axes.xaxis.set_minor_locator(NullLocator())
-    axes.set(xlabel=case.axis, ylabel="relative error" + " (below $10^{-6}$ drawn there)" * any(row.error < SHOWN for row in rows))
+    hidden = any(row.error < SHOWN for row in rows)
+    axes.set(xlabel=case.axis, ylabel="relative error" + " (below $10^{-6}$ drawn there)" * hidden)
     axes.grid(alpha=0.3)
 
 

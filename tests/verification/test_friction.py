@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from orchestrate import mesh
+from orchestrate.failure import Failure
 from test_disc import mirrored
 
 COARSE = dict(accuracy=0.05)
@@ -165,7 +166,7 @@ def test_explicit_step_too_large_for_the_friction_is_refused(disc):
     """A step that is stable without friction but not with it is refused with the limit, rather than run on in chatter."""
     settings = OBLIQUE | dict(penalty=1e9, integrator="central-difference", dt=4e-6, end_time=1e-4)
     assert disc(**settings | dict(friction_static=0, friction_dynamic=0)).summary["energy_drift"] < 1e-3
-    with pytest.raises(AssertionError, match="dt: 4e-06 is beyond the stability limit of central-difference"):
+    with pytest.raises(Failure, match="dt: 4e-06 is beyond the stability limit of central-difference"):
         disc(slip_velocity=0.01, **settings)
 
 
