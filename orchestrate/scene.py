@@ -42,7 +42,7 @@ def load(name: str) -> Scene:
     except (FileNotFoundError, IsADirectoryError, NotADirectoryError):
         raise BadInput(f"{name}: no such scene (built in: {', '.join(built_in())}; or the path of a TOML file)") from None
     except (OSError, ValueError) as error:
-        raise BadInput(f"{name}: no such scene, or not a TOML file: {getattr(error, 'strerror', None) or error}") from None
+        raise BadInput(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
     script, title = given.pop("script", "disc-plane"), given.pop("title", path.stem)
     scripts = [file.stem for file in sorted((parameters.ROOT / "edp").glob("*.edp")) if MARCH in file.read_text()]
     if script not in scripts:

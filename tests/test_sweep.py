@@ -86,7 +86,7 @@ def test_points_are_products_of_axes_and_zips(tmp_path):
     ("[set]\naccuracy = 0.1\n[product]\nspeed = [1]\n[refine]\naccuracy = 0.1", "refine: accuracy as in the runs themselves"),
     ("[product]\nspeed = [1]\n[refine]\naccuracy = 5e-3", "refine: accuracy as in the runs themselves"),
     ("[product]\nspeed = [1]\n[refine]\naccuracy = 0.01", "refine: accuracy = 0.01 is not finer (accepted: above 0, below 0.005)"),
-    ("scene = '" + "x" * 300 + "'\n[product]\nspeed = [1]", "no such scene"),
+    ("scene = '" + "x" * 300 + "'\n[product]\nspeed = [1]", "cannot be read: File name too long"),
     ("[product]\nspeed = [1, 2]\nnu = [0.1, 0.2]\n[figure]\nx = 'speed'\ny = 'impulse'", "speed does not tell the points apart"),
     ("[product]\nspeed = [1]\n[figure]\nx = 'speed'\ny = 'impulse'\nby = 'speed'", "does not tell the points apart"),
     ("[product]\nspeed = [1]\n[figure]\nx = ['speed']\ny = 'impulse'", "x = ['speed'] (accepted: speed)"),
