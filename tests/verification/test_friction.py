@@ -11,7 +11,8 @@ from test_disc import mirrored
 
 COARSE = dict(accuracy=0.05)
 RUBBING = dict(friction_static=0.7, friction_dynamic=0.5)
-OBLIQUE = dict(law="neohookean", speed=12, angle=60) | RUBBING | COARSE   # the paper's case (3.1), on a coarse mesh
+RUBBING_COARSE = dict(accuracy=0.2)      # the same mesh and steps: with friction a quarter of the accuracy is worked for
+OBLIQUE = dict(law="neohookean", speed=12, angle=60) | RUBBING | RUBBING_COARSE   # the paper's case (3.1), on a coarse mesh
 MASS = 1722 * math.pi * 0.05**2
 
 
@@ -84,8 +85,9 @@ def test_coefficients_of_zero_are_no_friction(disc, angle):
 
 def test_friction_fades_with_its_coefficient(disc):
     """With a coefficient of 1e-6 the impact is the frictionless one but for 1e-5, and loses 1e-6 of the impulse along the plane."""
-    settings = COARSE | dict(law="neohookean", speed=6, angle=60)
-    without, little = disc(**settings).summary, disc(friction_static=1e-6, friction_dynamic=1e-6, **settings).summary
+    settings = dict(law="neohookean", speed=6, angle=60)
+    without = disc(**settings | COARSE).summary
+    little = disc(friction_static=1e-6, friction_dynamic=1e-6, **settings | RUBBING_COARSE).summary
     for name in ("contact_time", "impulse", "rebound_vy", "peak_force"):
         assert little[name] == pytest.approx(without[name], rel=1e-5), name
     assert without["rebound_vx"] - little["rebound_vx"] == pytest.approx(1e-6 * little["impulse"] / MASS, rel=0.01)
@@ -165,7 +167,7 @@ def test_explicit_steps_agree(disc):
 def test_explicit_step_too_large_for_the_friction_is_refused(disc):
     """A step that is stable without friction but not with it is refused with the limit, rather than run on in chatter."""
     settings = OBLIQUE | dict(penalty=1e9, integrator="central-difference", dt=4e-6, end_time=1e-4)
-    assert disc(**settings | dict(friction_static=0, friction_dynamic=0)).summary["energy_drift"] < 1e-3
+    assert disc(**settings | dict(friction_static=0, friction_dynamic=0) | COARSE).summary["energy_drift"] < 1e-3
     with pytest.raises(Failure, match="dt: 4e-06 is beyond the stability limit of central-difference"):
         disc(slip_velocity=0.01, **settings)
 
