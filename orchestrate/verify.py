@@ -247,7 +247,7 @@ CASES = (
          note="v/c = 8·10⁻⁴, steps of half an element's transit. A second-order scheme smears the front over h^(2/3): the order "
               "to expect. The stress is the mean of the middle 80 % of the contact."),
     Case("V5", "clamped rod against a wall: contact in [1, 2], stress 1/2, period 3, energy 1/8", "element size / length", 0.01,
-         rods, note="Compressed by 5·10⁻⁵ and let go, scaled back to the linear rod; the finite strain leaves 5·10⁻⁵ in the energy."
+         rods, note="Compressed by 5·10⁻⁵, let go, scaled back to the linear rod; the finite strain leaves 5·10⁻⁵ in the energy."
                     " Penalty 1000 E/L. Mean stress: impulse over contact time; middle: t in [1.1, 1.9]."),
     Case("V6", "cylinder pressed on a plane: Hertz", "element size / b", 0.02, cylinder, beside=ellipse,
          note="b/R = 0.005, neo-Hookean, ν = 0.3, penalty 10 E*/h; b and p₀ are those of the ellipse fitted to the tractions at "
@@ -255,7 +255,7 @@ CASES = (
     Case("V8", "rigid body on the penalty: depth and contact time", "time step [s]", 0.01, rigids,
          note="E = 10¹² Pa; the depth is the largest at the steps. m = 1.5 and 2 besides m = 1."),
     Case("V9", "stiff block: sliding to a stop, starting to slide, creeping", "time step [s]", 0.01, block,
-         note="The slip velocity goes with the step. The block is set down in the equilibrium of a rigid one; its weight shortens "
+         note="The slip velocity goes with the step. The block starts in the equilibrium of a rigid one; its weight shortens "
               "it by 0.5 % of the penetration, it vibrates, and its normal load with it: by that the start and the creep are off "
               "once the step resolves it."),
     Case("V10", "stiff oblique disc: sliding throughout, rolling", "penalty × radius / E", 0.03, oblique,
