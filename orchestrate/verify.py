@@ -403,7 +403,7 @@ def draw_errors(axes: plt.Axes, case: Case, rows: list[Row]) -> None:
         sizes = np.array([row.size for row in line])
         errors = 0.6 * min(row.error / row.size**order for row in line) * sizes**order
         axes.loglog(sizes, errors, color=GREY, linewidth=1)
-        axes.annotate(f"order {order:.2g}", (sizes[-2], errors[-2]), (3, -3), textcoords="offset points", color="#666666",
+        axes.annotate(f"order {order:.2g}", (sizes[-1], errors[-1]), (4, -2), textcoords="offset points", color="#666666",
                       ha="left", va="top", bbox=dict(facecolor="white", edgecolor="none", alpha=0.8, pad=1))
     if not case.by_order:
         axes.axhline(case.tolerance, color=BLACK, linestyle="--", linewidth=0.8, label="asked of the finest")
