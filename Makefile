@@ -5,7 +5,7 @@ READY := .venv/.ready
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup disc-normal disc-oblique disc-rolling friction-laws oblique contact-time-svk law-comparison contact-time-neohookean calibrate stick-slip verify paper movie test stress bench refine refine-oblique clean
+.PHONY: help setup disc-normal disc-oblique disc-rolling friction-laws oblique contact-time-svk law-comparison contact-time-neohookean calibrate stick-slip verify paper movie test stress bench bench-quick textbook skipping costs refine refine-oblique clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
@@ -42,8 +42,9 @@ stick-slip: $(READY) ## search for the paper's order of sliding and sticking ove
 verify: $(READY) ## exact solutions with convergence: bar, rod, Hertz, rigid bodies, friction, manufactured motions
 	@$(PYTHON) -m orchestrate $@ $(ARGS)
 
+paper: override ARGS :=
 paper: disc-normal disc-oblique disc-rolling friction-laws $(SWEEPS) stick-slip verify ## all of the above, and results/paper/report.html
-	@$(PYTHON) -m orchestrate $@ $(ARGS)
+	@$(PYTHON) -m orchestrate $@
 
 movie: CASE := disc-oblique
 movie: $(READY) ## a film of a scene: make movie CASE=disc-oblique
@@ -52,10 +53,18 @@ movie: $(READY) ## a film of a scene: make movie CASE=disc-oblique
 test: $(READY) ## run all tests
 	@$(PYTHON) -m pytest -q tests $(ARGS)
 
-stress bench refine: $(READY)
+stress: $(READY) ## hard parameter sets: every combination of some, and hundreds drawn from all; which hold, which fail and why
+	@$(PYTHON) -m orchestrate stress $(ARGS)
+	@$(PYTHON) -m orchestrate stress-map
+
+bench textbook skipping costs refine: $(READY)
 	@$(PYTHON) -m orchestrate $@ $(ARGS)
-stress: ## run hard parameter sets and report which of them hold
-bench: ## time the program, at equal error
+bench: ## run time against error: meshes, steps, integrators, and other programs where installed
+bench-quick: $(READY) ## the same for one case, coarse
+	@$(PYTHON) -m orchestrate bench --quick $(ARGS)
+textbook: ## seconds a step beside a plain textbook script
+skipping: ## what each saving saves, and that it does not change the answer
+costs: ## where the time goes, its floor, and how it grows with the mesh
 refine: ## refine mesh and step, report the observed convergence
 refine-oblique: $(READY) ## the same for the oblique disc, with the slip velocity down to 0.01 m/s
 	@$(PYTHON) -m orchestrate refine disc-oblique $(ARGS)

@@ -1,4 +1,4 @@
-"""Command line: python -m orchestrate run|compare|list|parameters|figures|movie|friction-laws|stick-slip|sweep|verify|paper|stress|bench|refine."""
+"""Command line: python -m orchestrate COMMAND; the commands are listed by --help."""
 
 import argparse
 import importlib
@@ -9,7 +9,8 @@ from pathlib import Path
 
 from .failure import BadInput, Failure, Unreadable
 
-OWN_MAIN = ("compare", "movie", "friction-laws", "stick-slip", "sweep", "verify", "paper", "stress", "bench", "refine")   # modules with a main(argv)
+OWN_MAIN = ("compare", "movie", "friction-laws", "stick-slip", "sweep", "verify", "paper", "stress", "stress-map", "bench", "textbook",
+            "skipping", "costs", "promise", "refine")   # modules with a main(argv)
 
 
 def main(argv: list[str]) -> int:
@@ -58,7 +59,9 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument("--set", metavar="NAME=VALUE", nargs="+", action="extend", default=[], help="set a parameter (see parameters)")
     command.add_argument("--out", metavar="DIR", type=Path, help="the result folder (default: results/SCENE)")
     command.add_argument("--mesh", metavar="FILE", type=Path, help="a mesh in FreeFEM's .msh format, instead of our own")
-    command.add_argument("--force", action="store_true", help="run again even if the result is there")
+    command.add_argument("--checkpoint-every", metavar="STEPS",
+                         help="make a checkpoint every so many steps; a run that is killed goes on from the last when called again")
+    command.add_argument("--force", action="store_true", help="run again, from the start, even if the result is there")
     command.add_argument("--quiet", action="store_true", help="no progress, no report")
     command.set_defaults(command=_run)
 
@@ -74,7 +77,10 @@ def _parser() -> argparse.ArgumentParser:
 
 def _run(options: argparse.Namespace) -> None:
     from . import parameters, report, run, scene
-    result = run.run(scene.load(options.scene), parameters.overrides(options.set), options.out, mesh_file=options.mesh,
+    given = parameters.overrides(options.set)
+    if options.checkpoint_every:
+        given["checkpoint_every"] = options.checkpoint_every
+    result = run.run(scene.load(options.scene), given, options.out, mesh_file=options.mesh,
                      force=options.force, progress=not options.quiet and sys.stderr.isatty())
     if not options.quiet:
         print(report.report(result))

@@ -1,116 +1,247 @@
-"""Seconds a step of the program and of the plain textbook script tests/oracle/textbook.edp: same mesh, step and answers."""
+"""Run time against error: many settings of a case on one core, the errors of their answers against our finest runs, and which
+setting is cheapest for 5 %, 1 % and 0.1 %. Other programs on the same problem, where they are installed (peers.py)."""
 
 import argparse
-import resource
-import statistics
+import itertools
 from dataclasses import dataclass
 from pathlib import Path
 
+import matplotlib.pyplot as plt
+import numpy as np
 import pandas as pd
 
-from . import freefem, mesh, run, scene, study
-from .failure import Failure
-from .parameters import ROOT
-from .run import shown
+from . import mesh, peers, scene, study, textbook
+from .figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE
+from .parameters import ROOT, defaults
+from .run import read_history, shown
+from .sweep_figures import distance
 
-DT = 2e-5                   # s
-OURS = 3                    # runs of the program at least: they are short, and a busy neighbour shows
-ASKED = 40                  # times as fast as the textbook
-TEXTBOOK = "../tests/oracle/textbook"
+LEVELS = (5.0, 1.0, 0.1)    # % of error
+LIMIT = 600.0               # seconds a run may take
+# Other programs: program, form, mesh factor, dt [s]. Their coarse settings are the cheap ones for 0.5 %.
+PEERS = [(program, form, factor, dt) for program, form in (("ngsolve", "tuned"), ("ngsolve", "plain"), ("getfem", "plain"), ("textbook", "FreeFEM"))
+         for factor, dt in ((2, 1e-4), (1, 1e-4), (1, 5e-5), (1, 2e-5))]
+PEERS_QUICK = [("ngsolve", "tuned", 1, 1e-4), ("textbook", "FreeFEM", 2, 1e-4)]
+BULK, CONTACT = mesh.sizes_from_accuracy(defaults()["accuracy"], defaults()["radius"])   # [m], the default sizes
 
 
 @dataclass(frozen=True)
 class Case:
-    """A mesh of half the disc, and how much of the impact both run on it [s]."""
+    """A scene, what is set in it, the answers that are judged, and which share of the accuracy its mesh and steps get."""
 
-    mesh_size: float
-    end_time: float
+    scene: str
+    base: study.Point
+    answers: tuple[str, ...]
+    finer: float = 1.0
 
 
-CASES = (Case(4.4e-3, 5.2e-3),   # about 2,300 dofs
-         Case(2.1e-3, 5.2e-3))   # about 9,000 dofs: the textbook takes some ten minutes
-QUICK = (Case(1.25e-2, 2e-4),)
+CASES = {
+    "normal-svk": Case("disc-normal", {"law": "svk"}, ("impulse", "rebound_vy", "contact_time")),
+    "normal-neohookean": Case("disc-normal", {"law": "neohookean"}, ("impulse", "rebound_vy", "contact_time")),
+    "oblique-neohookean": Case("disc-oblique", {"law": "neohookean"}, ("impulse", "rebound_vx", "rebound_vy", "spin", "friction_work", "contact_time"), 4.0),
+}
 
 
 def main(argv: list[str]) -> int:
-    """Times both, one process at a time, and prints them side by side; 0 if every ratio is at least ASKED."""
+    """Runs all settings one after the other, writes bench.csv, a figure a case and bench.md; 0 if the references are sound."""
     parser = argparse.ArgumentParser(prog="python -m orchestrate bench", description=__doc__)
-    parser.add_argument("--runs", metavar="N", type=int, default=1, help="runs of each, of which the median counts")
-    parser.add_argument("--small", action="store_true", help="the smaller mesh only: two minutes instead of twelve")
-    parser.add_argument("--quick", action="store_true", help="a tiny case: a look at the table, not at the ratio")
+    parser.add_argument("cases", metavar="CASE", nargs="*", default=list(CASES), help=f"(default: {' '.join(CASES)})")
+    parser.add_argument("--quick", action="store_true", help="the first case, coarse settings only, a coarser reference; under three minutes")
     parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/bench", help="the result folder")
     options = parser.parse_args(argv)
-    out = options.out.resolve()
-    runs = max(1, options.runs)
-    rows = pd.DataFrame([compare(case, out, runs) for case in (QUICK if options.quick else CASES[:1] if options.small else CASES)])
-    study.save(rows, out / "bench.csv")
-    print(report(rows, runs))
-    print(f"\n{shown(out)}/bench.csv")
-    return 0 if (rows.ratio >= ASKED).all() else 1
+    for name in options.cases:
+        if name not in CASES:
+            parser.error(f"'{name}' is not known (accepted: {', '.join(CASES)})")
+    out, tables, pages = options.out.resolve(), [], []
+    cases = options.cases[:1] if options.quick else options.cases
+    for name in cases:
+        rows, bars = measure(name, out, options.quick)
+        draw(name, rows, bars, out / f"{name}.png")
+        tables.append(rows)
+        pages.append(page(name, rows, bars))
+    study.save(pd.concat(tables), out / "bench.csv")
+    text = HEAD + "\n\n".join(pages) + "\n"
+    with study.complete(out / "bench.md") as part:
+        part.write_text(text)
+    print(text + f"\n{shown(out)}/bench.csv, bench.md, " + ", ".join(f"{name}.png" for name in cases))
+    return 0
 
 
-def compare(case: Case, out: Path, runs: int) -> dict:
-    """A row: both programs on one mesh, their seconds a step (medians), answers and energy drifts."""
-    out.mkdir(parents=True, exist_ok=True)
-    path = out / f"half-disc-{case.mesh_size:g}.msh"
-    wanted = scene.load("disc-normal").override({"dt": DT, "end_time": case.end_time, "fields": 0})
-    mesh.write(mesh.disc(wanted.values["radius"], case.mesh_size, case.mesh_size / 2, half=True), path)
-    ours = [timed(wanted, out / "runs" / path.stem, path) for _ in range(max(runs, OURS))]
-    theirs = [textbook(wanted, path) for _ in range(runs)]
-    if theirs[0]["dofs"] != ours[0]["dofs"]:
-        raise Failure(f"bench: not the same problem: {ours[0]['dofs']} and {theirs[0]['dofs']} dofs")
-    row = {"mesh_size": case.mesh_size, "end_time": case.end_time, "dofs": ours[0]["dofs"]}
-    for name, results in (("ours", ours), ("textbook", theirs)):
-        last = results[-1]
-        seconds = statistics.median(_marching(result) / result["steps"] for result in results)
-        row |= {f"steps_{name}": last["steps"], f"iterations_{name}": last["newton_iterations"],
-                f"seconds_a_step_{name}": seconds, f"impulse_{name}": last["impulse"],
-                f"rebound_vy_{name}": last["rebound_vy"], f"energy_drift_{name}": last["energy_drift"]}
-    return row | {"ratio": row["seconds_a_step_textbook"] / row["seconds_a_step_ours"]}
+HEAD = """# Run time against error
+One process, one thread; seconds are processor time of the whole process, meshing in FreeFEM and start-up included. Errors are
+relative to the mean of our two finest runs; ± is half their difference, and no error below it is known. The force error is the L2
+norm over time of the difference of the force histories over that of the reference.
+
+"""
 
 
-def timed(wanted: scene.Scene, folder: Path, mesh_file: Path) -> dict:
-    """The summary of a run of ours, with wall_seconds replaced by FreeFem++'s processor time, the clock of the textbook."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    summary = run.run(wanted, out=folder, mesh_file=mesh_file, force=True, pictures=False).summary
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return summary | {"wall_seconds": after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime}
+# ---- the settings
+
+def settings(case: Case, quick: bool) -> dict[str, list[study.Point]]:
+    """Points by family, from coarse to fine."""
+    adaptive = lambda values, **given: [{"accuracy": min(0.2, case.finer * a)} | given for a in values]   # noqa: E731
+    if quick:
+        return {"adaptive, P2": adaptive((0.1, 0.05, 0.02, 0.01, 0.005)), "adaptive, P1": adaptive((0.02, 0.005), degree=1),
+                "fixed step, P2": [sized(1, dt=1e-4), sized(1, dt=4e-5)],
+                "midpoint": adaptive((0.02, 0.005), integrator="midpoint"), "bdf2": adaptive((0.02, 0.005), integrator="bdf2")}
+    found = {
+        "adaptive, P2": adaptive((0.05, 0.02, 0.01, 0.005, 0.0025, 0.00125)),
+        "adaptive, P1": adaptive((0.02, 0.005, 0.00125, 0.0005), degree=1),
+        "fixed step, P2": [sized(factor, dt=dt) for factor, dt in ((2, 1e-4), (2, 5e-5), (1, 1e-4), (1, 5e-5), (1, 2e-5), (0.5, 2e-5))],
+        "fixed step, P1": [sized(factor, dt=dt, degree=1) for factor, dt in ((1, 5e-5), (0.5, 5e-5), (0.5, 2e-5))],
+    }
+    for integrator in ("midpoint", "newmark", "backward-euler", "bdf2"):
+        found[integrator] = adaptive((0.02, 0.005, 0.00125), integrator=integrator)
+    if case.finer == 1:   # with friction explicit steps are far too small (README)
+        found["central-difference"] = adaptive((0.02, 0.005), integrator="central-difference")
+    return found
 
 
-def _marching(result: dict) -> float:
-    """Seconds without the set-up: meshes and operators, once a run."""
-    return result["wall_seconds"] - result.get("phase_seconds", {}).get("setup", 0)
+def sized(factor: float, **given) -> study.Point:
+    """A mesh of `factor` times the default sizes."""
+    return {"mesh_size": factor * BULK, "contact_mesh_size": factor * CONTACT} | given
 
 
-def textbook(wanted: scene.Scene, mesh_file: Path) -> dict:
-    """Runs the textbook script; what it prints, under the names of summary.json. Seconds: processor time without set-up."""
-    program, log = freefem.find(), mesh_file.with_suffix(".log")
-    flags = [text for name, value in wanted.values.items() for text in (f"-{name}", str(value))]
-    code = freefem.run(program, TEXTBOOK, [*flags, "-mesh", str(mesh_file)], log)
-    said = log.read_text().strip().splitlines()
-    words = said[-1].split() if said else []
-    if code != 0 or words[:1] != ["textbook"]:
-        raise Failure(f"bench: the textbook script ended with exit code {code}; its output is in {shown(log)}")
-    names = ("dofs", "steps", "newton_iterations", "wall_seconds", "impulse", "rebound_vy", "contact_end", "energy_drift")
-    return dict(zip(names, map(float, words[1:])))
+def references(case: Case, quick: bool) -> list[study.Point]:
+    """The two finest runs: by accuracy, and by mesh and step."""
+    if quick:
+        return [{"accuracy": 0.0025}, sized(0.7, dt=2e-5)]
+    return [{"accuracy": 0.0006 * case.finer}, sized(0.4, dt=6e-6)]
 
 
-def report(rows: pd.DataFrame, runs: int) -> str:
-    """Both programs a mesh, the ratio, the difference of the answers, and the verdict."""
-    lines = []
-    for _, row in rows.iterrows():
-        both = pd.DataFrame([{"program": name} | {key: row[f"{key}_{name}"] for key in (
-            "steps", "iterations", "seconds_a_step", "impulse", "rebound_vy", "energy_drift")} for name in ("ours", "textbook")])
-        lines += [f"{row.dofs:.0f} dofs, dt = {DT:g} s, the first {1e3 * row.end_time:g} ms",
-                  study.table(both, {"program": "", "steps": ".0f", "iterations": ".0f", "seconds_a_step": ".5f", "impulse": ".8g",
-                                     "rebound_vy": ".8g", "energy_drift": ".1e"}),
-                  f"ratio {row.ratio:.1f}; the answers differ by {_off(row, 'impulse'):.1e} (impulse) and "
-                  f"{_off(row, 'rebound_vy'):.1e} (velocity)\n"]
-    lines.append(f"medians of {max(runs, OURS)} runs (ours) and {runs} (textbook), one process at a time, one thread, without "
-                 f"set-up; processor time of FreeFem++\n"
-                 f"the ratio is {'' if (rows.ratio >= ASKED).all() else 'NOT '}at least {ASKED} on every mesh")
+# ---- the measurement
+
+def measure(name: str, out: Path, quick: bool) -> tuple[pd.DataFrame, dict[str, float]]:
+    """A row a setting: case, family, its parameters, seconds, and the errors in % of every answer and of the force history; and the
+    error bars of the reference in %."""
+    case, folder = CASES[name], out / name
+    families = settings(case, quick)
+    labels = [(family, point) for family, points in families.items() for point in points]
+    wanted = references(case, quick)
+    rows = study.study(wanted + [point for _, point in labels], folder, {"fields": 0} | case.base, LIMIT, case.scene, cores=1)
+    fine, rows = rows[:2], rows[2:].reset_index(drop=True)
+    if fine.exit.any():
+        raise study.Failure(f"bench: the reference of {name} failed: {fine.message[fine.exit != 0].iloc[0]}", int(fine.exit.max()))
+    histories = [_force(study.place(folder, point)) for point in wanted]
+    best = fine[list(case.answers)].mean()
+    bars = {answer: 50 * abs(fine[answer].iloc[0] - fine[answer].iloc[1]) / abs(best[answer]) for answer in case.answers}
+    bars["force"] = 100 * distance(*histories)
+    found = pd.DataFrame({"case": name, "program": "ffimpact", "family": [family for family, _ in labels],
+                          "setting": [_words(point) for _, point in labels], "dofs": rows.dofs, "steps": rows.steps,
+                          "seconds": rows.cpu_seconds, "exit": rows.exit, "message": rows.message})
+    for answer in case.answers:
+        found[f"{answer}_error"] = 100 * (rows[answer] / best[answer] - 1).abs()
+    found["force_error"] = [100 * distance(histories[0], _force(study.place(folder, point))) if code == 0 else np.nan
+                            for (_, point), code in zip(labels, rows.exit)]
+    if name == "normal-svk":
+        found = pd.concat([found, _peers(best, histories[0], out / "peers", quick).assign(case=name)], ignore_index=True)
+    return found, bars
+
+
+def _force(folder: Path) -> tuple[np.ndarray, np.ndarray]:
+    """(t, force): the step's mean normal force at the middle of the step."""
+    history = read_history(folder)
+    return history["t"] - history["dt"] / 2, history["normal_force"]
+
+
+def _words(point: study.Point) -> str:
+    sizes = f"h = {1e3 * point['mesh_size']:.3g} mm" if "mesh_size" in point else ""
+    rest = [f"{key} {value:g}" for key, value in point.items() if key in ("accuracy", "dt")]
+    return ", ".join(filter(None, [sizes, *rest]))
+
+
+def _peers(best: pd.Series, force: tuple[np.ndarray, np.ndarray], out: Path, quick: bool) -> pd.DataFrame:
+    """The same rows for the other programs: one with the reason for each that is not installed or failed."""
+    rows = []
+    for program, form, factor, dt in (PEERS_QUICK if quick else PEERS):
+        sizes = sized(factor)
+        history = out / f"{program}-{form}-{factor:g}-{dt:g}.csv"
+        history.parent.mkdir(parents=True, exist_ok=True)
+        row = {"program": f"{program}, {form}", "family": f"{program}, {form}", "setting": _words(sizes | {"dt": dt}), "exit": 1}
+        if program == "textbook":
+            found, reason = _textbook(sizes, dt, out), ""
+        else:
+            found, reason = peers.run(program, form, sizes["mesh_size"], sizes["contact_mesh_size"], dt, LIMIT, history=str(history))
+        if found:
+            row |= {"exit": 0, "dofs": found["dofs"], "steps": found["steps"], "seconds": found["cpu_seconds"]}
+            row |= {f"{answer}_error": 100 * abs(found[answer] / best[answer] - 1) for answer in ("impulse", "rebound_vy", "contact_time")
+                    if answer in found}
+            if history.exists():
+                t, values = np.loadtxt(history, delimiter=",", skiprows=1).T
+                row["force_error"] = 100 * distance(force, (t - dt / 2, values))
+        rows.append(row | {"message": reason})
+    return pd.DataFrame(rows)
+
+
+def _textbook(sizes: study.Point, dt: float, out: Path) -> dict:
+    """The textbook FreeFEM script on our mesh of these sizes."""
+    wanted = scene.load("disc-normal").override(sizes | {"dt": dt, "end_time": 5.2e-3})
+    path = out / f"textbook-{sizes['mesh_size']:g}.msh"
+    mesh.write(mesh.disc(wanted.values["radius"], sizes["mesh_size"], sizes["contact_mesh_size"], half=True), path)
+    found = textbook.textbook(wanted, path)
+    return found | {"contact_time": found["contact_end"]}
+
+
+# ---- the page
+
+def errors(name: str) -> dict[str, str]:
+    """Columns of the errors of a case, with their words."""
+    return {f"{answer}_error": answer.replace("_", " ") for answer in CASES[name].answers} | {"force_error": "force history (L2)"}
+
+
+def page(name: str, rows: pd.DataFrame, bars: dict[str, float]) -> str:
+    """The case as markdown: the cheapest setting for each level and answer, then all settings."""
+    columns = errors(name)
+    lines = [f"## {name}", f"![error over time]({name}.png)", "",
+             "reference ± [%]: " + ", ".join(f"{words} {bars[column.removesuffix('_error')]:.2g}" for column, words in columns.items()), "",
+             "Cheapest setting [s of processor time]:", ""]
+    cheap = []
+    for column, words in [*columns.items(), ("all", "impulse and rebound together")]:
+        row = {"answer": words}
+        for level in LEVELS:
+            row[f"{level:g} %"] = cheapest(rows, [column] if column != "all" else [c for c in columns if "impulse" in c or "rebound" in c], level)
+        cheap.append(row)
+    lines += [study.table(pd.DataFrame(cheap), dict.fromkeys(cheap[0], "")), "", "All settings; errors in %:", ""]
+    shown_rows = rows.rename(columns={column: words for column, words in columns.items()})
+    lines.append(study.table(shown_rows, {"family": "", "setting": "", "dofs": ".0f", "steps": ".0f", "seconds": ".2f"}
+                             | dict.fromkeys(columns.values(), ".3g")))
+    failed = rows[rows.exit != 0]
+    lines += [f"- {row.family} {row.setting}: {row.message}" for row in failed.itertuples()]
     return "\n".join(lines)
 
 
-def _off(row: pd.Series, answer: str) -> float:
-    return abs(row[f"{answer}_ours"] / row[f"{answer}_textbook"] - 1)
+def cheapest(rows: pd.DataFrame, columns: list[str], level: float) -> str:
+    """The setting of ours that reaches the level in all `columns` in the least time, and the other programs' beside it."""
+    good = rows[(rows.exit == 0) & (rows[columns] <= level).all(axis=1)].sort_values("seconds")
+    parts = [f"{row.seconds:.2f} s: {row.family}" + f", {row.setting}" * bool(row.setting)
+             for row in good.drop_duplicates("program").itertuples()]
+    return "; ".join(parts) or "none"
+
+
+def draw(name: str, rows: pd.DataFrame, bars: dict[str, float], path: Path) -> None:
+    """A panel an answer: error [%] over processor time [s], a line a family; grey: below the error bar of the reference."""
+    columns = errors(name)
+    styles = itertools.product(("-", "--", ":"), (BLUE, ORANGE, GREEN, PURPLE, BLACK))
+    looks = {family: style for family, style in zip(rows.family.unique(), styles)}
+    with plt.rc_context(STYLE):
+        wide = 2 if len(columns) <= 4 else 3
+        figure, grid = plt.subplots(-(-len(columns) // wide), wide, figsize=(4.2 * wide, 3.2 * -(-len(columns) // wide)), squeeze=False, sharex=True)
+        for axes in grid.flat[len(columns):]:
+            axes.set_axis_off()
+        for axes, (column, words) in zip(grid.flat, columns.items()):
+            for family, group in rows[rows.exit == 0].groupby("family", sort=False):
+                line, colour = looks[family]
+                group = group.sort_values("seconds")
+                axes.loglog(group.seconds, group[column].clip(lower=1e-4), color=colour, linestyle=line, marker="os^"[("-", "--", ":").index(line)],
+                            markersize=3.5, linewidth=1.1, label=family)
+            axes.axhspan(1e-4, max(1e-4, bars[column.removesuffix("_error")]), color=GREY, alpha=0.25, linewidth=0)
+            axes.set(title=words, ylabel="error [%]")
+            axes.grid(alpha=0.3)
+        for axes in grid[-1]:
+            axes.set_xlabel("processor time [s]")
+        law = CASES[name].base["law"]
+        figure.suptitle(f"{CASES[name].scene}, {LAWS[law]}; grey: below the error bar of the reference", fontsize=9)
+        figure.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
+        with study.complete(path) as part:
+            figure.savefig(part)
+        plt.close(figure)

@@ -8,7 +8,6 @@ its last digit.
 import argparse
 import base64
 import json
-import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from datetime import datetime
@@ -18,14 +17,15 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from . import parameters, run, stick_slip, study, sweep, sweep_figures, verify
+from . import parameters, run, scene, stick_slip, study, sweep, sweep_figures, verify
 from .failure import Failure, Unreadable
 from .parameters import ROOT, Value
 from .run import shown
 
 AGREES, DIFFERS, PARTLY, OPEN = "agrees", "does not agree", "partly", "not yet in this program"
 COLOURS = {AGREES: "#009e73", DIFFERS: "#d55e00", PARTLY: "#b8860b", OPEN: "#777777"}
-RUNS = ("disc-normal", "disc-oblique", "disc-oblique-svk", "disc-rolling")
+RUNS = {"disc-normal": ("energies",), "disc-oblique": ("flight", "force", "rolling", "energies"), "disc-oblique-svk": ("force",),
+        "disc-rolling": ("rolling",)}            # and the pictures of them on the page
 TARGETS = {"disc-oblique-svk": "disc-oblique"}   # the make target of a case, where it is not the case's own name
 OUTSIDE = 1e-9              # of the energy at the start: below, an energy is constant
 
@@ -81,43 +81,43 @@ class Results:
         return self.folder / "sweeps" / name
 
     def table(self, name: str) -> pd.DataFrame:
-        """The points of a sweep that finished."""
-        rows = pd.read_csv(self.sweep(name) / "sweep.csv")
-        return rows[rows.exit == 0]
+        """The points of a sweep, from its runs."""
+        return sweep.table(sweep.load(name), self.sweep(name))
 
     def sweep_runs(self, name: str) -> list[Path]:
         """The folders of the runs of a sweep."""
         return [study.place(self.sweep(name), point) for point in sweep.load(name).runs]
 
     def require(self) -> None:
-        """Failure with one line that names every make target without whose result the page has a hole."""
-        code, missing = run.code_hash(), {}
-        for name in RUNS:
-            self._look(self.run(name) / "summary.json", code, TARGETS.get(name, name), missing)
+        """Failure with one line that names every make target whose result is missing, or of another scene or other code."""
+        missing: dict[str, None] = {}
+        for name, pictures in RUNS.items():
+            there = self._holds([(self.run(name), scene.load(name))])
+            if not there or not all((self.run(name) / f"figures/{picture}.png").exists() for picture in pictures):
+                missing[TARGETS.get(name, name)] = None
         for name in sweep.built_in():
-            place = self.sweep(name)
-            if not (place / "sweep.png").exists() or not (place / "sweep.csv").exists():
-                missing.setdefault(name, "is missing")
-            elif (place / "sweep.toml").read_text() != sweep.load(name).text:
-                missing.setdefault(name, "is of another sweep file")
-            else:
-                for folder in self.sweep_runs(name):
-                    if not (folder / "failure.json").exists():
-                        self._look(folder / "summary.json", code, name, missing)
-        for path in (self.folder / "friction-laws/friction-laws.png", self.folder / "stick-slip/stick-slip.csv"):
-            if not path.exists():
-                missing[path.parent.name] = "is missing"
-        self._look(self.folder / "verify/summary.json", code, "verify", missing)
+            wanted, place = sweep.load(name), self.sweep(name)
+            base = scene.load(wanted.scene).override(wanted.base)
+            runs = [(study.place(place, point), base.override(point)) for point in wanted.runs]
+            if not (place / "sweep.png").exists() or not self._holds(runs):
+                missing[name] = None
+        place, base = self.folder / "stick-slip", scene.load(stick_slip.SCENE).override(stick_slip.BASE)
+        runs = [(study.place(place, point), base.override(point)) for point in stick_slip.grid(stick_slip.AXES)]
+        if not all((place / f"stick-slip.{kind}").exists() for kind in ("csv", "png")) or not self._holds(runs):
+            missing["stick-slip"] = None
+        picture, laws = self.folder / "friction-laws/friction-laws.png", (ROOT / "edp/core/friction.idp", ROOT / "edp/friction-laws.edp")
+        if not picture.exists() or any(picture.stat().st_mtime < law.stat().st_mtime for law in laws):
+            missing["friction-laws"] = None
+        if not verify.there(self.folder / "verify"):
+            missing["verify"] = None
         if missing:
-            raise Failure("paper: " + ", ".join(f"{name} {why}" for name, why in missing.items())
-                          + f"; run: make {' '.join(missing)}   (or: make paper)", Unreadable("").code)
+            raise Failure(f"paper: no results of the present scenes and code for {', '.join(missing)}; run: make {' '.join(missing)}   "
+                          "(or: make paper)", Unreadable("").code)
 
     @staticmethod
-    def _look(path: Path, code: str, target: str, missing: dict[str, str]) -> None:
-        if not path.exists():
-            missing.setdefault(target, "is missing")
-        elif json.loads(path.read_text())["provenance"].get("code") != code:
-            missing.setdefault(target, "was made with other code")
+    def _holds(runs: list[tuple[Path, scene.Scene]]) -> bool:
+        """Whether every folder holds the outcome of its scene, by the present code."""
+        return all(study.there(folder, wanted) for folder, wanted in runs)
 
 
 # ---- the statements, in the order of the paper
@@ -148,13 +148,13 @@ def friction_laws(results: Results) -> Finding:
 def angles(results: Results) -> Finding:
     """Agrees where for every ν they differ by more than a degree and the error bar."""
     parts, apart = [], []
-    for row in results.table("oblique").itertuples():
+    for row in _finished(results, "oblique").itertuples():
         out = float(np.degrees(np.arctan2(row.rebound_vy, row.rebound_vx)))
         bar = float(np.degrees(np.hypot(row.rebound_vx * row.rebound_vy_error, row.rebound_vy * row.rebound_vx_error)
                                / np.hypot(row.rebound_vx, row.rebound_vy) ** 2))
         parts.append(f"{out:.1f} ± {bar:.1g}° (ν = {row.nu:g})")
         apart.append(abs(out - 60) > 1 + bar)
-    return Finding(AGREES if all(apart) else DIFFERS, f"60° in, {', '.join(parts)} out, from the plane; neo-Hookean.",
+    return Finding(AGREES if apart and all(apart) else DIFFERS, f"60° in, {', '.join(parts)} out, from the plane; neo-Hookean.",
                    [results.run("disc-oblique") / "figures/flight.png"], results.sweep_runs("oblique") + [results.run("disc-oblique")])
 
 
@@ -172,30 +172,28 @@ def oblique_coarse(results: Results) -> Finding:
 @states("Section 3.1", "the same contact time, 0.0045 s, against the converged neo-Hookean disc")
 def oblique_converged(results: Results) -> Finding:
     """Half a unit of the last digit and the error bar, for any of the ν that were run."""
-    rows = results.table("oblique")
-    met = [within(row.contact_time, 4.5e-3, 0.5e-4, row.contact_time_error) for row in rows.itertuples()]
-    text = "; ".join(f"ν = {row.nu:g}: {1e3 * row.contact_time:.2f} ± {1e3 * row.contact_time_error:.2f} ms" for row in rows.itertuples())
-    return Finding(AGREES if all(met) else PARTLY if any(met) else DIFFERS, text + ".", [results.sweep("oblique") / "sweep.png"],
+    rows = _finished(results, "oblique")
+    found = list(zip(rows.nu, rows.contact_time, sweep_figures.bars(rows, "contact_time")))
+    met = [within(time, 4.5e-3, 0.5e-4, bar) for _, time, bar in found]
+    text = "; ".join(f"ν = {nu:g}: {1e3 * time:.2f} ± {1e3 * bar:.2f} ms" for nu, time, bar in found)
+    return Finding(AGREES if met and all(met) else PARTLY if any(met) else DIFFERS, text + ".", [results.sweep("oblique") / "sweep.png"],
                    results.sweep_runs("oblique"))
 
 
 @states("Section 3.1, figure 5a", "the normal force oscillates, by reflections of the impact waves")
 def oscillates(results: Results) -> Finding:
-    """Agrees where the force has several maxima that stand out by more than 2 % of its largest value."""
-    history = results.history("disc-oblique")
-    count = maxima(history["normal_force"], 0.02 * history["normal_force"].max())
-    return Finding(AGREES if count > 1 else DIFFERS, f"{count} maxima that stand out by more than 2 % of the largest force.",
+    """Agrees where the force has several maxima that stand out by more than 5 % of its largest value, on both meshes."""
+    count = min(maxima(history["normal_force"], 0.05 * history["normal_force"].max()) for history in _both(results))
+    return Finding(AGREES if count > 1 else DIFFERS, f"at least {count} maxima that stand out by more than 5 % of the largest force, on two meshes.",
                    [results.run("disc-oblique") / "figures/force.png"], [results.run("disc-oblique")])
 
 
 @states("Section 3.1, figure 5b", "static and dynamic friction alternate: stick and slip")
 def alternates(results: Results) -> Finding:
-    """Agrees where the share of the load that slides rises and falls more than once by over 2 % of the load."""
-    history = results.history("disc-oblique")
-    share = np.where(history["normal_force"] > 0, history["sliding_fraction"], 0)
-    count = maxima(share, 0.02)
-    return Finding(AGREES if count > 1 else DIFFERS, f"the share of the load that slides has {count} maxima that stand out by over 2 % of the load.",
-                   [results.run("disc-oblique") / "figures/rolling.png"], [results.run("disc-oblique")])
+    """Agrees where the share of the load that slides rises and falls more than once by over 5 % of the load, on both meshes."""
+    count = min(maxima(history["sliding_fraction"][history["normal_force"] > 0], 0.05) for history in _both(results))
+    return Finding(AGREES if count > 1 else DIFFERS, f"the share of the load that slides has at least {count} maxima that stand out by over 5 % of the "
+                   "load, on two meshes.", [results.run("disc-oblique") / "figures/rolling.png"], [results.run("disc-oblique")])
 
 
 @states("Section 3.1, figure 6a", "the energy is constant before and after the contact, and falls in it by friction")
@@ -216,25 +214,24 @@ def energy(results: Results) -> Finding:
 
 @states("Section 3.1", "the disc slides first and sticks in about the last third of the contact, in which the energy is constant again")
 def sliding_first(results: Results) -> Finding:
-    """Over the search of ε, k, ν, law and two readings of π/3: agrees where all runs at 60° from the plane do it, partly where some run does."""
+    """Over the search of ε, k, ν, law and two readings of π/3: agrees where all runs at 60° from the plane do both, partly where some run
+    does. Constant energy: at most 5 % of the friction work in the last third."""
     rows = pd.read_csv(results.folder / "stick-slip/stick-slip.csv")
-    parts = []
-    for angle, group in rows.groupby("angle", sort=False):
-        parts.append(f"{int(group['order'].sum())} of {len(group)} runs at {angle:g}° from the plane "
-                     f"({int((group['order'] & group['quiet']).sum())} of them with at most {100 * stick_slip.QUIET:g} % of the friction work in the last third)")
-    share = rows[rows.angle == 60]["order"].mean()
-    verdict = AGREES if share == 1 else PARTLY if rows["order"].any() else DIFFERS
+    rows["both"] = rows["order"] & rows["quiet"]
+    parts = [f"{int(group['order'].sum())} of {len(group)} runs at {angle:g}° from the plane ({int(group['both'].sum())} of them with at most "
+             f"{100 * stick_slip.QUIET:g} % of the friction work in the last third)" for angle, group in rows.groupby("angle", sort=False)]
+    verdict = AGREES if rows[rows.angle == 60]["both"].all() else PARTLY if rows["both"].any() else DIFFERS
     return Finding(verdict, "slides first and sticks last in " + ", and ".join(parts) + ". With 60° from the plane most of the load sticks from the start "
                    "and slips back at the end.", [results.folder / "stick-slip/stick-slip.png"],
-                   [path for path in sorted((results.folder / "stick-slip/runs").iterdir()) if (path / "summary.json").exists()])
+                   [study.place(results.folder / "stick-slip", point) for point in stick_slip.grid(stick_slip.AXES)])
 
 
 @states("Section 3.1", "a disc that impacts and rolls")
 def rolls(results: Results) -> Finding:
     """Agrees where the disc, set down at v₀, ends rolling at 2/3 v₀ within 1 %, as a rigid one."""
-    end, scene = results.summary("disc-rolling"), run.read_scene(results.run("disc-rolling"))
-    ratio = end["rebound_vx"] / scene["speed"]
-    rim = -scene["radius"] * end["spin"] / scene["speed"]
+    end, used = results.summary("disc-rolling"), run.read_scene(results.run("disc-rolling"))
+    ratio = end["rebound_vx"] / used["speed"]
+    rim = -used["radius"] * end["spin"] / used["speed"]
     good = abs(ratio / (2 / 3) - 1) < 0.01 and abs(rim / (2 / 3) - 1) < 0.01
     return Finding(AGREES if good else DIFFERS, f"set down on the plane it comes to roll: centre {ratio:.4f} v₀, rim {rim:.4f} v₀ (rigid: 2/3).",
                    [results.run("disc-rolling") / "figures/rolling.png"], [results.run("disc-rolling")])
@@ -242,8 +239,12 @@ def rolls(results: Results) -> Finding:
 
 @states("Figure 6b", "normal impact, SVK: the contact time falls with the speed in steps, with small rises between")
 def stepped(results: Results) -> Finding:
-    """Agrees where for every ν it falls and has a rise beyond the error bar of its step; partly where only some ν do, or only falls."""
-    return _trend(results, "contact-time-svk", lambda falls, rises, beyond: falls and beyond > 0, 11.0)
+    """Agrees where for every ν it falls and at least two rises exceed twice their error bar; partly where it only falls."""
+    trends, words, runs = _trends(results, "contact-time-svk")
+    falls = all(trend and trend.falls for trend in trends)
+    rises = all(trend and trend.established >= 2 for trend in trends)
+    told = "" if rises else " The rises are not told from the errors."
+    return Finding(AGREES if falls and rises else PARTLY if falls else DIFFERS, words + told, *runs)
 
 
 @states("Figure 7a", "1 m/s: no noticeable difference between the force histories of SVK and neo-Hookean")
@@ -257,7 +258,9 @@ def same_at_low_speed(results: Results) -> Finding:
 @states("Figure 7b", "10 m/s: the contact lasts longer with SVK")
 def longer_at_high_speed(results: Results) -> Finding:
     """Agrees where it does by more than both error bars."""
-    rows = results.table("law-comparison")
+    rows = _finished(results, "law-comparison")
+    if len(rows[rows.speed == 10]) < 2:
+        return Finding(DIFFERS, "one of the runs at 10 m/s failed.", [results.sweep("law-comparison") / "sweep.png"], results.sweep_runs("law-comparison"))
     svk, neo = (rows[(rows.speed == 10) & (rows.law == law)].iloc[0] for law in ("svk", "neohookean"))
     bar = svk.contact_time_error + neo.contact_time_error
     distance, _ = _distance(results, 10)
@@ -269,8 +272,13 @@ def longer_at_high_speed(results: Results) -> Finding:
 
 @states("Figure 8", "normal impact, neo-Hookean: the contact time falls monotonically with the speed")
 def monotone(results: Results) -> Finding:
-    """Agrees where for every ν it falls and no rise exceeds the error bar of its step."""
-    return _trend(results, "contact-time-neohookean", lambda falls, rises, beyond: falls and beyond == 0, 20.0)
+    """Agrees where for every ν it falls and no rise exceeds the error bar of its step; partly where the bars are larger than the
+    steps, so that a rise would not show."""
+    trends, words, runs = _trends(results, "contact-time-neohookean")
+    good = all(trend and trend.falls and trend.beyond == 0 for trend in trends)
+    sharp = all(trend and trend.bar < trend.step for trend in trends)
+    told = "" if sharp else " Many steps are smaller than their error bar: a small rise would not show."
+    return Finding((AGREES if sharp else PARTLY) if good else DIFFERS, words + told, *runs)
 
 
 @states("Section 3.2, figure 9", "a disc on a free block: the disc rebounds, the block moves down, the total energy is constant")
@@ -281,7 +289,7 @@ def block(results: Results) -> Finding:
 @states("Section 3.3", "the 2D disc at 8 m/s: contact time 0.0048 s")
 def disc_time(results: Results) -> Finding:
     """Agrees where some (ν, k) of the map meet it with SVK: the paper states neither."""
-    rows = results.table("calibrate")
+    rows = _finished(results, "calibrate")
     met = sweep_figures.level_set(sweep.load("calibrate").figure, rows[rows.law == "svk"])
     default = results.summary("disc-normal")["contact_time"]
     text = "; ".join(f"ν = {nu:g}: k = {sweep_figures.spans(ranges)}" for nu, ranges in met.items() if ranges)
@@ -320,27 +328,38 @@ def maxima(values: np.ndarray, least: float) -> int:
     return count
 
 
-def _trend(results: Results, name: str, agrees: Callable[[bool, int, int], bool], top: float) -> Finding:
-    """Judges the contact time over the speed, for each ν."""
+def _finished(results: Results, name: str) -> pd.DataFrame:
     rows = results.table(name)
-    verdicts, words = [], []
-    for nu, group in rows[rows.speed <= top].groupby("nu"):
+    return rows[rows.exit == 0]
+
+
+def _both(results: Results) -> list[dict[str, np.ndarray]]:
+    """The histories of the oblique impact for nu = 0.45 with the plain and the refined mesh and step."""
+    wanted, out = sweep.load("oblique"), results.sweep("oblique")
+    return [run.read_history(study.place(out, {"nu": 0.45} | more)) for more in ({}, wanted.refine)]
+
+
+def _trends(results: Results, name: str) -> tuple[list[sweep_figures.Trend | None], str, tuple[list[Path], list[Path]]]:
+    """The contact time over the speed: a trend for each ν of the sweep, all in words, and the picture and the runs."""
+    every = results.table(name)
+    trends, words = [], []
+    for nu, group in every.groupby("nu"):
         trend = sweep_figures.steps_against(group, "speed", "contact_time")
-        verdicts.append(agrees(trend.falls, trend.against, trend.beyond))
+        trends.append(trend)
         words.append(f"ν = {nu:g}: {1e3 * trend.first:.3f} to {1e3 * trend.last:.3f} ms (± {1e3 * trend.typical:.3f} ms rms), {trend.against} of "
-                     f"{trend.steps} steps rise, {trend.beyond} of them beyond their error bar")
-    every = pd.read_csv(results.sweep(name) / "sweep.csv")
-    if (every.exit == 12).any():
-        words.append("the law breaks down at and above " + ", ".join(f"{group.speed.min():g} m/s (ν = {nu:g})" for nu, group in every[every.exit == 12].groupby("nu")))
-    return Finding(AGREES if all(verdicts) else PARTLY if any(verdicts) else DIFFERS, "; ".join(words) + ".",
-                   [results.sweep(name) / "sweep.png"], results.sweep_runs(name))
+                     f"{trend.steps} steps rise, {trend.beyond} of them by more than their error bar, {trend.established} by more than twice"
+                     if trend else f"ν = {nu:g}: too few runs finished")
+    broken = every[every.exit == 12]
+    if len(broken):
+        words.append("the law breaks down at and above " + ", ".join(f"{group.speed.min():g} m/s (ν = {nu:g})" for nu, group in broken.groupby("nu")))
+    return trends, "; ".join(words) + ".", ([results.sweep(name) / "sweep.png"], results.sweep_runs(name))
 
 
 def _distance(results: Results, speed: float) -> tuple[float, float]:
     """Relative L2 difference of the two laws' force histories at a speed, and the error of it."""
     wanted, out = sweep.load("law-comparison"), results.sweep("law-comparison")
-    rows = pd.read_csv(out / "sweep.csv")
-    *_, value, bar = next(iter(sweep_figures.distances(wanted, rows[rows.speed == speed], out)))
+    rows = results.table("law-comparison")
+    *_, value, bar = next(iter(sweep_figures.distances(wanted, rows[rows.speed == speed], out)), (np.nan, np.nan))
     return value, bar
 
 
@@ -413,15 +432,15 @@ def _table(frame: pd.DataFrame, formats: dict[str, str]) -> str:
 
 def _provenance(folders: list[Path]) -> str:
     """Parameters that differ from their defaults, common to all runs and by run, and where the runs come from."""
-    scenes = [tomllib.loads((folder / "scene.toml").read_text()) for folder in folders if (folder / "scene.toml").exists()]
+    scenes = [run.read_scene(folder) for folder in folders if (folder / "scene.toml").exists()]
     if not scenes:
         return ""
     standard = parameters.defaults()
     common = {name: value for name, value in scenes[0].items()
-              if all(scene.get(name) == value for scene in scenes) and (name == "script" or standard.get(name) != value)}
-    varied = {name: sorted({scene.get(name) for scene in scenes}, key=str) for name in scenes[0]
-              if any(scene.get(name) != scenes[0][name] for scene in scenes)}
-    made = [json.loads(path.read_text())["provenance"] for folder in folders
+              if all(used.get(name) == value for used in scenes) and (name == "script" or standard.get(name) != value)}
+    varied = {name: sorted({used.get(name) for used in scenes}, key=lambda value: (isinstance(value, str), value)) for name in scenes[0]
+              if any(used.get(name) != scenes[0][name] for used in scenes)}
+    made = [json.loads(path.read_text()).get("provenance", {}) for folder in folders
             for path in (folder / "summary.json", folder / "failure.json") if path.exists()]
     lines = [f"runs          {len(scenes)}", "parameters    " + ", ".join(f"{name} = {value}" for name, value in common.items())]
     lines += [f"varied        {name}: {_shown(values)}" for name, values in varied.items()]

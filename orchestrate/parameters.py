@@ -1,6 +1,7 @@
 """The parameters of a run, read from THE TABLE of edp/core/parameters.idp: nothing is copied by hand."""
 
 import difflib
+import math
 import re
 from dataclasses import dataclass
 from functools import cache
@@ -12,6 +13,8 @@ ROOT = Path(__file__).resolve().parent.parent
 TABLE = ROOT / "edp/core/parameters.idp"
 
 Value = float | int | str
+
+NOT_DECISIVE = ("checkpoint_every",)   # parameters that do not change the answer
 
 _NUMBER = re.compile(r"[+-]?(\d+(\.\d+)?|\.\d+)([eE][+-]?\d+)?")
 _ROW = re.compile(
@@ -45,9 +48,12 @@ class Parameter:
             return given
         wanted = "a whole number" if self.kind == "int" else "a number"
         is_number = _NUMBER.fullmatch(given) if isinstance(given, str) else type(given) in (int, float)
-        if not is_number or (self.kind == "int" and float(given) % 1 != 0):
+        if not is_number or (self.kind == "int" and not isinstance(given, int) and float(given) % 1 != 0):
             raise BadInput(f"{self.name}: '{given}' is not {wanted} (accepted: {self.accepted})")
-        value = float(given)
+        try:
+            value = float(given)
+        except OverflowError:
+            value = math.inf
         if not self.low <= value <= self.high:
             raise BadInput(f"{self.name}: {given} is out of range (accepted: {self.accepted})")
         return int(value) if self.kind == "int" else value
@@ -75,6 +81,11 @@ def table() -> dict[str, Parameter]:
 def names() -> list[str]:
     """The parameters that a scene can set (files and folders are not part of a scene)."""
     return [p.name for p in table().values() if p.kind != "path"]
+
+
+def decisive(values: dict[str, Value]) -> dict[str, Value]:
+    """Those of a scene's values that decide its answer: two scenes that agree in them are one run."""
+    return {name: value for name, value in values.items() if name not in NOT_DECISIVE}
 
 
 def check(given: dict[str, Value]) -> dict[str, Value]:

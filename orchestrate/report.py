@@ -57,6 +57,7 @@ def rows(per_metre: bool) -> list[Quantity]:
         Quantity("breakdown_x", "  there X =", "mm", 1e3),
         Quantity("breakdown_y", "  there Y =", "mm", 1e3),
         Quantity("unsolved_jumps", "unsolved jumps", "steps of points in a jump of the friction law", digits=".0f"),
+        Quantity("resumed_at", "resumed at", "ms", 1e3),
         Quantity("steps", "steps", digits=".0f"),
         Quantity("dofs", "degrees of freedom", digits=".0f"),
         Quantity("wall_seconds", "wall time", "s", digits=".2f"),

@@ -1,7 +1,8 @@
 """One scene, one run, one folder: the run contract.
 
 A run happens in the folder DIR.part. Finished, it takes DIR's place by rename, complete: a folder with summary.json is
-a finished run. Interrupted, it leaves nothing. Failed, its files stay for a look (log.txt, history.csv, scene.toml,
+a finished run. Interrupted, it leaves nothing, or DIR.part where it has made a checkpoint: there the same scene and code
+go on. Failed, its files stay for a look (log.txt, history.csv, scene.toml,
 failure.json), in DIR, or in DIR.failed where DIR holds an earlier finished run, which is not lost.
 """
 
@@ -26,7 +27,7 @@ import numpy as np
 
 from . import freefem, mesh
 from .failure import BadInput, Busy, Failure, Unreadable
-from .parameters import ROOT, Value
+from .parameters import ROOT, Value, decisive
 from .scene import Scene
 
 FAILURES = {10: "bad input", 11: "step failed", 12: "material broke down", 13: "not installed", 14: "unreadable"}
@@ -55,10 +56,13 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | Non
         mesh_file: Path | None = None, force: bool = False, progress: bool = False, pictures: bool = True) -> RunResult:
     """Runs `scene` with some parameters overridden in the folder `out` (default results/<scene>), or reuses it.
 
-    Raises Failure with the exit code of the run contract. `force` runs again even if the folder is up to date.
+    Raises Failure with the exit code of the run contract. `force` runs again, from the start, even if the folder is up to
+    date. With a checkpoint_every > 0 a run that is killed goes on from its last checkpoint when it is asked for again.
     """
     scene = scene.override(overrides or {})
     folder = (out or ROOT / "results" / scene.name).resolve()
+    if "'" in str(folder):
+        raise BadInput(f"--out: {folder} has an apostrophe in it, which FreeFem++ cannot read (accepted: any other path)")
     if mesh_file:
         mesh_file = mesh_file.resolve()
         mesh.read(mesh_file)
@@ -72,31 +76,32 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | Non
     with _staging(folder) as stage:
         if not force and (there := reusable(scene, folder, mesh_file)):   # another run has finished it meanwhile
             return there
-        code = code_hash()
-        if mesh_file:
-            shutil.copy(mesh_file, stage / "mesh.msh")
-        else:
-            values = scene.values
-            mesh.write(mesh.disc(values["radius"], values["mesh_size"], values["contact_mesh_size"], _is_half(values)),
-                       stage / "mesh.msh")
-        (stage / "fields").mkdir()
-        provenance = {"script": scene.script, "git": _git(), "code": code, "freefem": program.version,
-                      "gmsh": None if mesh_file else mesh.gmsh_version(), "mesh": _sha256(stage / "mesh.msh")}
+        provenance = {"script": scene.script, "code": code_hash(), "freefem": program.version,
+                      "gmsh": None if mesh_file else mesh.gmsh_version()}
+        asked = decisive(scene.values) | provenance | {"mesh": _sha256(mesh_file) if mesh_file else None}
+        goes_on = not force and _unfinished(stage) == asked
+        if not goes_on:
+            _clear(stage)
+            _write_json(stage / "checkpoint.json", asked)
+            _write_mesh(stage / "mesh.msh", scene.values, mesh_file)
+        provenance |= {"git": _git(), "mesh": _sha256(stage / "mesh.msh")}
         flags = [text for name, value in scene.values.items() for text in (f"-{name}", str(value))]
         flags += ["-mesh", str(stage / "mesh.msh"), "-out", str(stage)]
+        flags += ["-restart", str(stage / "checkpoint")] if goes_on else []
         with _progress_line(scene.name) if progress else nullcontext() as show:
             exit_code = freefem.run(program, scene.script, flags, stage / "log.txt", show)
+        unfinished = (stage / "checkpoint").exists()   # a script that comes to its end, good or bad, removes it
         log = stage / "log.txt"
-        log.write_text(log.read_text(errors="replace").replace(str(stage), str(shown(folder))))
-        if not any((stage / "fields").iterdir()):
-            (stage / "fields").rmdir()
+        log.write_text(log.read_text(errors="replace").replace(str(stage), str(shown(stage if unfinished else folder))))
         try:
             _check(stage, exit_code)
         except Failure as failure:
-            kept = _failed(folder) if finished else folder
-            _keep_failed(stage, failure, provenance)
-            _replace(stage, kept)
-            failure.folder = kept
+            if unfinished:
+                failure.folder = stage
+            else:
+                failure.folder = _failed(folder) if finished else folder
+                _keep_failed(stage, failure, provenance)
+                _replace(stage, failure.folder)
             raise
         _finish(stage, provenance, pictures)
         _replace(stage, folder)
@@ -136,6 +141,8 @@ def read_summary(folder: Path) -> dict:
         summary = json.loads((folder / "summary.json").read_text())
         if summary["status"] != "ok":
             raise ValueError(f"status is {summary['status']!r}")
+        if not isinstance(summary.get("provenance", {}), dict):
+            raise ValueError("provenance is no table")
         return summary
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise Unreadable(f"{folder / 'summary.json'} cannot be read: {_why(error)}") from None
@@ -157,7 +164,7 @@ def reusable(scene: Scene, folder: Path, mesh_file: Path | None = None) -> RunRe
     summary = _finished(folder, force=False)
     if not mesh_file:
         scene = with_mesh_sizes(scene)
-    same = summary and _same(folder, summary, scene, mesh_file, code_hash())
+    same = summary and (folder / "history.csv").exists() and _same(folder, summary, scene, mesh_file, code_hash())
     return RunResult(folder, summary, reused=True) if same else None
 
 
@@ -201,7 +208,7 @@ def _same(folder: Path, summary: dict, scene: Scene, mesh_file: Path | None, cod
     else:
         same_mesh = provenance.get("gmsh") == mesh.gmsh_version()
     used = read_scene(folder)
-    return same_mesh and all(used.get(name) == value for name, value in scene.values.items())
+    return same_mesh and all(used.get(name) == value for name, value in decisive(scene.values).items())
 
 
 # ---- the mesh
@@ -211,6 +218,14 @@ def with_mesh_sizes(scene: Scene) -> Scene:
     values = scene.values
     sizes = mesh.resolve_sizes(values["mesh_size"], values["contact_mesh_size"], mesh.accuracy_made(values), values["radius"])
     return scene.override(dict(zip(("mesh_size", "contact_mesh_size"), sizes)))
+
+
+def _write_mesh(path: Path, values: dict[str, Value], mesh_file: Path | None) -> None:
+    """The mesh of a run: a copy of `mesh_file`, or our own of the sizes in `values`."""
+    if mesh_file:
+        shutil.copy(mesh_file, path)
+    else:
+        mesh.write(mesh.disc(values["radius"], values["mesh_size"], values["contact_mesh_size"], _is_half(values)), path)
 
 
 def _is_half(values: dict[str, Value]) -> bool:
@@ -225,7 +240,8 @@ def _is_half(values: dict[str, Value]) -> bool:
 
 @contextmanager
 def _staging(folder: Path) -> Iterator[Path]:
-    """An empty folder DIR.part, locked against a second run and gone in the end."""
+    """The folder DIR.part, locked against a second run. Gone in the end, unless it has the checkpoint of a run that is not
+    finished. What is in it at first was left by a run that was killed."""
     stage = folder.with_name(folder.name + ".part")
     lock = _lock(stage, folder)
     try:
@@ -233,13 +249,29 @@ def _staging(folder: Path) -> Iterator[Path]:
         if old.exists() and not folder.exists():   # killed between the two renames of _replace
             os.rename(old, folder)
         try:
-            for left_over in stage.iterdir():   # of a run that was killed
-                shutil.rmtree(left_over) if left_over.is_dir() else left_over.unlink()
             yield stage
         finally:
-            shutil.rmtree(stage, ignore_errors=True)
+            if not (stage / "checkpoint").exists():
+                shutil.rmtree(stage, ignore_errors=True)
     finally:
         os.close(lock)
+
+
+def _clear(stage: Path) -> None:
+    (stage / "checkpoint").unlink(missing_ok=True)   # first: without the rest it is of no use
+    for left_over in stage.iterdir():
+        shutil.rmtree(left_over) if left_over.is_dir() else left_over.unlink()
+
+
+def _unfinished(stage: Path) -> dict | None:
+    """What the run was asked for whose checkpoint is in `stage`, None if there is none; Unreadable if it does not say."""
+    if not (stage / "checkpoint").exists():
+        return None
+    try:
+        return json.loads((stage / "checkpoint.json").read_text())
+    except (OSError, ValueError) as error:
+        raise Unreadable(f"{stage / 'checkpoint.json'} cannot be read: {_why(error)}; delete {shown(stage)} to start from the "
+                         "beginning, or run with --force") from None
 
 
 def _lock(stage: Path, folder: Path) -> int:
@@ -295,7 +327,8 @@ def _check(stage: Path, exit_code: int) -> None:
     if "Load error" in log:
         raise Failure(f"FreeFem++ lacks a plugin: {_tail(stage)}; {freefem.HOW}", 13)
     how = f"was killed by {signal.Signals(-exit_code).name}" if exit_code < 0 else f"stopped with exit code {exit_code}"
-    raise Failure(f"FreeFem++ {how}; {_tail(stage)}")
+    goes_on = "; the same command goes on from the last checkpoint" if (stage / "checkpoint").exists() else ""
+    raise Failure(f"FreeFem++ {how}; {_tail(stage)}{goes_on}")
 
 
 def _tail(stage: Path) -> str:
@@ -307,6 +340,7 @@ def _finish(stage: Path, provenance: dict, pictures: bool) -> None:
     """Figures, then the summary with its provenance, last and by rename."""
     summary = read_summary(stage) | {"provenance": provenance}
     (stage / "summary.json").unlink()
+    (stage / "checkpoint.json").unlink()
     _write_json(stage / "summary.json.part", summary)
     if pictures:
         from . import figures
@@ -319,7 +353,8 @@ def _finish(stage: Path, provenance: dict, pictures: bool) -> None:
 
 def _keep_failed(stage: Path, failure: Failure, provenance: dict) -> None:
     """failure.json: the one the script wrote, or what is known; never a summary.json."""
-    (stage / "summary.json").unlink(missing_ok=True)
+    for name in ("summary.json", "checkpoint.json"):
+        (stage / name).unlink(missing_ok=True)
     record = {"status": FAILURES.get(failure.code, "crashed"), "message": str(failure)}
     try:
         record |= json.loads((stage / "failure.json").read_text())

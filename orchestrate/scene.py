@@ -39,10 +39,10 @@ def load(name: str) -> Scene:
     path = SCENES / f"{name}.toml" if name in built_in() else Path(name)
     try:
         given = tomllib.loads(path.read_text())
-    except (FileNotFoundError, IsADirectoryError):
+    except (FileNotFoundError, IsADirectoryError, NotADirectoryError):
         raise BadInput(f"{name}: no such scene (built in: {', '.join(built_in())}; or the path of a TOML file)") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, OSError) as error:
-        raise BadInput(f"{path}: cannot be read: {error}") from None
+    except (OSError, ValueError) as error:
+        raise BadInput(f"{name}: no such scene, or not a TOML file: {getattr(error, 'strerror', None) or error}") from None
     script, title = given.pop("script", "disc-plane"), given.pop("title", path.stem)
     scripts = [file.stem for file in sorted((parameters.ROOT / "edp").glob("*.edp")) if MARCH in file.read_text()]
     if script not in scripts:

@@ -20,6 +20,7 @@ from .run import read_history, shown
 AXES = {"slip_velocity": (0.03, 0.3, 1.0, 3.0), "penalty": (1e8, 1e9, 1e10), "nu": (0.3, 0.4, 0.45), "angle": (60.0, 30.0)}
 LAW = {"svk": {"degree": 1, "mesh_size": 0.01, "contact_mesh_size": 0.005, "breakdown": "continue", "accuracy": 0.02},   # as the paper ran it
        "neohookean": {"accuracy": 0.08}}
+SCENE, BASE = "disc-oblique", {"fields": 0}
 PAPER = 4.5e-3, 0.02        # contact time [s] and how near counts as met
 LIMIT = 300.0               # seconds a run may take
 QUIET = 0.05                # share of the friction work in the last third that counts as constant energy
@@ -34,8 +35,8 @@ def main(argv: list[str]) -> int:
     options = parser.parse_args(argv)
     out = options.out.resolve()
     axes = {name: values[-2:] for name, values in AXES.items()} if options.quick else AXES
-    points = [{"law": law} | LAW[law] | dict(zip(axes, values)) for law in LAW for values in itertools.product(*axes.values())]
-    rows = study.study(points, out, {"fields": 0}, LIMIT, "disc-oblique")
+    points = grid(axes)
+    rows = study.study(points, out, BASE, LIMIT, SCENE)
     rows = pd.concat([rows, pd.DataFrame([thirds(study.place(out, point)) for point in points])], axis=1)
     rows["order"] = as_told(rows)
     rows["quiet"] = rows.work_last <= QUIET
@@ -45,6 +46,11 @@ def main(argv: list[str]) -> int:
     print(report(rows))
     print(f"\n{shown(out)}/stick-slip.{{csv,png}}")
     return 0
+
+
+def grid(axes: dict[str, tuple[float, ...]]) -> list[study.Point]:
+    """Every combination, for both laws."""
+    return [{"law": law} | LAW[law] | dict(zip(axes, values)) for law in LAW for values in itertools.product(*axes.values())]
 
 
 def thirds(folder: Path) -> dict[str, float]:

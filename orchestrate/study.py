@@ -16,34 +16,37 @@ import pandas as pd
 from tqdm import tqdm
 
 from . import freefem, run, scene
-from .failure import Busy, Failure
-from .parameters import Value
+from .failure import Busy, Failure, Unreadable
+from .parameters import Value, decisive
 
 CORES = len(os.sched_getaffinity(0))
 TOO_LONG = 124              # exit code of a run that its time limit ended, as of timeout(1)
+STOPS = (signal.SIGTERM, signal.SIGHUP, signal.SIGINT)
 tqdm.monitor_interval = 0   # no thread beside us: we fork
 Point = dict[str, Value]    # the parameters that tell this run from the others of the study
 
 
-def study(points: list[Point], folder: Path, base: Point, limit: float, name: str = "disc-normal") -> pd.DataFrame:
+def study(points: list[Point], folder: Path, base: Point, limit: float, name: str = "disc-normal", cores: int = CORES) -> pd.DataFrame:
     """A row for each of `points`, in their order: its parameters, exit, message, reused, and the numbers of its summary.
 
     Every run is the scene `name` with `base` and the point's parameters on top, in folder/runs/, and may take `limit`
-    seconds. What is there already is not run again: finished runs, and failures of the same scene and code. A run
+    seconds; `cores` of them run at a time. What is there already is not run again: finished runs, and failures of the same scene and code. A run
     that fails is a row like any other, with its exit code and message; NotInstalled, without FreeFem++, is raised.
-    Several studies may share a folder: what one is running, the others leave to it.
+    Several studies may share a folder: what one is running, the others leave to it. A number of the summary that has the
+    name of a parameter of the point (spin) is called <name>_end.
     """
     places = [place(folder, point) for point in points]
     tasks = {where: scene.load(name).override(base | point) for where, point in zip(places, points)}
-    found = {where: outcome for where, wanted in tasks.items() if (outcome := _there(where, wanted))}
+    found = {where: outcome for where, wanted in tasks.items() if (outcome := there(where, wanted))}
     to_do = {where: wanted for where, wanted in tasks.items() if where not in found}
     if to_do:
         freefem.find()
     with tqdm(desc="runs", total=len(tasks), initial=len(found), disable=None, leave=False) as line:
-        for where, outcome in _outcomes(to_do, limit):
+        for where, outcome in _outcomes(to_do, limit, cores):
             found[where] = outcome
             line.update()
-    return pd.DataFrame([point | found[where] for where, point in zip(places, points)])
+    return pd.DataFrame([point | {f"{name}_end" if name in point else name: value for name, value in found[where].items()}
+                         for where, point in zip(places, points)])
 
 
 def place(folder: Path, point: Point) -> Path:
@@ -51,17 +54,19 @@ def place(folder: Path, point: Point) -> Path:
     return folder / "runs" / (",".join(f"{name}={value}" for name, value in point.items()) or "run")
 
 
-def _outcomes(tasks: dict[Path, scene.Scene], limit: float) -> Iterator[tuple[Path, dict]]:
+def _outcomes(tasks: dict[Path, scene.Scene], limit: float, cores: int) -> Iterator[tuple[Path, dict]]:
     """(folder, outcome) as they are ready, a process each; leaving this in any way ends them and their FreeFem++."""
     context = multiprocessing.get_context("fork")
     waiting, running = deque(tasks), {}
     try:
         while waiting or running:
-            while waiting and len(running) < CORES:
+            while waiting and len(running) < cores:
                 where = waiting.popleft()
                 receiver, sender = context.Pipe(duplex=False)
                 process = context.Process(target=_work, args=(sender, os.getpid(), limit, where, tasks[where]))
+                signal.pthread_sigmask(signal.SIG_BLOCK, STOPS)      # a handler inside the fork would be lost
                 process.start()
+                signal.pthread_sigmask(signal.SIG_UNBLOCK, STOPS)
                 sender.close()
                 running[receiver] = where, process
             for receiver in wait(running):
@@ -75,7 +80,7 @@ def _outcomes(tasks: dict[Path, scene.Scene], limit: float) -> Iterator[tuple[Pa
                     yield where, outcome
                 else:               # another study is at it: see later what came of it
                     waiting.append(where)
-                    time.sleep(0.1)
+                    time.sleep(0.3)
     finally:
         for _, process in running.values():
             process.terminate()
@@ -90,15 +95,16 @@ def _work(sender: Connection, parent: int, limit: float, folder: Path, wanted: s
     signal.signal(signal.SIGINT, signal.SIG_IGN)         # Ctrl-C is for the parent, who then ends us
     signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(128 + number))   # run() tidies up on the way out
     signal.signal(signal.SIGALRM, too_long)              # likewise
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, STOPS)
     freefem.die_with_parent(parent, signal.SIGTERM)
     signal.setitimer(signal.ITIMER_REAL, limit)
     sender.send(_outcome(folder, wanted))
 
 
-def _there(folder: Path, wanted: scene.Scene) -> dict | None:
+def there(folder: Path, wanted: scene.Scene) -> dict | None:
     """The outcome that is in `folder` already: a finished run, or a failure that FreeFem++ would only repeat."""
     if failed := _failed_before(wanted, folder):
-        return _row(failed["exit_code"], failed["message"], True, failed)
+        return _row(failed["exit_code"], str(failed.get("message")), True, failed)
     try:
         result = run.reusable(wanted, folder)
     except Failure:                                      # will be said by the run
@@ -109,8 +115,8 @@ def _there(folder: Path, wanted: scene.Scene) -> dict | None:
 def _outcome(folder: Path, wanted: scene.Scene) -> dict | None:
     """Exit code, message, whether it was there already, and the numbers of the summary, as far as the run came; None
     where another run is at it."""
-    if there := _there(folder, wanted):
-        return there
+    if found := there(folder, wanted):
+        return found
     try:
         result = run.run(wanted, out=folder, pictures=False)
         return _row(0, "", result.reused, result.summary)
@@ -119,6 +125,8 @@ def _outcome(folder: Path, wanted: scene.Scene) -> dict | None:
     except Failure as failure:
         record = _read_json(failure.folder / "failure.json") if failure.folder else {}
         return _row(failure.code, str(failure), False, record)
+    except OSError as error:                             # a full disk
+        return _row(Unreadable("").code, f"{error.filename or folder}: {error.strerror}", False, {})
 
 
 def _row(code: int, message: str, reused: bool, summary: dict) -> dict:
@@ -130,21 +138,22 @@ def _failed_before(wanted: scene.Scene, folder: Path) -> dict | None:
     """The record of the same scene's failure with the same code: FreeFem++ would say the same again."""
     for place in (folder, folder.with_name(folder.name + ".failed")):
         record = _read_json(place / "failure.json")
-        if record.get("exit_code") in (11, 12) and record["provenance"]["code"] == run.code_hash():
+        if record.get("exit_code") in (11, 12) and (record.get("provenance") or {}).get("code") == run.code_hash():
             try:
                 used, asked = run.read_scene(place), run.with_mesh_sizes(wanted).values
             except Failure:
                 continue
-            if all(used.get(name) == value for name, value in asked.items()):
+            if all(used.get(name) == value for name, value in decisive(asked).items()):
                 return record
     return None
 
 
 def _read_json(path: Path) -> dict:
     try:
-        return json.loads(path.read_text())
+        content = json.loads(path.read_text())
     except (OSError, ValueError):
         return {}
+    return content if isinstance(content, dict) else {}
 
 
 def table(frame: pd.DataFrame, formats: dict[str, str]) -> str:

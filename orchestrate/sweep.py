@@ -20,8 +20,12 @@
 """
 
 import argparse
+import fcntl
 import itertools
+import os
 import tomllib
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -29,7 +33,7 @@ import numpy as np
 import pandas as pd
 
 from . import parameters, run, scene, study, sweep_figures
-from .failure import BadInput
+from .failure import BadInput, Busy, Failure, Unreadable
 from .parameters import ROOT, Value
 from .run import shown
 
@@ -38,7 +42,9 @@ LIMIT = 600.0                   # seconds a run may take
 MOST_RUNS = 20_000              # more than that is a slip of the pen
 KEYS = ("title", "scene", "collect", "limit", "set", "product", "zip", "refine", "figure")
 SHOWN = 8                       # collected columns in the printed table; all are in sweep.csv
-RECORDED = (0, 11, 12)          # exit codes that the same run would end with again
+RECORDED = (0, 11, 12)          # exit codes that are answers: finished, no step, the material broke down
+LASTING = (*RECORDED, 10)       # and bad input: the same run would end with them again
+FINER = ("accuracy", "mesh_size", "contact_mesh_size", "dt")   # a refinement makes these smaller
 
 
 @dataclass(frozen=True)
@@ -68,29 +74,60 @@ class Sweep:
 
 
 def main(argv: list[str]) -> int:
-    """Runs what is not there yet, writes DIR/sweep.csv and DIR/sweep.png; 1 where a run ended for no reason of its own."""
+    """Runs what is not there yet, writes DIR/sweep.csv and DIR/sweep.png; Failure where a run has no answer (10, 14, killed...)."""
     parser = argparse.ArgumentParser(prog="python -m orchestrate sweep", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("sweep", metavar="SWEEP", help=f"a built-in sweep ({', '.join(built_in())}) or the path of a TOML file")
     parser.add_argument("--out", metavar="DIR", type=Path, help="the result folder (default: results/sweeps/NAME)")
     parser.add_argument("--list", action="store_true", help="only list the runs")
+    parser.add_argument("--open", action="store_true", help="only list the runs that are not there yet")
     parser.add_argument("--run", metavar="NAME", help="only this run of the list, without table and figure")
     options = parser.parse_args(argv)
     wanted = load(options.sweep)
     out = (options.out or ROOT / "results/sweeps" / wanted.name).resolve()
     names = {study.place(out, point).name: point for point in wanted.runs}
-    if options.list:
-        print(*names, sep="\n")
+    if options.list or options.open:
+        base = scene.load(wanted.scene).override(wanted.base)
+        print("\n".join(name for name, point in names.items()
+                        if options.list or not study.there(study.place(out, point), base.override(point))))
         return 0
-    if options.run is None:
+    if options.run is not None and options.run not in names:
+        raise BadInput(f"--run: '{options.run}' is no run of {wanted.name} (accepted: see --list)")
+    with _ours(wanted, out):
+        if options.run is not None:
+            row = study.study([names[options.run]], out, wanted.base, wanted.limit, wanted.scene).iloc[0]
+            print(f"{options.run}: {row.message or 'finished'}")
+            return 0 if row.exit in LASTING else int(row.exit)
         rows = collect(wanted, out)
         print(report(wanted, rows, out))
-        return 0 if rows.exit.isin(RECORDED).all() else 1
-    if options.run not in names:
-        raise BadInput(f"--run: '{options.run}' is no run of {wanted.name} (accepted: see --list)")
-    row = study.study([names[options.run]], out, wanted.base, wanted.limit, wanted.scene).iloc[0]
-    print(f"{options.run}: {row.message or 'finished'}")
-    return 0 if row.exit in RECORDED else int(row.exit)
+    bad = rows[~rows.exit.isin(RECORDED)]
+    if len(bad):
+        again = "" if bad.exit.isin(LASTING).all() else "; the same command runs again what was killed or did not end"
+        raise Failure(f"{wanted.name}: {len(bad)} of {len(rows)} points have no answer, first: {bad.message.iloc[0]}{again}",
+                      int(bad.exit.iloc[0]) if bad.exit.nunique() == 1 else 1)
+    return 0
+
+
+@contextmanager
+def _ours(wanted: Sweep, out: Path) -> Iterator[None]:
+    """Keeps drivers of another sweep out of the folder while this one runs; drivers of the same sweep share it."""
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        lock = os.open(out, os.O_RDONLY)
+    except OSError as error:
+        raise Unreadable(f"{out} cannot be made: {error.strerror}; choose another --out") from None
+    try:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)      # nobody here: the folder is ours
+            with study.complete(out / "sweep.toml") as part:
+                part.write_text(wanted.text)
+        except BlockingIOError:
+            if not (out / "sweep.toml").exists() or (out / "sweep.toml").read_text() != wanted.text:
+                raise Busy(f"{out} is being written by another sweep; wait, or choose another --out") from None
+        fcntl.flock(lock, fcntl.LOCK_SH)
+        yield
+    finally:
+        os.close(lock)
 
 
 # ---- the file
@@ -108,8 +145,8 @@ def load(name: str) -> Sweep:
         given = tomllib.loads(text)
     except (FileNotFoundError, IsADirectoryError):
         raise BadInput(f"{name}: no such sweep (built in: {', '.join(built_in())}; or the path of a TOML file)") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, OSError) as error:
-        raise BadInput(f"{path}: cannot be read: {error}") from None
+    except (OSError, ValueError) as error:
+        raise BadInput(f"{name}: cannot be read: {error}") from None
     try:
         return _sweep(path, given, text)
     except BadInput as error:
@@ -136,20 +173,33 @@ def _sweep(path: Path, given: dict, text: str) -> Sweep:
         if twice:
             raise BadInput(f"{where}: {twice[0]} is given twice (accepted: once, in [set], [product] or [[zip]])")
     points = [{name: value for part in parts for name, value in part.items()} for parts in itertools.product(*axes)]
+    if len({tuple(point.values()) for point in points}) < len(points):
+        raise BadInput("zip: two points are the same (accepted: every combination once)")
     name = given.get("scene", "disc-normal")
-    if _is(name, str, "scene", "a name") not in scene.built_in() and (path.parent / name).exists():
-        name = str((path.parent / name).resolve())
-    scene.load(name)
-    wanted = _is(given.get("collect", run.summary_numbers()), list, "collect", "a list of names")
+    if _is(name, str, "scene", "a name") not in scene.built_in():
+        name = os.path.join(path.parent.resolve(), name)
+    _finer(refine, scene.load(name).values | base, points)
+    known = [f"{each}_end" if each in varied else each for each in run.summary_numbers()]
+    wanted = _is(given.get("collect", known), list, "collect", "a list of names")
     for each in wanted:
-        if each not in run.summary_numbers():
-            raise BadInput(f"collect: '{each}' is not known (accepted: {', '.join(run.summary_numbers())})")
+        if each not in known or wanted.count(each) > 1:
+            raise BadInput(f"collect: '{each}' is {'given twice' if each in known else 'not known'} (accepted: {', '.join(known)})")
     limit = given.get("limit", LIMIT)
-    if type(limit) not in (int, float) or not 0 < limit <= 1e6:
-        raise BadInput(f"limit: {limit} (accepted: seconds, above 0, up to 1e6)")
-    figure = sweep_figures.check(tables["figure"], varied, wanted)
+    if type(limit) not in (int, float) or not 1 <= limit <= 1e6:
+        raise BadInput(f"limit: {limit} (accepted: 1 to 1e6 seconds)")
+    figure = sweep_figures.check(tables["figure"], points, wanted)
     base = {"fields": 0} | base
     return Sweep(path.stem, str(given.get("title", path.stem)), name, base, points, refine, wanted, float(limit), figure, text)
+
+
+def _finer(refine: study.Point, values: study.Point, points: list[study.Point]) -> None:
+    """BadInput where `refine` changes nothing, or makes coarser what it should make finer."""
+    if refine and all(all((values | point)[name] == value for name, value in refine.items()) for point in points):
+        raise BadInput(f"refine: {', '.join(refine)} as in the runs themselves (accepted: other values, or no [refine])")
+    for name in set(refine) & set(FINER):
+        coarse = min((values | point)[name] for point in points)
+        if coarse > 0 and not 0 < refine[name] < coarse:
+            raise BadInput(f"refine: {name} = {refine[name]:g} is not finer (accepted: above 0, below {coarse:g})")
 
 
 def _is(value, kind: type, name: str, words: str):
@@ -166,8 +216,11 @@ def _values(name: str, given: list | dict) -> list[Value]:
         low, high, points, spacing = *(given[key] for key in ("from", "to", "points")), given.get("spacing", "linear")
         if spacing not in ("linear", "log"):
             raise BadInput(f"{name}: spacing '{spacing}' is not known (accepted: linear|log)")
-        if any(type(number) not in (int, float) for number in (low, high)) or (spacing == "log" and min(low, high) <= 0):
-            raise BadInput(f"{name}: from {low} to {high} (accepted: numbers{', above 0' if spacing == 'log' else ''})")
+        if parameters.table().get(name) is None or parameters.table()[name].kind == "word":
+            raise BadInput(f"{name}: a range needs a parameter that is a number")
+        low, high = (parameters.check({name: number})[name] for number in (low, high))
+        if spacing == "log" and min(low, high) <= 0:
+            raise BadInput(f"{name}: from {low} to {high} (accepted for log: above 0)")
         if type(points) is not int or not 2 <= points <= MOST_RUNS:
             raise BadInput(f"{name}: points = {points} (accepted: 2 to {MOST_RUNS})")
         given = [float(f"{value:.10g}") for value in (np.geomspace if spacing == "log" else np.linspace)(low, high, points)]
@@ -190,8 +243,16 @@ def _together(group: dict) -> list[study.Point]:
 # ---- the table
 
 def collect(wanted: Sweep, out: Path) -> pd.DataFrame:
-    """Runs what is not there yet; a row a point, tidy, saved with its figure: what varies, exit, message, what is collected,
-    with `refine` of the refined run and beside it <name>_error [same unit], |refined - plain|.
+    """Runs what is not there yet; the table, saved as sweep.csv, with its figure."""
+    rows = table(wanted, out)
+    study.save(rows, out / "sweep.csv")
+    sweep_figures.draw(wanted, rows, out)
+    return rows
+
+
+def table(wanted: Sweep, out: Path) -> pd.DataFrame:
+    """Runs what is not there yet; a row a point, tidy: what varies, exit, message, what is collected, with `refine` of the refined
+    run and beside it <name>_error [same unit], |refined - plain|; seconds.
 
     A point of which a run failed keeps that run's exit code and message, and the numbers that there are.
     """
@@ -208,10 +269,6 @@ def collect(wanted: Sweep, out: Path) -> pd.DataFrame:
         for name in wanted.collect:
             rows[f"{name}_error"] = (fine[name] - plain[name]).abs()
     rows["seconds"] = plain.get("wall_seconds", np.nan) + (fine.get("wall_seconds", np.nan) if wanted.refine else 0)
-    study.save(rows, out / "sweep.csv")
-    with study.complete(out / "sweep.toml") as part:
-        part.write_text(wanted.text)
-    sweep_figures.draw(wanted, rows, out)
     return rows
 
 
@@ -232,6 +289,4 @@ def report(wanted: Sweep, rows: pd.DataFrame, out: Path) -> str:
     lines += sweep_figures.findings(wanted, rows, out)
     files = ", ".join(path.name for path in (out / "sweep.csv", out / "sweep.png") if path.exists())
     lines.append(f"{len(rows) - len(failed)} of {len(rows)} points finished; {shown(out)}/: {files}")
-    if not failed.exit.isin(RECORDED).all():
-        lines.append("the same command runs those again that were killed or did not end")
     return "\n".join(lines)

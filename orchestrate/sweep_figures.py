@@ -8,6 +8,7 @@ x, y of a map, by and panel are parameters that vary; the y of lines and colour 
 """
 
 import itertools
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,35 +25,61 @@ from .run import read_history
 
 KINDS = {"lines": ("x", "y", "by"), "map": ("x", "y", "colour", "by", "level", "band"), "histories": ("y", "panel", "by")}
 WORDS = {"nu": "ν", "penalty": "k"}
+HISTORY = re.findall(r"\w+", "".join(re.findall(r'^(?:historyFile)?\s*<< "([\w,]+)"', (parameters.ROOT / "edp/core/record.idp").read_text(), re.M)))
 COLOURS, MARKERS = (BLUE, ORANGE, GREEN, PURPLE, GREY), "osd^v"
 
 
-def check(given: dict, varied: list[str], collected: list[str]) -> dict:
-    """The [figure] of a sweep, completed; empty if none was given. BadInput where a name cannot be drawn."""
+def check(given: dict, points: list[dict], collected: list[str]) -> dict:
+    """The [figure] of a sweep, completed; empty if none was given. BadInput where it cannot be drawn or would mix points up."""
     if not given:
         return {}
-    kind = given.get("kind", "lines")
-    if kind not in KINDS:
+    kind, varied = given.get("kind", "lines"), list(points[0])
+    if kind not in list(KINDS):
         raise BadInput(f"figure: kind '{kind}' is not known (accepted: {'|'.join(KINDS)})")
     for key in given:
         if key not in ("kind", *KINDS[kind]):
             raise BadInput(f"figure: {key}: no such entry for {kind} (accepted: {', '.join(KINDS[kind])})")
     figure = {"kind": kind, "by": None, "panel": None, "level": None, "band": 0.0} | given
-    if kind != "map":
-        figure["y"] = [figure.get("y")] if isinstance(figure.get("y"), str) else figure.get("y") or []
-    asked = {"lines": [("x", varied), ("y", collected)], "histories": [("y", None)],
-             "map": [("x", varied), ("y", varied), ("colour", collected)]}[kind]
-    for key, accepted in asked + [(key, [*varied, None]) for key in ("by", "panel")]:
-        names = figure.get(key) if isinstance(figure.get(key), list) else [figure.get(key)]
-        if not names or (accepted is None and not all(isinstance(name, str) for name in names)):
-            raise BadInput(f"figure: {key} is missing (accepted: names of columns of history.csv)")
+    if kind != "map" and isinstance(figure.get("y"), str):
+        figure["y"] = [figure["y"]]
+    axes, results = {"lines": (("x",), ("y",)), "map": (("x", "y"), ("colour",)), "histories": ((), ("y",))}[kind]
+    for key in axes:
+        _name(key, figure.get(key), varied)
+    for key in ("by", "panel"):
+        if figure[key] is not None:
+            _name(key, figure[key], varied)
+    for key in results:
+        names = figure.get(key) if key == "y" else [figure.get(key)]
+        if not isinstance(names, list) or not names:
+            raise BadInput(f"figure: {key} is missing (accepted: one or several of {', '.join(collected if kind == 'lines' else HISTORY)})")
         for name in names:
-            if accepted is not None and name not in accepted:
-                words = ", ".join(word for word in accepted if word)
-                raise BadInput(f"figure: {key} = '{name}' (accepted: {words})")
-    if any(figure[key] is not None and type(figure[key]) not in (int, float) for key in ("level", "band")):
-        raise BadInput(f"figure: level = {figure['level']}, band = {figure['band']} (accepted: numbers)")
+            _name(key, name, HISTORY if kind == "histories" else collected)
+    used = [figure[key] for key in (*axes, "by", "panel") if figure[key] is not None]
+    if len(set(used)) < len(used) or len({tuple(point[name] for name in used) for point in points}) < len(points):
+        raise BadInput(f"figure: {', '.join(used) or 'nothing'} does not tell the points apart (accepted: different names for "
+                       f"{', '.join((*axes, *(key for key in ('by', 'panel') if key in KINDS[kind])))}, that together do; {', '.join(varied)} vary)")
+    if kind == "map":
+        _check_map(figure, points)
     return figure
+
+
+def _name(key: str, name, accepted: list[str]) -> None:
+    if not isinstance(name, str) or name not in accepted:
+        raise BadInput(f"figure: {key} {'is missing' if name is None else f'= {name!r}'} (accepted: {', '.join(accepted)})")
+
+
+def _check_map(figure: dict, points: list[dict]) -> None:
+    """A map has two axes of numbers, at least two on each, and a sound level."""
+    for key in ("x", "y"):
+        values = {point[figure[key]] for point in points}
+        if len(values) < 2 or any(isinstance(value, str) for value in values):
+            raise BadInput(f"figure: {key} = '{figure[key]}' (accepted for a map: a parameter with at least two numbers)")
+    for key in ("level", "band"):
+        value = figure[key]
+        if value is not None and (type(value) not in (int, float) or not 0 <= value < 1e300):
+            raise BadInput(f"figure: {key} = {value} (accepted: a number from 0 on)")
+    if figure["level"] is not None and min(point[figure["y"]] for point in points) <= 0:
+        raise BadInput(f"figure: y = '{figure['y']}' has values up to 0 (accepted with a level: above 0)")
 
 
 def draw(sweep, rows: pd.DataFrame, out: Path) -> None:
@@ -79,7 +106,7 @@ def findings(sweep, rows: pd.DataFrame, out: Path) -> list[str]:
                 for words, group in _groups(sweep, rows, "by")]
     if kind == "map":
         return [line for words, group in _groups(sweep, rows, "by") for line in _set(sweep.figure, words, group)]
-    return [f"{panel}: relative L2 difference of {y.replace('_', ' ')}, {a} and {b}: {100 * value:.1f} %"
+    return [f"{panel}: ".removeprefix(": ") + f"relative L2 difference of {y.replace('_', ' ')}, {a} and {b}: {100 * value:.1f} %"
             + (f" (mesh and step change {100 * bar:.1f} %)" if sweep.refine else "")
             for panel, y, a, b, value, bar in distances(sweep, rows, out)]
 
@@ -133,9 +160,9 @@ def _lines(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
     for axes, y in zip(grid[:, 0], names):
         for (words, group), colour, marker in zip(_groups(sweep, rows, "by"), itertools.cycle(COLOURS), itertools.cycle(MARKERS)):
             group = group.sort_values(x)
-            bars = _factor(y) * group[f"{y}_error"] if f"{y}_error" in group else None
             there = group.exit == 0
-            axes.errorbar(group[x][there], _factor(y) * group[y][there], None if bars is None else bars[there], color=colour, marker=marker,
+            errors = _factor(y) * bars(group[there], y)
+            axes.errorbar(group[x][there], _factor(y) * group[y][there], None if np.isnan(errors).all() else errors, color=colour, marker=marker,
                           markersize=3, linewidth=1.1, elinewidth=0.9, capsize=1.5, label=words or None)
             if not there.all():
                 axes.plot(group[x][~there], np.full((~there).sum(), 0.03), marker="x", linestyle="", markersize=4, color=colour,
@@ -165,7 +192,8 @@ def _is_logarithmic(values: pd.Series) -> bool:
 @dataclass(frozen=True)
 class Trend:
     """How y goes with x: first and last value, typical error of a point (nan without), how many of the steps between neighbours
-    go against the trend, how many of those beyond the error bar of the step, and the largest of them."""
+    go against the trend, how many of those by more than one and than two error bars of the step, the largest of them, the
+    typical error bar of a step, and the typical step."""
 
     first: float
     last: float
@@ -173,7 +201,10 @@ class Trend:
     steps: int
     against: int
     beyond: int
+    established: int
     largest: float
+    bar: float
+    step: float
 
     @property
     def falls(self) -> bool:
@@ -181,34 +212,41 @@ class Trend:
         return self.last < self.first
 
 
-def steps_against(group: pd.DataFrame, x: str, y: str) -> Trend:
-    """The trend of the finished points of `group`, SI units.
+def bars(group: pd.DataFrame, y: str) -> np.ndarray:
+    """Error bars of the points of a curve (n,): the larger of a point's own and the root mean square of all, as one difference of
+    two runs can be small by chance; nan without [refine]."""
+    if f"{y}_error" not in group:
+        return np.full(len(group), np.nan)
+    own = group[f"{y}_error"].to_numpy(dtype=float)
+    finite = own[np.isfinite(own)]
+    return np.fmax(own, np.sqrt(np.mean(finite**2))) if len(finite) else own
 
-    The error bar of a point is the larger of its own and the root mean square of those of the curve, as one difference of two
-    runs can be small by chance; that of a step is the sum of its ends' in squares.
-    """
-    there = group[group.exit == 0].sort_values(x)
-    values = there[y].to_numpy()
+
+def steps_against(group: pd.DataFrame, x: str, y: str) -> Trend | None:
+    """The trend of the finished points of `group`, SI units; None for fewer than three. The error bar of a step is the sum of its
+    ends' in squares."""
+    there = group[(group.exit == 0) & group[y].notna()].sort_values(x)
+    if len(there) < 3:
+        return None
+    values, errors = there[y].to_numpy(), bars(there, y)
+    steps = np.hypot(errors[1:], errors[:-1])
     against = np.diff(values) * (1 if values[-1] < values[0] else -1)
-    own = there[f"{y}_error"].to_numpy() if f"{y}_error" in there else np.full(len(values), np.nan)
-    typical = float(np.sqrt(np.mean(own**2)))
-    bars = np.fmax(own, typical)
-    beyond = against > np.hypot(bars[1:], bars[:-1])
-    return Trend(values[0], values[-1], typical, len(against), int((against > 0).sum()), int(beyond.sum()), float(against.max()))
+    return Trend(values[0], values[-1], float(np.min(errors)), len(against), int((against > 0).sum()), int((against > steps).sum()),
+                 int((against > 2 * steps).sum()), float(against.max()), float(np.median(steps)), float(np.median(np.abs(against))))
 
 
 def trend(group: pd.DataFrame, x: str, y: str, words: str) -> str:
     """The same in words."""
     name = f"{words}: " * bool(words) + f"{y.replace('_', ' ')} over {x.replace('_', ' ')}"
-    if (group.exit == 0).sum() < 3:
-        return f"{name}: too few points for a trend"
     found, factor, unit = steps_against(group, x, y), _factor(y), _unit(y)
+    if not found:
+        return f"{name}: too few points for a trend"
     size = abs(group[group.exit == 0][y]).mean()
     text = (f"{name}: {'falls' if found.falls else 'rises'} from {factor * found.first:.5g} to {factor * found.last:.5g}{unit}; of {found.steps} "
             f"steps {found.against} {'rise' if found.falls else 'fall'}")
     if np.isnan(found.typical):
-        return text + " (no error bars: [refine] is not given)"
-    text += f", {found.beyond} of them by more than their error bar"
+        return text + " (no error bars: no [refine], or no finished refined run)"
+    text += f", {found.beyond} of them by more than their error bar, {found.established} by more than twice that"
     if found.largest > 0:
         text += f"; the largest by {factor * found.largest:.2g}{unit} ({100 * found.largest / size:.2f} %)"
     return text + f"; error of a point {factor * found.typical:.2g}{unit} ({100 * found.typical / size:.2f} %, rms)"
@@ -245,17 +283,23 @@ def _map(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
 
 
 def level_set(figure: dict, group: pd.DataFrame) -> dict[float, list[tuple[float, float]]]:
-    """For each value of x the ranges of y in which colour is within the band of its level; between the points interpolated in
-    the logarithm of y. For maps of two numbers, y above 0."""
+    """For each value of x the ranges of y in which colour meets its level within the band and the error bar; between the points
+    interpolated in the logarithm of y."""
     x, y, colour = (figure[key] for key in ("x", "y", "colour"))
-    found = {}
+    found, band = {}, figure["band"] + _typical(group, colour)
     for value, column in group[group.exit == 0].groupby(x):
         column = column.sort_values(y)
         fine = np.geomspace(column[y].iloc[0], column[y].iloc[-1], 2001)
-        inside = np.abs(np.interp(np.log(fine), np.log(column[y]), column[colour]) - figure["level"]) <= figure["band"]
+        inside = np.abs(np.interp(np.log(fine), np.log(column[y]), column[colour]) - figure["level"]) <= band
         edges = np.flatnonzero(np.diff(np.concatenate([[0], inside.astype(int), [0]]))).reshape(-1, 2)
         found[value] = [(float(fine[first]), float(fine[last - 1])) for first, last in edges]
     return found
+
+
+def _typical(group: pd.DataFrame, name: str) -> float:
+    """The typical error bar of a column, 0 without [refine]."""
+    errors = bars(group[group.exit == 0], name)
+    return float(np.nanmin(errors)) if np.isfinite(errors).any() else 0.0
 
 
 def _set(figure: dict, words: str, group: pd.DataFrame) -> list[str]:
@@ -264,7 +308,8 @@ def _set(figure: dict, words: str, group: pd.DataFrame) -> list[str]:
         return []
     x, y, colour = (figure[key] for key in ("x", "y", "colour"))
     lines = [f"{words}: " * bool(words) + f"{colour.replace('_', ' ')} = {_factor(colour) * figure['level']:g} ± "
-             f"{_factor(colour) * figure['band']:g}{_unit(colour)} is met for"]
+             f"{_factor(colour) * figure['band']:g}{_unit(colour)} is met, within an error bar of {_factor(colour) * _typical(group, colour):.2g}"
+             f"{_unit(colour)}, for"]
     for value, ranges in level_set(figure, group).items():
         lines.append(f"  {_value(x, value)}: " + (f"{label(y)} " + spans(ranges) if ranges else f"no {label(y)}"))
     return lines
@@ -282,7 +327,7 @@ def _histories(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
     figure, grid = plt.subplots(len(names), len(panels), figsize=(1 + 3.4 * len(panels), 0.6 + 2.8 * len(names)), squeeze=False)
     for k, (title, part) in enumerate(panels):
         for axes, y in zip(grid[:, k], names):
-            for (words, group), colour, line in zip(_groups(sweep, part, "by"), COLOURS, itertools.cycle(("-", "--"))):
+            for (words, group), colour, line in zip(_groups(sweep, part, "by"), itertools.cycle(COLOURS), itertools.cycle(("-", "--"))):
                 for _, row in group[group.exit == 0].iterrows():
                     t, values = _history(sweep, row, out, y, refined=bool(sweep.refine))
                     axes.plot(1e3 * t, 1e-3 * values if "force" in y else values, color=colour, linestyle=line, label=words)
@@ -291,7 +336,8 @@ def _histories(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
             axes.grid(alpha=0.3)
             if k == 0:
                 axes.set_ylabel(f"{y.replace('_', ' ')}" + " [kN/m]" * ("force" in y))
-    grid[0, 0].legend()
+    if grid[0, 0].get_legend_handles_labels()[0]:
+        grid[0, 0].legend()
     return figure
 
 
@@ -312,13 +358,15 @@ def distances(sweep, rows: pd.DataFrame, out: Path) -> Iterator[tuple[str, str, 
         runs = [(words, row) for words, group in _groups(sweep, part, "by") for _, row in group[group.exit == 0].iterrows()]
         for y, (b, row) in itertools.product(sweep.figure["y"], runs[1:]):
             a, first = runs[0]
-            bars = [_distance(_history(sweep, each, out, y, True), _history(sweep, each, out, y, False))
+            bars = [distance(_history(sweep, each, out, y, True), _history(sweep, each, out, y, False))
                     for each in (first, row) if refined]
-            yield panel, y, a, b, _distance(*(_history(sweep, each, out, y, refined) for each in (first, row))), max(bars, default=np.nan)
+            yield panel, y, a, b, distance(*(_history(sweep, each, out, y, refined) for each in (first, row))), max(bars, default=np.nan)
 
 
-def _distance(first: tuple[np.ndarray, np.ndarray], second: tuple[np.ndarray, np.ndarray]) -> float:
-    """||second - first|| / ||first|| in L2 over time; both are zero outside their times."""
+def distance(first: tuple[np.ndarray, np.ndarray], second: tuple[np.ndarray, np.ndarray]) -> float:
+    """||second - first|| / ||first|| in L2 over time; both are zero outside their times; nan where the first is zero."""
     t = np.union1d(first[0], second[0])
+    if not first[1].any():
+        return np.nan
     a, b = (np.interp(t, *each, left=0, right=0) for each in (first, second))
     return float(np.sqrt(np.trapezoid((b - a) ** 2, t) / np.trapezoid(a**2, t)))

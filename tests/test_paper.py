@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 import fake_freefem
-from orchestrate import paper, run, scene, sweep
+from orchestrate import paper, run, scene
 from orchestrate.__main__ import main
 from orchestrate.paper import AGREES, DIFFERS, OPEN, PARTLY
 
@@ -29,7 +29,7 @@ class Stub(paper.Results):
         return {column: np.array(values, dtype=float) for column, values in self.given["history"].items()}
 
     def table(self, name):
-        return pd.DataFrame(self.given["table"])
+        return pd.DataFrame({"exit": 0} | self.given["table"])
 
     def sweep_runs(self, name):
         return []
@@ -47,33 +47,35 @@ def speeds(times, error=1e-5, nu=(0.3, 0.45)) -> dict:
     ("oblique_coarse", {"summary": dict(contact_time=4.5e-3, breakdown_time=None, min_stretch=0.578, dofs=300)}, PARTLY, "4.500 ms"),
     ("oblique_coarse", {"summary": dict(contact_time=4.6e-3, breakdown_time=2e-3, min_stretch=0.1, dofs=300)}, DIFFERS, "det F ≤ 0 from 2.00 ms on"),
     ("oblique_converged", {"table": dict(nu=[0.3, 0.45], contact_time=[4.4e-3, 4.1e-3], contact_time_error=[6e-5, 1e-5])}, PARTLY, "ν = 0.3: 4.40 ± 0.06"),
+    ("oblique_converged", {"table": dict(nu=[0.3, 0.45], contact_time=[4.5e-3, 4.5e-3], contact_time_error=0, exit=12)}, DIFFERS, ""),
     ("oblique_converged", {"table": dict(nu=[0.3, 0.45], contact_time=[4.2e-3, 4.1e-3], contact_time_error=[1e-5, 1e-5])}, DIFFERS, ""),
     ("oscillates", {"history": dict(normal_force=[0, 5, 3, 6, 0])}, AGREES, "2 maxima"),
     ("oscillates", {"history": dict(normal_force=[0, 5, 6, 0])}, DIFFERS, "1 maxima"),
-    ("alternates", {"history": dict(normal_force=[0, 1, 1, 1, 1], sliding_fraction=[0, 0.5, 0.1, 0.5, 0])}, AGREES, "2 maxima"),
-    ("alternates", {"history": dict(normal_force=[0, 1, 1, 1, 1], sliding_fraction=[0, 0, 0.01, 0, 1])}, DIFFERS, "0 maxima"),
+    ("alternates", {"history": dict(normal_force=[1, 1, 1, 1, 1], sliding_fraction=[0.1, 0.5, 0.1, 0.5, 0])}, AGREES, "2 maxima"),
+    ("alternates", {"history": dict(normal_force=[0, 1, 1, 1, 1], sliding_fraction=[0, 0, 0.04, 0, 1])}, DIFFERS, "0 maxima"),
     ("energy", {"history": dict(kinetic=[9, 5, 8, 8], elastic=[0, 2, 0, 0], contact=[0, 1, 0, 0], normal_force=[0, 1, 1, 0],
                                 friction_work=[0, 1, 1, 1], balance=[0, 0, 0, 1e-10])}, AGREES, "11.1 % are lost"),
     ("energy", {"history": dict(kinetic=[9, 5, 8, 8.1], elastic=[0, 2, 0, 0], contact=[0, 1, 0, 0], normal_force=[0, 1, 1, 0],
                                 friction_work=[0, 1, 1, 1], balance=[0, 0, 0, 0.1])}, DIFFERS, ""),
     ("conserves", {"summary": dict(energy_drift=1e-11)}, AGREES, "1e-11"),
     ("conserves", {"summary": dict(energy_drift=1e-6)}, DIFFERS, ""),
-    ("stepped", {"table": speeds([5e-3, 4.8e-3, 4.9e-3, 4.5e-3])}, AGREES, "1 of 3 steps rise, 1 of them beyond"),
-    ("stepped", {"table": speeds([5e-3, 4.8e-3, 4.9e-3, 4.5e-3], error=1e-4)}, DIFFERS, "1 of 3 steps rise, 0 of them beyond"),
+    ("stepped", {"table": speeds([5e-3, 4.8e-3, 4.9e-3, 4.5e-3, 4.6e-3, 4e-3])}, AGREES, "2 of 5 steps rise, 2 of them by more than their error bar, 2 "),
+    ("stepped", {"table": speeds([5e-3, 4.8e-3, 4.9e-3, 4.5e-3])}, PARTLY, "not told from the errors"),
+    ("stepped", {"table": speeds([5e-3, 4.8e-3, 4.9e-3, 4.5e-3, 4.6e-3, 4e-3], error=6e-5)}, PARTLY, "2 of them by more than their error bar, 0 "),
     ("stepped", {"table": speeds([4.5e-3, 4.9e-3, 4.8e-3, 5e-3])}, DIFFERS, ""),
+    ("stepped", {"table": speeds([5e-3, 4.8e-3, 4.7e-3, 4.5e-3]) | {"exit": [0, 0, 0, 0, 12, 12, 0, 0]}}, DIFFERS, "ν = 0.45: too few runs finished"),
     ("monotone", {"table": speeds([5e-3, 4.8e-3, 4.7e-3, 4.5e-3])}, AGREES, "0 of 3 steps rise"),
     ("monotone", {"table": speeds([5e-3, 4.8e-3, 4.9e-3, 4.5e-3])}, DIFFERS, ""),
+    ("monotone", {"table": speeds([5e-3, 4.8e-3, 4.7e-3, 4.5e-3], error=1e-3)}, PARTLY, "a small rise would not show"),
+    ("monotone", {"table": speeds([5e-3, 4.8e-3, 4.7e-3, 4.5e-3]) | {"exit": 12}}, DIFFERS, "too few runs finished"),
     ("disc_time", {"table": dict(law="svk", nu=0.3, penalty=[1e9, 1e10], contact_time=[4.9e-3, 4.8e-3], exit=0), "summary": dict(contact_time=4.67e-3)},
      AGREES, "met for ν = 0.3: k = 3.2e+09 to 1e+10 [Pa/m]"),
     ("disc_time", {"table": dict(law=["neohookean"], nu=[0.3], penalty=1e9, contact_time=[4.8e-3], exit=0), "summary": dict(contact_time=4.67e-3)},
      DIFFERS, "met for no ν and k"),
 ])
-def test_verdicts_follow_from_the_numbers(tmp_path, name, given, verdict, words):
+def test_verdicts_follow_from_the_numbers(tmp_path, monkeypatch, name, given, verdict, words):
     """Each statement is judged by its rule, whatever the numbers are."""
-    if "table" in given:   # the sweep's own file, which tells where runs failed
-        for each in sweep.built_in():
-            (tmp_path / "sweeps" / each).mkdir(parents=True)
-            pd.DataFrame(given["table"]).assign(exit=0).to_csv(tmp_path / "sweeps" / each / "sweep.csv", index=False)
+    monkeypatch.setattr(paper, "_both", lambda results: [results.history("")] * 2)
     found = FIND[name](Stub(tmp_path, **given))
     assert found.verdict == verdict and words in found.ours
 
@@ -120,17 +122,33 @@ def test_a_missing_case_stops_it(tmp_path, capsys):
     """One line names every make target that is missing, exit code 14, and no page is written."""
     assert main(["paper", "--results", str(tmp_path)]) == 14
     err = capsys.readouterr().err
-    assert err.count("\n") == 1 and "disc-normal is missing" in err and not (tmp_path / "paper").exists()
-    assert "run: make disc-normal disc-oblique disc-rolling calibrate contact-time-neohookean" in err and "friction-laws stick-slip" in err
+    assert err.count("\n") == 1 and not (tmp_path / "paper").exists()
+    assert "run: make disc-normal disc-oblique disc-rolling calibrate contact-time-neohookean" in err and "stick-slip friction-laws" in err
 
 
-def test_results_of_other_code_stop_it(fake, tmp_path):
-    """A case that was made with other code is as good as missing."""
-    run.run(scene.load("disc-normal"), out=tmp_path / "disc-normal")
+@pytest.mark.parametrize("change", ["nothing", "code", "scene", "picture", "failed", "broken"])
+def test_only_results_of_the_present_scenes_and_code_count(fake, tmp_path, monkeypatch, change):
+    """A case of other code, of another scene, without its picture, that ended by its time limit, or unreadable, is as good as missing."""
+    place = tmp_path / "disc-normal"
+    run.run(scene.load("disc-normal"), {"speed": 4} if change == "scene" else {}, out=place)
+    path = place / "summary.json"
+    if change == "code":
+        path.write_text(path.read_text().replace(run.code_hash(), "other"))
+    if change == "picture":
+        (place / "figures/energies.png").unlink()
+    if change == "failed":
+        path.unlink()
+        (place / "failure.json").write_text(json.dumps({"exit_code": 124, "provenance": {}}))
+    if change == "broken":
+        path.write_text("{")
     with pytest.raises(paper.Failure) as error:
         paper.Results(tmp_path).require()
-    assert "disc-normal" not in str(error.value)
-    path = tmp_path / "disc-normal/summary.json"
-    path.write_text(path.read_text().replace(run.code_hash(), "other"))
-    with pytest.raises(paper.Failure, match="disc-normal was made with other code"):
-        paper.Results(tmp_path).require()
+    assert ("disc-normal" in str(error.value)) == (change != "nothing") and error.value.code == 14
+
+
+def test_values_are_listed_as_numbers(tmp_path):
+    """The range of what was varied goes from the smallest to the largest number."""
+    for k, speed in enumerate((0.5, 9.9, 12.1, 1, 2, 3, 4, 5, 6)):
+        (tmp_path / str(k)).mkdir()
+        fake_freefem.write_scene(tmp_path / str(k), dict(script="disc-plane", speed=str(speed)))
+    assert "speed: 9 values from 0.5 to 12.1" in paper._provenance(sorted(tmp_path.iterdir()))

@@ -1,4 +1,4 @@
-"""The studies: runs in parallel that survive failures, limits and interruption; stress, refine and bench on top."""
+"""The studies: runs in parallel that survive failures, limits and interruption; stress, refine and the textbook on top."""
 
 import os
 import signal
@@ -7,7 +7,7 @@ import sys
 import pandas as pd
 import pytest
 
-from orchestrate import bench, refine, run, stress, study
+from orchestrate import refine, run, stress, study, textbook
 from test_cli import is_alive, start, wait_for
 
 POINTS = [{"speed": speed, "dt": dt} for speed in (4.0, 8.0) for dt in (0.0, 1e-4)]
@@ -174,11 +174,11 @@ def test_refine_series_go_from_coarse_to_fine(scene, factors):
     assert all(list(wanted[name].points) == sorted(wanted[name].points, reverse=True) for name in ("mesh", "step", "accuracy"))
 
 
-def test_bench_compares_the_same_problem(tmp_path, capsys):
+def test_textbook_compares_the_same_problem(tmp_path, capsys):
     """Same mesh, same step, answers that agree, both energies kept; the verdict is about the ratio."""
-    code = bench.main(["--quick", "--out", str(tmp_path)])
-    row = pd.read_csv(tmp_path / "bench.csv").iloc[0]
+    code = textbook.main(["--quick", "--out", str(tmp_path)])
+    row = pd.read_csv(tmp_path / "textbook.csv").iloc[0]
     assert row.impulse_ours == pytest.approx(row.impulse_textbook, rel=1e-2)
     assert max(row.energy_drift_ours, row.energy_drift_textbook) < 1e-8
     assert row.ratio == pytest.approx(row.seconds_a_step_textbook / row.seconds_a_step_ours)
-    assert code == (row.ratio < bench.ASKED) and "the answers differ by" in capsys.readouterr().out
+    assert code == (row.ratio < textbook.ASKED) and "the answers differ by" in capsys.readouterr().out

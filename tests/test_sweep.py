@@ -1,6 +1,8 @@
 """Sweeps: the file and its errors, the table, kills and two drivers at once, Snakemake, trends, maps and histories."""
 
+import errno
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -11,6 +13,7 @@ import pandas as pd
 import pytest
 
 from orchestrate import parameters, run, study, sweep, sweep_figures
+from orchestrate.__main__ import main
 from orchestrate.failure import BadInput
 from orchestrate.figures import plt
 from test_cli import call, is_alive, start, wait_for
@@ -53,7 +56,7 @@ def test_points_are_products_of_axes_and_zips(tmp_path):
     ("[product]\nspeed = 3", "speed: '3' is not accepted (accepted: a list of values, or a range)"),
     ("[product]\nspeed = { from = 1, to = 3 }", "is no range (accepted: from, to, points and perhaps spacing)"),
     ("[product]\nspeed = { from = 1, to = 3, points = 1 }", "points = 1 (accepted: 2 to"),
-    ("[product]\nspeed = { from = 0, to = 3, points = 3, spacing = 'log' }", "from 0 to 3 (accepted: numbers, above 0)"),
+    ("[product]\nspeed = { from = 0, to = 3, points = 3, spacing = 'log' }", "from 0.0 to 3.0 (accepted for log: above 0)"),
     ("[product]\nspeed = { from = 1, to = 3, points = 3, spacing = 'odd' }", "'odd' is not known (accepted: linear|log)"),
     ("[product]\nspeed = { from = 1, to = 3, points = 30000 }", "points = 30000"),
     ("[product]\nspeed = { from = 1, to = 3, points = 2000 }\nnu = { from = 0.1, to = 0.4, points = 20 }", "40000 runs (accepted: up to 20000)"),
@@ -67,7 +70,7 @@ def test_points_are_products_of_axes_and_zips(tmp_path):
     ("scene = 'nothing'\n[product]\nspeed = [1]", "nothing: no such scene"),
     ("scene = 3\n[product]\nspeed = [1]", "scene: '3' is not accepted"),
     ("collect = ['contact_tim']\n[product]\nspeed = [1]", "collect: 'contact_tim' is not known (accepted: contact_time"),
-    ("limit = 0\n[product]\nspeed = [1]", "limit: 0 (accepted: seconds"),
+    ("limit = 0\n[product]\nspeed = [1]", "limit: 0 (accepted: 1 to 1e6 seconds)"),
     ("[product]\nspeed = [1]\n[figure]\nx = 'nu'\ny = 'impulse'", "figure: x = 'nu' (accepted: speed)"),
     ("[product]\nspeed = [1]\n[figure]\nx = 'speed'\ny = 'inpulse'", "figure: y = 'inpulse' (accepted: contact_time"),
     ("[product]\nspeed = [1]\n[figure]\nx = 'speed'\ny = 'impulse'\nby = 'nu'", "figure: by = 'nu' (accepted: speed)"),
@@ -75,6 +78,27 @@ def test_points_are_products_of_axes_and_zips(tmp_path):
     ("[product]\nspeed = [1]\n[figure]\nkind = 'histories'", "figure: y is missing"),
     ("[product]\nspeed = [1]\n[figure]\nx = 'speed'\ny = 'impulse'\ncolour = 'impulse'", "figure: colour: no such entry for lines"),
     ("[product", "cannot be read"),
+    ("[product]\nspeed = [1" + "0" * 400 + "]", "is out of range"),
+    ("[product]\nspeed = { from = 1, to = inf, points = 3 }", "speed: inf is out of range"),
+    ("[product]\nlaw = { from = 1, to = 2, points = 3 }", "a range needs a parameter that is a number"),
+    ("collect = ['impulse', 'impulse']\n[product]\nspeed = [1]", "'impulse' is given twice"),
+    ("[[zip]]\nspeed = [1, 1]\nnu = [0.1, 0.1]", "two points are the same"),
+    ("[set]\naccuracy = 0.1\n[product]\nspeed = [1]\n[refine]\naccuracy = 0.1", "refine: accuracy as in the runs themselves"),
+    ("[product]\nspeed = [1]\n[refine]\naccuracy = 5e-3", "refine: accuracy as in the runs themselves"),
+    ("[product]\nspeed = [1]\n[refine]\naccuracy = 0.01", "refine: accuracy = 0.01 is not finer (accepted: above 0, below 0.005)"),
+    ("scene = '" + "x" * 300 + "'\n[product]\nspeed = [1]", "no such scene"),
+    ("[product]\nspeed = [1, 2]\nnu = [0.1, 0.2]\n[figure]\nx = 'speed'\ny = 'impulse'", "speed does not tell the points apart"),
+    ("[product]\nspeed = [1]\n[figure]\nx = 'speed'\ny = 'impulse'\nby = 'speed'", "does not tell the points apart"),
+    ("[product]\nspeed = [1]\n[figure]\nx = ['speed']\ny = 'impulse'", "x = ['speed'] (accepted: speed)"),
+    ("[product]\nspeed = [1]\n[figure]\ny = 'impulse'", "x is missing (accepted: speed)"),
+    ("[product]\nspeed = [1]\n[figure]\nx = 'speed'", "y is missing (accepted: one or several of contact_time"),
+    ("[product]\nspeed = [1]\n[figure]\nkind = ['lines']", "is not known (accepted: lines|map|histories)"),
+    ("[product]\nspeed = [1]\n[figure]\nkind = 'histories'\ny = 'foo'\nby = 'speed'", "y = 'foo' (accepted: t, dt, normal_force"),
+    ("[product]\nspeed = [1]\nnu = [0.1, 0.2]\n[figure]\nkind = 'map'\nx = 'speed'\ny = 'nu'\ncolour = 'impulse'", "x = 'speed' (accepted for a map"),
+    ("[product]\nlaw = ['svk', 'neohookean']\nnu = [0.1, 0.2]\n[figure]\nkind = 'map'\nx = 'law'\ny = 'nu'\ncolour = 'impulse'", "x = 'law' (accepted for a map"),
+    ("[product]\nspeed = [1, 2]\nnu = [0, 0.2]\n[figure]\nkind = 'map'\nx = 'speed'\ny = 'nu'\ncolour = 'impulse'\nlevel = 1", "y = 'nu' has values up to 0"),
+    ("[product]\nspeed = [1, 2]\nnu = [0.1, 0.2]\n[figure]\nkind = 'map'\nx = 'speed'\ny = 'nu'\ncolour = 'impulse'\nlevel = nan", "level = nan (accepted: a number"),
+    ("[product]\nspeed = [1, 2]\nnu = [0.1, 0.2]\n[figure]\nkind = 'map'\nx = 'speed'\ny = 'nu'\ncolour = 'impulse'\nlevel = 1\nband = -1", "band = -1"),
 ])
 def test_bad_files_are_one_line(tmp_path, text, words):
     """The line names the file, the entry, the value and what is accepted; nothing has run."""
@@ -127,19 +151,69 @@ def test_table_and_figure(fake, tmp_path, capsys):
 
 @pytest.mark.parametrize("mode, code, returned", [("material", 12, 0), ("step", 11, 0), ("crash", 1, 1)])
 def test_failed_points_are_kept_with_their_reason(fake, tmp_path, capsys, mode, code, returned):
-    """They do not stop the rest; what would fail again is not run again, what was killed is."""
+    """They do not stop the rest; what would fail again is not run again, what was killed is, and that is said on stderr."""
     fake(mode)
     path, out = write(tmp_path, DRAWN), tmp_path / "out"
-    assert sweep.main([str(path), "--out", str(out)]) == returned
-    rows, said = table(out), capsys.readouterr().out
-    assert (rows.exit == code).all() and rows.message.notna().all() and "0 of 6 points finished" in said
-    assert f"failed, exit {code}: speed=4.0,nu=0.3" in said and ("again" in said) == (returned == 1)
-    assert sweep.main([str(path), "--out", str(out)]) == returned and fake.starts() == (12 if returned else 6)
+    assert main(["sweep", str(path), "--out", str(out)]) == returned
+    rows, said = table(out), capsys.readouterr()
+    assert (rows.exit == code).all() and rows.message.notna().all() and "0 of 6 points finished" in said.out
+    assert f"failed, exit {code}: speed=4.0,nu=0.3" in said.out
+    assert said.err.count("\n") == returned and ("6 of 6 points have no answer" in said.err and "runs again" in said.err) == (returned == 1)
+    assert main(["sweep", str(path), "--out", str(out)]) == returned and fake.starts() == (12 if returned else 6)
+
+
+def test_bad_input_of_a_point_is_said_with_its_code(fake, tmp_path, capsys):
+    """A point that cannot be run is a row like any other, and the sweep ends with its exit code and one line."""
+    assert main(["sweep", str(write(tmp_path, "[product]\nmesh_size = [0.02, 1.0]\n")), "--out", str(tmp_path / "out")]) == 10
+    said = capsys.readouterr()
+    assert said.err.count("\n") == 1 and "1 of 2 points have no answer, first: mesh_size: 1 is larger than the radius 0.05" in said.err
+    assert table(tmp_path / "out").exit.tolist() == [0, 10] and "again" not in said.err
+
+
+def test_a_parameter_with_the_name_of_a_result_keeps_its_values(fake, tmp_path):
+    """spin is a parameter and a number of the summary: the latter is spin_end where the former varies."""
+    out = tmp_path / "out"
+    assert sweep.main([str(write(tmp_path, COARSE + "[product]\nspin = [-100, 0, 100]\n")), "--out", str(out)]) == 0
+    rows = table(out)
+    assert rows.spin.tolist() == [-100, 0, 100] and rows.spin_end.tolist() == [0, 0, 0]
+
+
+@pytest.mark.parametrize("text", ["[]", '{"exit_code": 11}', '{"exit_code": 11, "provenance": {}}', '{"exit_code": 12, "provenance": null}'])
+def test_damaged_folders_are_run_again(fake, tmp_path, text):
+    """A failure.json that is none stops nothing."""
+    path, out = write(tmp_path, SIX), tmp_path / "out"
+    wanted = sweep.load(str(path))
+    place = study.place(out, wanted.points[0])
+    place.mkdir(parents=True)
+    (place / "failure.json").write_text(text)
+    assert sweep.main([str(path), "--out", str(out)]) == 0 and (table(out).exit == 0).all()
+
+
+def test_a_full_disk_is_a_row(fake, tmp_path, monkeypatch):
+    """Where a run cannot be written its row says so with exit code 14."""
+    def full(*_, **__):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "file")
+    monkeypatch.setattr(run, "run", full)
+    rows = sweep.table(sweep.load(str(write(tmp_path, SIX))), tmp_path / "out")
+    assert (rows.exit == 14).all() and rows.message.str.contains("No space left on device").all()
+
+
+def test_another_sweep_does_not_come_in_between(fake, tmp_path, monkeypatch, capsys):
+    """While a sweep runs, a driver with another sweep file on the same folder is refused; afterwards it is not."""
+    path, out, other = write(tmp_path, SIX), tmp_path / "out", write(tmp_path / "other", SIX + "[[zip]]\ndt = [1e-5]\n")
+    monkeypatch.setenv("FAKE", "brief")
+    process = start("sweep", str(path), "--out", str(out))
+    wait_for(lambda: fake.starts() >= 1)
+    assert main(["sweep", str(other), "--out", str(out)]) == 14
+    assert "is being written by another sweep" in capsys.readouterr().err
+    assert process.wait(60) == 0 and (out / "sweep.toml").read_text() == SIX
+    monkeypatch.setenv("FAKE", "ok")
+    assert main(["sweep", str(other), "--out", str(out)]) == 0 and len(table(out)) == 6
 
 
 def test_error_bars_are_what_refining_changes(tmp_path):
     """With [refine] the number is that of the refined run, its error the difference to the plain one."""
-    text = "collect = ['impulse', 'dofs']\n[set]\ndegree = 1\nend_time = 1e-3\n[product]\nspeed = [4, 8]\n[refine]\naccuracy = 0.02\n"
+    text = "collect = ['impulse', 'dofs']\n[set]\ndegree = 1\nend_time = 1e-3\naccuracy = 0.05\n[product]\nspeed = [4, 8]\n[refine]\naccuracy = 0.02\n"
     wanted = sweep.load(str(write(tmp_path, text)))
     rows = sweep.collect(wanted, tmp_path / "out")
     plain, fine = (study.study([point | extra for point in wanted.points], tmp_path / "out", wanted.base, 60.0) for extra in ({}, wanted.refine))
@@ -224,6 +298,11 @@ def test_snakemake_gives_the_same_table(fake, tmp_path):
     assert fake.starts() == 12 and "7 of 7 steps (100%) done" in done.stderr
     pd.testing.assert_frame_equal(table(out), table(calm))
     assert call("sweep", str(path), "--out", str(out))[0] == 0 and fake.starts() == 12
+    shutil.rmtree(study.place(out, {"speed": 4.0, "nu": 0.3}))       # what is missing, and only that, is made again
+    (out / "sweep.csv").unlink()
+    again = subprocess.run(done.args, cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    assert again.returncode == 0 and fake.starts() == 13, again.stderr
+    pd.testing.assert_frame_equal(table(out), table(calm))
 
 
 # ---- what figures say
@@ -254,7 +333,7 @@ def test_set_of_a_level():
     group = pd.DataFrame({"nu": 0.3, "penalty": [1e9, 1e10, 1e11], "contact_time": [5e-3, 4.8e-3, 4.6e-3], "exit": 0})
     figure = {"x": "nu", "y": "penalty", "colour": "contact_time", "level": 4.8e-3, "band": 1e-4}
     lines = sweep_figures._set(figure, "", group)
-    assert "4.8 ± 0.1 ms is met for" in lines[0] and lines[1] == "  ν = 0.3: k [Pa/m^m] 3.2e+09 to 3.2e+10"
+    assert "4.8 ± 0.1 ms is met" in lines[0] and lines[1] == "  ν = 0.3: k [Pa/m^m] 3.2e+09 to 3.2e+10"
     assert sweep_figures._set(figure | {"level": 1.0}, "", group)[1] == "  ν = 0.3: no k [Pa/m^m]"
 
 
@@ -262,11 +341,11 @@ def test_distance_of_histories():
     """||b - a|| / ||a|| in L2 over time, on different time steps."""
     fine, coarse = np.linspace(0, 1, 2001), np.linspace(0, 1, 101)
     a, b = (fine, np.sin(np.pi * fine)), (coarse, 1.1 * np.sin(np.pi * coarse))
-    assert sweep_figures._distance(a, b) == pytest.approx(0.1, rel=1e-3) and sweep_figures._distance(a, a) == 0
+    assert sweep_figures.distance(a, b) == pytest.approx(0.1, rel=1e-3) and sweep_figures.distance(a, a) == 0
 
 
 @pytest.mark.parametrize("figure, words", [
-    ('kind = "map"\nx = "nu"\ny = "speed"\ncolour = "contact_time"\nlevel = 4.67e-3\nband = 1e-5', "4.67 ± 0.01 ms is met for"),
+    ('kind = "map"\nx = "nu"\ny = "speed"\ncolour = "contact_time"\nlevel = 4.67e-3\nband = 1e-5', "4.67 ± 0.01 ms is met"),
     ('kind = "histories"\ny = "normal_force"\npanel = "speed"\nby = "nu"', "speed = 4 m/s: relative L2 difference of normal force, ν = 0.3 and ν = 0.4: 0.0 %"),
 ])
 def test_other_figures(fake, tmp_path, capsys, figure, words):

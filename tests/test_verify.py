@@ -6,7 +6,7 @@ import math
 import pandas as pd
 import pytest
 
-from orchestrate import paper, run, verify
+from orchestrate import paper, verify
 from orchestrate.__main__ import main
 from orchestrate.failure import Failure
 from orchestrate.verify import Case, Row
@@ -72,7 +72,7 @@ def test_all_pass(cases, tmp_path, capsys):
     frame = pd.read_csv(tmp_path / "verify.csv")
     assert list(frame) == verify.COLUMNS and len(frame) == 4 + 1 + 2 + 1 and frame.tolerance.notna().sum() == 3 + 1
     assert (tmp_path / "v1-space.png").exists() and (tmp_path / "v2.png").exists()
-    assert json.loads((tmp_path / "summary.json").read_text())["provenance"]["code"] == run.code_hash()
+    assert json.loads((tmp_path / "summary.json").read_text())["provenance"]["code"] == verify.code_hash()
     page = paper.verification(tmp_path)
     assert page.count("data:image/png") == 2 and "<b>all pass</b>" in page and "<td>half: a</td>" in page
 
@@ -102,11 +102,13 @@ def test_a_run_that_was_cut_short_leaves_no_verdict(cases, tmp_path):
     """summary.json is of a finished verification only: the report then asks for it again."""
     cases(case(FINE))
     assert main(["verify", "--out", str(tmp_path)]) == 0
+    cases(case([], rows=lambda folder: 1 / 0))
+    assert main(["verify", "--out", str(tmp_path)]) == 0, "what the same code has left is taken as it is"
     def stopped(folder):
         raise KeyboardInterrupt
         yield
     cases(case([], rows=stopped))
-    assert main(["verify", "--out", str(tmp_path)]) == 130 and not (tmp_path / "summary.json").exists()
+    assert main(["verify", "--force", "--out", str(tmp_path)]) == 130 and not (tmp_path / "summary.json").exists()
 
 
 def test_tolerances_are_the_documented_ones():

@@ -1,0 +1,252 @@
+"""Checkpoint and restart: a run that is killed goes on from its last checkpoint as if nothing had happened."""
+
+import json
+import re
+import shutil
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from orchestrate import freefem, parameters, run, scene
+from orchestrate.failure import Failure, Unreadable
+from test_cli import call, is_alive, start, wait_for
+
+COARSE = dict(law="neohookean", nu=0.4)
+SCENES = {   # flags of edp/disc-plane.edp, steps between checkpoints, rows of history that the last checkpoint must know
+    "energy-momentum": (COARSE | dict(accuracy=0.1, angle=60, friction_static=0.7, friction_dynamic=0.5, fields=5), 7, 20),
+    "svk": (dict(accuracy=0.05, exponent=1.5, penalty=1e11, height=1e-3, gravity=9.81), 7, 20),
+    "midpoint": (COARSE | dict(accuracy=0.1, spin=50, friction_static=0.5, friction_dynamic=0.5, degree=1, integrator="midpoint"),
+                 7, 20),
+    "newmark": (COARSE | dict(accuracy=0.05, dt=2e-5, integrator="newmark"), 10, 100),
+    "backward-euler": (COARSE | dict(accuracy=0.05, dt=2e-5, integrator="backward-euler"), 10, 100),
+    "bdf2": (COARSE | dict(accuracy=0.05, dt=2e-5, integrator="bdf2"), 10, 100),
+    "central-difference": (COARSE | dict(accuracy=0.1, angle=60, friction_static=0.5, friction_dynamic=0.4, slip_velocity=0.5,
+                                         end_time=3e-4, integrator="central-difference"), 10, 200),
+}
+EFFORT = ("wall_seconds", "cpu_seconds", "peak_memory", "phase_seconds", "resumed_at", "provenance")
+
+
+def direct(flags: dict, out: Path) -> subprocess.Popen:
+    """FreeFem++ without Python."""
+    program = freefem.find()
+    words = [word for name, value in (flags | {"out": out}).items() for word in (f"-{name}", str(value))]
+    return subprocess.Popen([program.command, "-nw", "-v", "0", "edp/disc-plane.edp", *words], cwd=parameters.ROOT,
+                            env=program.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                            text=True)
+
+
+def rows_known(checkpoint: Path) -> int:
+    """Rows of the history that the checkpoint knows; 0 where there is none yet."""
+    try:
+        return int(checkpoint.read_bytes().split(b"\n", 2)[1])
+    except FileNotFoundError:
+        return 0
+
+
+def kill_at(process: subprocess.Popen, checkpoint: Path, rows: int) -> None:
+    """kill -9 once the checkpoint knows so many rows."""
+    end = time.monotonic() + 60
+    while rows_known(checkpoint) < rows:
+        assert process.poll() is None, "it ended before it could be killed"
+        assert time.monotonic() < end, "waited too long"
+        time.sleep(1e-3)
+    process.kill()
+    process.communicate()
+    assert process.returncode == -signal.SIGKILL
+
+
+def assert_same(folder: Path, straight: Path) -> None:
+    """Histories and summaries agree to round-off, 1e-12 of the largest value of a column (the balance is itself round-off:
+    of the energy); snapshots to their 9 digits."""
+    there, expected = run.read_history(folder), run.read_history(straight)
+    assert list(there) == list(expected)
+    for name, column in expected.items():
+        scale = np.abs(expected["kinetic" if name == "balance" else name]).max()
+        np.testing.assert_allclose(there[name], column, rtol=0, atol=1e-12 * scale, err_msg=name)
+    there, expected = run.read_summary(folder), run.read_summary(straight)
+    assert list(there) == list(expected)
+    for name in set(expected) - set(EFFORT):
+        exact = not isinstance(expected[name], float)
+        assert there[name] == (expected[name] if exact else pytest.approx(expected[name], rel=1e-9, abs=1e-11)), name
+    fields = sorted(path.name for path in (straight / "fields").glob("*.vtu"))
+    assert fields == sorted(path.name for path in (folder / "fields").glob("*.vtu"))
+    for name in fields:
+        numbers = [np.array([float(word) for word in (place / "fields" / name).read_text().replace("<", " <").split()
+                             if word[0] in "-0123456789"]) for place in (folder, straight)]
+        np.testing.assert_allclose(*numbers, rtol=1e-7, atol=1e-7 * np.abs(numbers[1]).max())
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_half_a_run_and_the_rest_are_the_whole(tmp_path, name):
+    """A run that is killed twice, and goes on each time, equals the run without checkpoints in every column and number.
+
+    So checkpoints do not change the answer either.
+    """
+    flags, every, rows = SCENES[name]
+    straight = direct(flags, tmp_path / "straight")
+    assert straight.communicate(timeout=120) and straight.returncode == 0
+    flags, out = flags | {"checkpoint_every": every}, tmp_path / "out"
+    kill_at(direct(flags, out), out / "checkpoint", rows // 2)
+    kill_at(direct(flags | {"restart": out / "checkpoint"}, out), out / "checkpoint", rows)
+    knows, there = rows_known(out / "checkpoint"), (out / "history.part").read_text()
+    (out / "history.part").write_text(there + "rows that were written after the checkpoint\n")
+    last = direct(flags | {"restart": out / "checkpoint"}, out)
+    assert last.communicate(timeout=120) and last.returncode == 0
+    assert_same(out, tmp_path / "straight")
+    summary = run.read_summary(out)
+    assert summary["resumed_at"] == run.read_history(out)["t"][knows - 1]
+    assert run.read_summary(tmp_path / "straight")["resumed_at"] is None
+    assert not {path.name for path in out.iterdir()} - {"scene.toml", "history.csv", "summary.json", "fields", "fields.pvd"}
+
+
+# ---- the same command
+
+SET = dict(law="neohookean", nu=0.4, accuracy=0.05, dt=2e-5, fields=2, checkpoint_every=10)
+COMMAND = ("run", "disc-normal", "--quiet", "--checkpoint-every", "10", "--set",
+           *(f"{name}={value}" for name, value in SET.items() if name != "checkpoint_every"), "--out")
+
+
+def go(out: Path, **changed) -> run.RunResult:
+    options = {name: changed.pop(name) for name in ("force", "mesh_file") if name in changed}
+    return run.run(scene.load("disc-normal"), SET | changed, out, pictures=False, **options)
+
+
+def children(process: subprocess.Popen) -> list[int]:
+    return [int(pid) for pid in Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()]
+
+
+@pytest.fixture(scope="module")
+def straight(tmp_path_factory) -> run.RunResult:
+    """The run that is never killed."""
+    return go(tmp_path_factory.mktemp("straight") / "out", checkpoint_every=0)
+
+
+@pytest.fixture(scope="module")
+def killed(tmp_path_factory) -> Path:
+    """out.part of a run whose driver was killed."""
+    out = tmp_path_factory.mktemp("killed") / "out"
+    process = start(*COMMAND, str(out))
+    wait_for(lambda: rows_known(out.with_name("out.part") / "checkpoint") > 100)
+    freefems = children(process)
+    process.kill()
+    process.communicate()
+    assert len(freefems) == 1
+    wait_for(lambda: not is_alive(freefems[0]))   # nothing is orphaned
+    assert not out.exists()
+    return out.with_name("out.part")
+
+
+@pytest.fixture
+def out(killed, tmp_path) -> Path:
+    """A result folder whose run was killed."""
+    shutil.copytree(killed, tmp_path / "out.part")
+    return tmp_path / "out"
+
+
+def test_killed_driver(out, straight):
+    """After kill -9 of the driver the same command goes on, and leaves the folder that a straight run leaves."""
+    assert call(*COMMAND, str(out)) == (0, "", "")
+    result = run.RunResult(out, run.read_summary(out), False)
+    assert result.summary["resumed_at"] > 1.5e-3
+    assert set(result.summary["provenance"]) == set(straight.summary["provenance"])
+    assert {path.name for path in out.iterdir()} == {path.name for path in straight.folder.iterdir()} | {"figures"}
+    assert_same(out, straight.folder)
+    assert not list(out.parent.glob("out.*"))
+
+
+def test_killed_freefem(tmp_path, straight):
+    """After kill -9 of FreeFem++ one line says that the same command goes on, and so it does."""
+    out, stage = tmp_path / "out", tmp_path / "out.part"
+    process = start(*COMMAND, str(out))
+    wait_for(lambda: rows_known(stage / "checkpoint") > 50)
+    subprocess.run(["kill", "-9", *map(str, children(process))], check=True)
+    said, err = process.communicate(timeout=10)
+    assert process.returncode == 1 and err.count("\n") == 1 and "killed by SIGKILL" in err and "the same command goes on" in err
+    assert str(stage) in said and not out.exists()
+    assert go(out).summary["resumed_at"] > 0
+    assert_same(out, straight.folder)
+
+
+def test_interrupted_run(tmp_path, straight):
+    """Ctrl-C costs no more than kill -9."""
+    out = tmp_path / "out"
+    process = start(*COMMAND, str(out))
+    wait_for(lambda: rows_known(tmp_path / "out.part/checkpoint") > 50)
+    process.send_signal(signal.SIGINT)
+    process.communicate(timeout=10)
+    assert process.returncode == 130
+    assert go(out).summary["resumed_at"] > 0
+    assert_same(out, straight.folder)
+
+
+@pytest.mark.parametrize("changed", [{"speed": 7.5}, {"force": True}, {"mesh_file": True}, {}],
+                         ids=["scene", "force", "mesh", "code"])
+def test_another_run_starts_anew(out, straight, monkeypatch, changed):
+    """Another scene, mesh or code, and --force, do not go on from the checkpoint that is there: it goes."""
+    if "mesh_file" in changed:
+        changed = {"mesh_file": straight.folder / "mesh.msh"}
+    if not changed:
+        monkeypatch.setattr(run, "code_hash", lambda: "other")
+    result = go(out, **changed, end_time=2e-4)
+    assert result.summary["resumed_at"] is None and result.history["t"][-1] == pytest.approx(2e-4)
+    assert not list(out.parent.glob("out.*"))
+
+
+def test_checkpoints_are_not_part_of_the_run(out, straight):
+    """How often checkpoints are made decides neither whether a run goes on nor whether a finished one is reused."""
+    assert go(out, checkpoint_every=0).summary["resumed_at"] > 0
+    assert go(out, checkpoint_every=1000).reused
+
+
+def test_failed_run_leaves_no_checkpoint(tmp_path):
+    """A run that fails of itself keeps its files as ever, and no checkpoint from which it would only fail again."""
+    with pytest.raises(Failure) as error:
+        go(tmp_path / "out", law="svk", speed=60, dt=0, checkpoint_every=1)
+    assert error.value.code in (11, 12) and error.value.folder == tmp_path / "out"
+    assert len(run.read_history(tmp_path / "out")["t"]) > 2
+    assert not list(tmp_path.glob("out/checkpoint*")) and not list(tmp_path.glob("out.*"))
+
+
+@pytest.mark.parametrize("damage", ["empty", "text", "cut", "flipped"])
+def test_unreadable_checkpoint(out, damage):
+    """A checkpoint that cannot be read ends with exit code 14 and a line that names it and says what to do; it stays."""
+    checkpoint = out.with_name("out.part") / "checkpoint"
+    content = checkpoint.read_bytes()
+    middle = len(content) // 2
+    checkpoint.write_bytes({"empty": b"", "text": b"not a checkpoint\n", "cut": content[:middle],
+                            "flipped": content[:middle] + bytes([content[middle] ^ 1]) + content[middle + 1:]}[damage])
+    code, _, err = call(*COMMAND, str(out))
+    assert code == 14 and err.count("\n") == 1 and str(checkpoint) in err and "it is damaged; delete it" in err
+    assert checkpoint.exists() and not out.exists()
+    checkpoint.unlink()
+    assert go(out, end_time=1e-4).summary["resumed_at"] is None
+
+
+def test_checkpoint_of_nobody_knows_what(out):
+    """Where it cannot be read whose checkpoint it is, exit code 14 says so."""
+    (out.with_name("out.part") / "checkpoint.json").write_text("{")
+    with pytest.raises(Unreadable, match="checkpoint.json cannot be read.*delete .*out.part"):
+        go(out)
+
+
+@pytest.mark.parametrize("changed, words", [
+    ({"speed": 7}, "it is of another scene or mesh"),
+    ({"mesh": None}, "it is of another scene or mesh"),
+    ({"restart": "nowhere"}, "there is no such file"),
+    ({"out": "elsewhere"}, "does not have the .* rows before it"),
+])
+def test_restart_without_python(out, tmp_path, changed, words):
+    """FreeFem++ itself refuses a checkpoint of another scene or mesh, none at all, or one without its history: exit code 14."""
+    stage = out.with_name("out.part")
+    used = json.loads((stage / "checkpoint.json").read_text())
+    flags = {name: used[name] for name in parameters.names() if name in used}
+    flags |= {"mesh": stage / "mesh.msh", "restart": stage / "checkpoint"} | changed
+    flags = {name: value for name, value in flags.items() if value is not None}
+    process = direct(flags, tmp_path / flags.pop("out", "out.part"))
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == 14 and err.count("\n") == 1
+    assert err.startswith("ffimpact: the checkpoint '") and re.search(words, err), err

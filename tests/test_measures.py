@@ -1,0 +1,124 @@
+"""The measurements: run time against error, savings left out, phases and growth."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from orchestrate import bench, costs, run, scene, skipping, stress_map, study
+
+
+def rows(**columns) -> pd.DataFrame:
+    return pd.DataFrame({"program": "ffimpact", "exit": 0, "setting": ""} | columns)
+
+
+def test_cheapest_setting_reaches_the_level_in_every_answer():
+    """The least time among those below the level in all columns, for each program; none where no setting is."""
+    table = rows(family=["a", "b", "c", "d"], program=["ffimpact", "ffimpact", "ffimpact", "other"], seconds=[1.0, 2.0, 3.0, 9.0],
+                 impulse_error=[0.5, 0.1, 0.01, 0.1], rebound_vy_error=[9.0, 0.1, 0.01, 0.1])
+    assert bench.cheapest(table, ["impulse_error"], 1.0) == "1.00 s: a; 9.00 s: d"
+    assert bench.cheapest(table, ["impulse_error", "rebound_vy_error"], 1.0) == "2.00 s: b; 9.00 s: d"
+    assert bench.cheapest(table, ["impulse_error"], 0.001) == "none"
+    assert bench.cheapest(table.assign(exit=12), ["impulse_error"], 5.0) == "none"
+
+
+@pytest.mark.parametrize("name", bench.CASES)
+def test_settings_cover_what_is_compared(name):
+    """Mesh size, both degrees, fixed and adaptive steps and every integrator, from coarse to fine; the reference is finer than all."""
+    case = bench.CASES[name]
+    families = bench.settings(case, quick=False)
+    assert {"midpoint", "newmark", "backward-euler", "bdf2"} <= set(families) and ("central-difference" in families) == (case.finer == 1)
+    every = [point for points in families.values() for point in points]
+    assert {point.get("degree", 2) for point in every} == {1, 2} and len({str(point) for point in every}) == len(every)
+    finest = min(point["accuracy"] for point in every if "accuracy" in point and point.get("degree", 2) == 2)
+    by_accuracy, by_size = bench.references(case, quick=False)
+    assert by_accuracy["accuracy"] < finest / 2
+    assert by_size["dt"] < min(point["dt"] for point in every if "dt" in point)
+    assert by_size["mesh_size"] < min(point["mesh_size"] for point in every if "mesh_size" in point)
+
+
+def test_bench_on_coarse_runs(tmp_path, monkeypatch, capsys):
+    """A row a setting with its time and errors, which fall with refinement; the page, the figure and the CSV are there."""
+    monkeypatch.setattr(bench, "settings", lambda *_: {"adaptive, P2": [{"accuracy": 0.1}, {"accuracy": 0.02}], "bdf2": [{"accuracy": 0.1, "integrator": "bdf2"}]})
+    monkeypatch.setattr(bench, "references", lambda *_: [{"accuracy": 0.01}, {"accuracy": 0.008}])
+    monkeypatch.setattr(bench, "PEERS_QUICK", [("ngsolve", "tuned", 2, 1e-4), ("textbook", "FreeFEM", 2, 1e-4)])
+    monkeypatch.setattr(bench.peers, "run", lambda *_, **__: (None, "is not installed"))
+    assert bench.main(["--quick", "--out", str(tmp_path)]) == 0
+    table = pd.read_csv(tmp_path / "bench.csv")
+    assert len(table) == 5 and table.seconds[:3].notna().all() and table.impulse_error[4] < 5 and table.force_error[0] > table.force_error[1] > 0
+    text = (tmp_path / "bench.md").read_text()
+    assert "Cheapest setting" in text and "- ngsolve" in text and "is not installed" in text and (tmp_path / "normal-svk.png").exists()
+    assert text.strip() in capsys.readouterr().out
+
+
+def test_skipping_changes_no_answer(tmp_path, monkeypatch, capsys):
+    """Every saving is left out once; impulse and rebound stay within the accuracy of the runs."""
+    monkeypatch.setattr(skipping, "RUNS", 1)
+    assert skipping.main(["--accuracy", "0.05", "--out", str(tmp_path)]) == 0, capsys.readouterr().out
+    table = pd.read_csv(tmp_path / "skipping.csv")
+    assert list(table["left out"]) == ["nothing", *skipping.SAVINGS] and (table.seconds > 0).all()
+
+
+@pytest.mark.parametrize("without, said", [("flight", "flight before touch"), ("friction", "friction"), ("body-force", "body force")])
+def test_what_is_left_out_is_not_called_skipped(tmp_path, without, said):
+    """`skipped` in the summary tells what a run really skipped."""
+    settings = {"accuracy": 0.1, "height": 1e-3, "end_time": 5e-4}
+    full, left_out = (run.run(scene.load("disc-normal"), settings | {"without": word, "fields": 0}, tmp_path / word, pictures=False)
+                      for word in ("none", without))
+    assert said in full.summary["skipped"] and said not in left_out.summary["skipped"]
+    assert left_out.summary["energy_drift"] < 1e-9
+
+
+def test_phases_add_up_to_the_wall_time(tmp_path):
+    """phase_seconds is the whole wall time, and `other` is not negative beyond the clock's 10 ms."""
+    end = run.run(scene.load("disc-normal"), {"accuracy": 0.05, "fields": 0}, tmp_path / "a", pictures=False).summary
+    assert sum(end["phase_seconds"].values()) == pytest.approx(end["wall_seconds"], abs=1e-9) and end["phase_seconds"]["other"] > -0.02
+    assert set(end["phase_seconds"]) == set(costs.PHASES)
+    assert end["residual_evaluations"] >= end["newton_iterations"] and 1e6 < end["peak_memory"] < 1e9
+
+
+def test_growth_fits_a_power_law(tmp_path, monkeypatch):
+    """Time and memory over the degrees of freedom, one FreeFem++ at a time."""
+    def measured(points, folder, base, limit, cores):
+        assert cores == 1
+        dofs = np.array([1e3, 1e4, 1e5])
+        for point, each in zip(points, dofs):
+            path = study.place(folder, point)
+            path.mkdir(parents=True)
+            (path / "summary.json").write_text('{"status": "ok", "phase_seconds": {"setup": 0.0}}')
+        return pd.DataFrame({"dofs": dofs, "cpu_seconds": 1e-6 * dofs**1.2, "steps": 20, "peak_memory": 1e3 * dofs, "exit": 0, "message": ""})
+    monkeypatch.setattr(study, "study", measured)
+    table, laws = costs.growth(tmp_path, quick=True)
+    assert laws["ms a step"][0] == pytest.approx(1.2) and laws["memory, MB"][0] == pytest.approx(1.0) and len(table) == 3
+
+
+def test_stress_map_is_always_the_same_and_covers_all():
+    """The same seed gives the same sets; fewer of them are the first of them; every range is covered to its ends."""
+    points = stress_map.sample(300)
+    assert points == stress_map.sample(300) and points[:7] == stress_map.sample(7)
+    frame = pd.DataFrame(points)
+    assert set(frame.law) == {"svk", "neohookean"} and {0.0, 0.499} <= set(frame.nu) and set(frame.degree) == {1, 2}
+    assert frame.speed.min() < 0.6 and frame.speed.max() > 17 and frame.penalty.min() < 2e8 and frame.penalty.max() > 5e12
+    assert (frame.dt == 0).mean() > 0.4 and frame.slip_velocity.min() < 0.02 and 0.4 < frame.friction_static.notna().mean() < 0.6
+    assert (frame.friction_static.fillna(0) >= frame.friction_dynamic.fillna(0)).all()
+    assert all(scene.load("disc-normal").override(point) for point in points), "every set is accepted"
+
+
+@pytest.mark.parametrize("change, holds", [
+    ({}, True), ({"energy_drift": 1e-6}, False), ({"contact_intervals": 50}, False), ({"exit": 1, "message": "killed"}, False),
+    ({"exit": study.TOO_LONG, "message": "no end"}, False), ({"exit": 12, "message": "det F"}, True), ({"exit": 12, "message": ""}, False),
+    ({"exit": 11, "message": "the step"}, True)])
+def test_stress_map_requirement(change, holds):
+    """No open balance, chatter, crash or hang among the finished; a failure has a message; exit 11 is rare."""
+    row = {"law": "svk", "nu": 0.3, "speed": 4.0, "penalty": 1e10, "exit": 0, "message": "", "energy_drift": 1e-11, "contact_intervals": 1,
+           "min_stretch": 0.5, "max_penetration": 1e-4, "wall_seconds": 1.0, "newton_iterations": 10, "steps": 2}
+    rows = pd.DataFrame([row] * 99 + [row | change])
+    rows["outcome"] = [stress_map.judge(each) for _, each in rows.iterrows()]
+    assert stress_map.holds(rows) == holds and f"the requirement {'holds' if holds else 'FAILS'}" in stress_map.report(rows)[-1]
+
+
+def test_stress_map_reports(fake, tmp_path, capsys):
+    """CSV, figure and page; failing regions in words."""
+    fake("material")
+    assert stress_map.main(["--sets", "6", "--out", str(tmp_path)]) == 0
+    assert "material broke down (12)" in capsys.readouterr().out
+    assert {path.name for path in tmp_path.iterdir()} >= {"stress-map.csv", "stress-map.png", "stress-map.md", "runs"}
