@@ -25,7 +25,7 @@ from .run import read_history
 
 KINDS = {"lines": ("x", "y", "by"), "map": ("x", "y", "colour", "by", "level", "band"), "histories": ("y", "panel", "by")}
 WORDS = {"nu": "ν", "penalty": "k"}
-HISTORY = re.findall(r"\w+", "".join(re.findall(r'^(?:historyFile)?\s*<< "([\w,]+)"', (parameters.ROOT / "edp/core/record.idp").read_text(), re.M)))
+HISTORY = re.findall(r"\w+", "".join(re.findall(r'^(?:.*historyFile)?\s*<< "([\w,]+)"', (parameters.ROOT / "edp/core/record.idp").read_text(), re.M)))
 COLOURS, MARKERS = (BLUE, ORANGE, GREEN, PURPLE, GREY), "osd^v"
 
 
