@@ -1,5 +1,6 @@
 """Exact solutions: every case over element size, time step or what else its error comes from, judged by tolerances that were
-fixed beforehand. results/verify/verify.csv has all numbers, a figure a case beside it. Some two minutes; what the present code left is taken as it is."""
+fixed beforehand. results/verify/verify.csv has all numbers, a figure a case beside it. Some two minutes;
+what the present code left is taken as it is."""
 
 import argparse
 import hashlib
@@ -248,7 +249,7 @@ CASES = (
          note="v/c = 8·10⁻⁴, steps of half an element's transit. A second-order scheme smears the front over h^(2/3): the order "
               "to expect. The stress is the mean of the middle 80 % of the contact."),
     Case("V5", "clamped rod against a wall: contact in [1, 2], stress 1/2, period 3, energy 1/8", "element size / length", 0.01,
-         rods, note="Compressed by 5·10⁻⁵ and let go, scaled back to the linear rod; the finite strain leaves 5·10⁻⁵ in the energy."
+         rods, note="Compressed by 5·10⁻⁵, let go, scaled back to the linear rod; the finite strain leaves 5·10⁻⁵ in the energy."
                     " Penalty 1000 E/L. Mean stress: impulse over contact time; middle: t in [1.1, 1.9]."),
     Case("V6", "cylinder pressed on a plane: Hertz", "element size / b", 0.02, cylinder, beside=ellipse,
          note="b/R = 0.005, neo-Hookean, ν = 0.3, penalty 10 E*/h; b and p₀ are those of the ellipse fitted to the tractions at "
@@ -256,7 +257,7 @@ CASES = (
     Case("V8", "rigid body on the penalty: depth and contact time", "time step [s]", 0.01, rigids,
          note="E = 10¹² Pa; the depth is the largest at the steps. m = 1.5 and 2 besides m = 1."),
     Case("V9", "stiff block: sliding to a stop, starting to slide, creeping", "time step [s]", 0.01, block,
-         note="The slip velocity goes with the step. The block is set down in the equilibrium of a rigid one; its weight shortens "
+         note="The slip velocity goes with the step. The block starts in the equilibrium of a rigid one; its weight shortens "
               "it by 0.5 % of the penetration, it vibrates, and its normal load with it: by that the start and the creep are off "
               "once the step resolves it."),
     Case("V10", "stiff oblique disc: sliding throughout, rolling", "penalty × radius / E", 0.03, oblique,
@@ -268,15 +269,17 @@ CASES = (
 def main(argv: list[str]) -> int:
     """Runs the cases, prints the table, writes verify.csv and the figures; 0 only if all pass."""
     parser = argparse.ArgumentParser(prog="python -m orchestrate verify", description=__doc__)
-    parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/verify", help="the result folder (default: results/verify)")
+    parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/verify", help="the result folder")
     parser.add_argument("--force", action="store_true", help="run again what the same code has left")
     options = parser.parse_args(argv)
     out = options.out.resolve()
-    frame = pd.read_csv(out / "verify.csv", keep_default_na=False, na_values=[""]) if there(out) and not options.force else run_all(out)
+    reused = there(out) and not options.force
+    frame = pd.read_csv(out / "verify.csv", keep_default_na=False, na_values=[""]) if reused else run_all(out)
     passed = bool(judged(frame)["pass"].all())
     print(study.table(overview(frame), FORMATS))
     for failed in judged(frame).query("not `pass`").itertuples():
-        print(f"FAILED  {failed.case}, {failed.what}: {failed.value:.6g}, expected {failed.expected:.6g}, error {failed.error:.2g} > {failed.tolerance:g}")
+        print(f"FAILED  {failed.case}, {failed.what}: {failed.value:.6g}, expected {failed.expected:.6g}, "
+              f"error {failed.error:.2g} > {failed.tolerance:g}")
     print(f"\n{'all pass' if passed else 'NOT all pass'}: {shown(out)}/verify.csv and *.png")
     return 0 if passed else 1
 
@@ -284,7 +287,8 @@ def main(argv: list[str]) -> int:
 def there(out: Path) -> bool:
     """Whether `out` holds a finished verification of the present code."""
     try:
-        return json.loads((out / "summary.json").read_text())["provenance"]["code"] == code_hash() and (out / "verify.csv").exists()
+        made = json.loads((out / "summary.json").read_text())["provenance"]["code"]
+        return made == code_hash() and (out / "verify.csv").exists()
     except (OSError, ValueError, KeyError, TypeError):
         return False
 
@@ -292,7 +296,7 @@ def there(out: Path) -> bool:
 def code_hash() -> str:
     """sha256 of the core, the verification scripts and what runs and judges them."""
     digest = hashlib.sha256(run.code_hash().encode())
-    for path in [*sorted((ROOT / "tests/verification").glob("*.edp")), Path(__file__), ROOT / "orchestrate/measure.py"]:
+    for path in [*sorted((ROOT / "tests/verification").glob("*.?dp")), Path(__file__), ROOT / "orchestrate/measure.py"]:
         digest.update(path.read_bytes())
     return digest.hexdigest()
 
@@ -310,8 +314,8 @@ def run_all(out: Path) -> pd.DataFrame:
     frame = pd.concat(frames, ignore_index=True)
     study.save(frame, out / "verify.csv")
     with study.complete(out / "summary.json") as part:
-        passed = bool(judged(frame)["pass"].all())
-        part.write_text(json.dumps({"passed": passed, "provenance": {"code": code_hash(), "freefem": program.version}}, indent=1))
+        passed, provenance = bool(judged(frame)["pass"].all()), {"code": code_hash(), "freefem": program.version}
+        part.write_text(json.dumps({"passed": passed, "provenance": provenance}, indent=1))
     return frame
 
 
@@ -426,13 +430,14 @@ def draw_errors(axes: plt.Axes, case: Case, rows: list[Row]) -> None:
         sizes = np.array([row.size for row in line])
         errors = 0.6 * min(row.error / row.size**order for row in line) * sizes**order
         axes.loglog(sizes, errors, color=GREY, linewidth=1)
-        axes.annotate(f"order {order:.2g}", (sizes[-2], errors[-2]), (3, -3), textcoords="offset points", color="#666666",
+        axes.annotate(f"order {order:.2g}", (sizes[-1], errors[-1]), (4, -2), textcoords="offset points", color="#666666",
                       ha="left", va="top", bbox=dict(facecolor="white", edgecolor="none", alpha=0.8, pad=1))
     if not case.by_order:
         axes.axhline(case.tolerance, color=BLACK, linestyle="--", linewidth=0.8, label="asked of the finest")
     sizes = sorted({row.size for row in rows})
     axes.set_xticks(sizes, [f"{size:.4g}" for size in sizes])
     axes.xaxis.set_minor_locator(NullLocator())
+    axes.margins(y=0.1)
     hidden = any(row.error < SHOWN for row in rows)
     axes.set(xlabel=case.axis, ylabel="relative error" + " (below $10^{-6}$ drawn there)" * hidden)
     axes.grid(alpha=0.3)
