@@ -12,13 +12,11 @@ def rows(**columns) -> pd.DataFrame:
 
 
 def test_cheapest_setting_reaches_the_level_in_every_answer():
-    """The least time among those below the level in all columns, for each program; none where no setting is."""
-    table = rows(family=["a", "b", "c", "d"], program=["ffimpact", "ffimpact", "ffimpact", "other"], seconds=[1.0, 2.0, 3.0, 9.0],
-                 impulse_error=[0.5, 0.1, 0.01, 0.1], rebound_vy_error=[9.0, 0.1, 0.01, 0.1])
-    assert bench.cheapest(table, ["impulse_error"], 1.0) == "1.00 s: a; 9.00 s: d"
-    assert bench.cheapest(table, ["impulse_error", "rebound_vy_error"], 1.0) == "2.00 s: b; 9.00 s: d"
-    assert bench.cheapest(table, ["impulse_error"], 0.001) == "none"
-    assert bench.cheapest(table.assign(exit=12), ["impulse_error"], 5.0) == "none"
+    """The least time among those below the level in all columns; none where no setting is, or the run failed."""
+    table = rows(family=["a", "b", "c"], seconds=[1.0, 2.0, 3.0], impulse_error=[0.5, 0.1, 0.01], rebound_vy_error=[9.0, 0.1, 0.01])
+    assert bench.cheapest(table, ["impulse_error"], 1.0) == "1.00 s: a"
+    assert bench.cheapest(table, ["impulse_error", "rebound_vy_error"], 1.0) == "2.00 s: b"
+    assert bench.cheapest(table, ["impulse_error"], 0.001) == bench.cheapest(table.assign(exit=12), ["impulse_error"], 5.0) == "none"
 
 
 @pytest.mark.parametrize("name", bench.CASES)
