@@ -83,7 +83,8 @@ def report(result: RunResult) -> str:
     place = shown(result.folder)
     lines = [f"{place}: " + ("finished earlier, same scene and code" if result.reused else "finished"),
              f"{scene['law']}, nu = {scene['nu']:g}, {scene['speed']:g} m/s, angle {scene['angle']:g} degrees, "
-             f"penalty {scene['penalty']:g}"]
+             f"penalty {scene['penalty']:g}" + (f", friction {scene['friction_static']:g} static, {scene['friction_dynamic']:g} dynamic"
+                                                if scene.get("friction_static") else "")]
     for quantity in rows(per_metre=not script.startswith("ball")):
         value = summary.get(quantity.key)
         if value is None or (abs(value) < 1e-9 and quantity.key in LEFT_OUT_AT_ZERO):

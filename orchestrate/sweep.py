@@ -254,7 +254,7 @@ def table(wanted: Sweep, out: Path) -> pd.DataFrame:
     """Runs what is not there yet; a row a point, tidy: what varies, exit, message, what is collected, with `refine` of the refined
     run and beside it <name>_error [same unit], |refined - plain|; seconds.
 
-    A point of which a run failed keeps that run's exit code and message, and the numbers that there are.
+    A point of which a run failed keeps that run's exit code and message, and has no numbers.
     """
     runs = study.study(wanted.runs, out, wanted.base, wanted.limit, wanted.scene)
     for name in wanted.collect:                       # where no run came so far
@@ -268,6 +268,7 @@ def table(wanted: Sweep, out: Path) -> pd.DataFrame:
         rows.loc[worse, ["exit", "message"]] = plain.loc[worse, ["exit", "message"]]
         for name in wanted.collect:
             rows[f"{name}_error"] = (fine[name] - plain[name]).abs()
+    rows[wanted.collect] = rows[wanted.collect].where(rows.exit == 0)
     rows["seconds"] = plain.get("wall_seconds", np.nan) + (fine.get("wall_seconds", np.nan) if wanted.refine else 0)
     return rows
 

@@ -4,7 +4,8 @@
     kind = "map"        x, y, colour, by: a panel for each value of `by`; level, band: where colour = level +- band
     kind = "histories"  y (a column of history.csv), panel, by: y over time, a panel a value of `panel`, a line a value of `by`
 
-x, y of a map, by and panel are parameters that vary; the y of lines and colour are numbers that are collected.
+x, y of a map, by and panel are parameters that vary and together tell all points apart; the y of lines and colour are numbers
+that are collected. The x of lines is logarithmic where its values span a decade and are spaced so.
 """
 
 import itertools
@@ -182,8 +183,8 @@ def _lines(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
 
 
 def _is_logarithmic(values: pd.Series) -> bool:
-    """Whether values are spaced evenly in their logarithm rather than linearly."""
-    if not pd.api.types.is_numeric_dtype(values) or (values <= 0).any() or values.nunique() < 3:
+    """Whether five values or more span a decade and are spaced evenly in their logarithm rather than linearly."""
+    if not pd.api.types.is_numeric_dtype(values) or (values <= 0).any() or values.nunique() < 5 or values.max() < 10 * values.min():
         return False
     spread = lambda steps: steps.std() / steps.mean()   # noqa: E731
     ordered = np.sort(values.unique())

@@ -2,6 +2,7 @@
 
 import errno
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -157,6 +158,7 @@ def test_failed_points_are_kept_with_their_reason(fake, tmp_path, capsys, mode, 
     assert main(["sweep", str(path), "--out", str(out)]) == returned
     rows, said = table(out), capsys.readouterr()
     assert (rows.exit == code).all() and rows.message.notna().all() and "0 of 6 points finished" in said.out
+    assert rows.impulse.isna().all(), "what a failed run came to is no result"
     assert f"failed, exit {code}: speed=4.0,nu=0.3" in said.out
     assert said.err.count("\n") == returned and ("6 of 6 points have no answer" in said.err and "runs again" in said.err) == (returned == 1)
     assert main(["sweep", str(path), "--out", str(out)]) == returned and fake.starts() == (12 if returned else 6)
@@ -360,3 +362,11 @@ def test_words_as_axes(fake, tmp_path, capsys):
     text = COARSE + '[product]\nlaw = ["svk", "neohookean"]\nspeed = [4, 8]\n[figure]\nx = "law"\ny = "contact_time"\nby = "speed"\n'
     assert sweep.main([str(write(tmp_path, text)), "--out", str(tmp_path / "out")]) == 0
     assert "| neohookean |" in capsys.readouterr().out and (tmp_path / "out/sweep.png").exists()
+
+
+def test_the_sweep_of_the_readme_is_sound(tmp_path):
+    """What the README shows is accepted as it stands."""
+    text = (parameters.ROOT / "README.md").read_text()
+    example = re.search(r"```\n(scene = \"disc-normal\".*?)```", text, re.S)[1]
+    wanted = sweep.load(str(write(tmp_path, example)))
+    assert len(wanted.points) == 32 and wanted.refine and wanted.figure
