@@ -5,7 +5,7 @@ READY := .venv/.ready
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup disc-normal disc-oblique disc-rolling friction-laws oblique contact-time-svk law-comparison contact-time-neohookean calibrate stick-slip verify paper movie test stress bench bench-quick textbook skipping costs refine refine-oblique clean
+.PHONY: help setup disc-normal disc-oblique disc-rolling friction-laws oblique contact-time-svk law-comparison contact-time-neohookean calibrate stick-slip verify paper movie test stress bench bench-quick textbook skipping costs promise refine refine-oblique clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
@@ -57,7 +57,7 @@ stress: $(READY) ## hard parameter sets: every combination of some, and hundreds
 	@$(PYTHON) -m orchestrate stress $(ARGS)
 	@$(PYTHON) -m orchestrate stress-map
 
-bench textbook skipping costs refine: $(READY)
+bench textbook skipping costs promise refine: $(READY)
 	@$(PYTHON) -m orchestrate $@ $(ARGS)
 bench: ## run time against error: meshes, steps, integrators, and other programs where installed
 bench-quick: $(READY) ## the same for one case, coarse
@@ -65,6 +65,7 @@ bench-quick: $(READY) ## the same for one case, coarse
 textbook: ## seconds a step beside a plain textbook script
 skipping: ## what each saving saves, and that it does not change the answer
 costs: ## where the time goes, its floor, and how it grows with the mesh
+promise: ## whether accuracy means what it says, over twenty scenes
 refine: ## refine mesh and step, report the observed convergence
 refine-oblique: $(READY) ## the same for the oblique disc, with the slip velocity down to 0.01 m/s
 	@$(PYTHON) -m orchestrate refine disc-oblique $(ARGS)
