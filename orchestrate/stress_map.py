@@ -10,12 +10,12 @@ import pandas as pd
 from . import stress, study
 from .figures import BLUE, ORANGE, PURPLE, STYLE
 from .parameters import ROOT
+from .report import CHATTER
 from .run import shown
 
 SEED, SETS = 2024, 300
 LIMIT = 300.0               # seconds a run may take
 ALLOWED_11 = 0.02           # share of the sets that may end with exit code 11
-CHATTER = 20                # separate contacts of the body in one impact: above, the answer is noise
 AXES = ("law", "nu", "speed", "angle", "penalty", "exponent", "dt", "accuracy", "degree", "friction_static", "friction_dynamic", "slip_velocity",
         "regularization")
 COLOURS = {"closed": BLUE, "breakdown": ORANGE, "no step": PURPLE, "open": "red", "chatter": "black", "other": "black"}

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from orchestrate import bench, costs, promise, run, scene, skipping, stress_map, study
+from orchestrate import bench, costs, promise, report, run, scene, skipping, stress_map, study
 
 
 def rows(**columns) -> pd.DataFrame:
@@ -140,3 +140,11 @@ def test_promise_scenes_are_twenty_different_ones():
     assert len({str(point) for point in points}) == 20 and {point["law"] for point in points} == {"svk", "neohookean"}
     assert sum("friction_static" in point for point in points) >= 4
     assert all(scene.load("disc-normal").override(point) for point in points)
+
+
+@pytest.mark.parametrize("contacts, said", [(1, False), (20, False), (21, True)])
+def test_chatter_is_said(fake, tmp_path, contacts, said):
+    """A run whose body touches again and again says so in its report."""
+    result = run.run(scene.load("disc-normal"), {"fields": 0}, tmp_path / "a", pictures=False)
+    result.summary["contact_intervals"] = contacts
+    assert ("chatter: more than 20 separate contacts" in report.report(result)) == said
