@@ -21,7 +21,8 @@ ANSWERS = {                 # by scene; all but the last are promised to ASKED
 SHOWN = 1e-4                # %; differences below are drawn there
 ASKED = 0.5                 # % of the converged values, for the run with default parameters
 LABELS = {"mesh": ("mesh factor", "off the finest mesh [%]"), "step": ("time step [s]", "off the smallest step [%]"),
-          "accuracy": ("accuracy", "off the converged values [%]"), "penalty": ("penalty [Pa/m]", "off the stiffest [%]"), "slip": ("slip velocity [m/s]", "off the smallest [%]")}
+          "accuracy": ("accuracy", "off the converged values [%]"), "penalty": ("penalty [Pa/m]", "off the stiffest [%]"),
+          "slip": ("slip velocity [m/s]", "off the smallest [%]")}
 LIMIT = 600.0               # seconds a run may take
 
 

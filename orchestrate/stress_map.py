@@ -120,9 +120,11 @@ def draw(rows: pd.DataFrame, path: Path) -> None:
     with plt.rc_context(STYLE):
         figure, grid = plt.subplots(2, 2, figsize=(8.6, 6.6))
         (a, b), (c, d) = grid
-        panels = ((a, rows.speed, places["nu"](rows), "speed [m/s]", "ν"), (b, rows.penalty, places["exponent"](rows), "penalty k [Pa/m$^m$]", "exponent m"),
+        epsilon, coefficient = (rows.get(name, pd.Series(np.nan, rows.index)) for name in ("slip_velocity", "friction_static"))
+        panels = ((a, rows.speed, places["nu"](rows), "speed [m/s]", "ν"),
+                  (b, rows.penalty, places["exponent"](rows), "penalty k [Pa/m$^m$]", "exponent m"),
                   (c, rows.dt.replace(0.0, 2e-6), rows.dofs, "time step [s]; left: adaptive", "degrees of freedom"),
-                  (d, rows.get("slip_velocity", pd.Series(np.nan, rows.index)), rows.get("friction_static", pd.Series(np.nan, rows.index)), "ε [m/s]", "static coefficient"))
+                  (d, epsilon, coefficient, "ε [m/s]", "static coefficient"))
         for axes, x, y, xlabel, ylabel in panels:
             for outcome, colour in COLOURS.items():
                 for law, marker in (("svk", "o"), ("neohookean", "s")):
