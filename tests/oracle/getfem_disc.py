@@ -116,12 +116,6 @@ class Disc:
         self.v = (2 / self.dt) * self.increment - self.v
         return (self.velocity() - before) * self.weight / self.dt
 
-    def small(self, work: float) -> bool:
-        """Whether Newton's method is there, from the work of its residual [J/m]."""
-        if not math.isfinite(work):
-            raise peer.StepFailed("a stress is not a number")
-        return abs(work) <= self.o.tolerance * self.energy0
-
 
 class Plain(Disc):
     """The step as a model, full Newton, MUMPS."""
@@ -143,7 +137,7 @@ class Plain(Disc):
             work = change @ self.model.rhs()
             self.model.to_variables(self.model.from_variables() + change)
             u = u + change[first:first + length]
-            if self.small(work):
+            if peer.small(work, self.o.tolerance * self.energy0):
                 return u
         raise peer.StepFailed("no convergence")
 
@@ -185,7 +179,7 @@ class Tuned(Disc):
             change[self.free] = self.factor.solve(residual)
             self.newton_iterations += 1
             work = change[self.free] @ residual
-            if self.small(work):
+            if peer.small(work, self.o.tolerance * self.energy0):
                 return u - change
             if not abs(work) < SLOW ** 2 * work_before and not fresh:
                 self.factorize(u)

@@ -117,12 +117,6 @@ class Disc:
         self.v0.vec.data += (2 / self.dt) * self.increment
         return (self.velocity() - before) * self.weight / self.dt
 
-    def small(self, work: float) -> bool:
-        """Whether Newton's method is there, from the work of its residual [J/m]."""
-        if not math.isfinite(work):
-            raise peer.StepFailed("a stress is not a number")
-        return abs(work) <= self.o.tolerance * self.energy0
-
 
 class Plain(Disc):
     """One form, full Newton, UMFPACK."""
@@ -143,7 +137,7 @@ class Plain(Disc):
             self.newton_iterations += 1
             self.factorizations += 1
             self.u.vec.data -= self.change
-            if self.small(ng.InnerProduct(self.change, self.residual)):
+            if peer.small(ng.InnerProduct(self.change, self.residual), self.o.tolerance * self.energy0):
                 return
         raise peer.StepFailed("no convergence")
 
@@ -206,7 +200,7 @@ class Tuned(Disc):
             self.change.data = self.inverse * self.residual
             self.newton_iterations += 1
             work = ng.InnerProduct(self.change, self.residual)
-            if self.small(work):
+            if peer.small(work, self.o.tolerance * self.energy0):
                 self.u.vec.data -= self.change
                 return
             if not abs(work) < SLOW ** 2 * work_before and not fresh:

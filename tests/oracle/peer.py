@@ -7,6 +7,7 @@ metre of thickness. A peer gives a Model; `march` runs it until the contact has 
 
 import argparse
 import json
+import math
 import sys
 import time
 from collections.abc import Callable
@@ -45,6 +46,13 @@ class Model(Protocol):
 
 class StepFailed(Exception):
     """Newton's method did not converge, or a stress is not a number."""
+
+
+def small(work: float, accepted: float) -> bool:
+    """Whether Newton's method is there: the work of its residual against what is accepted [J/m]. Raises StepFailed."""
+    if not math.isfinite(work):
+        raise StepFailed("a stress is not a number")
+    return abs(work) <= accepted
 
 
 def arguments(program: str, forms: tuple[str, ...]) -> argparse.Namespace:
