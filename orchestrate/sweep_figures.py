@@ -26,8 +26,8 @@ from .run import read_history
 
 KINDS = {"lines": ("x", "y", "by"), "map": ("x", "y", "colour", "by", "level", "band"), "histories": ("y", "panel", "by")}
 WORDS = {"nu": "ν", "penalty": "k"}
-HISTORY = re.search(r'"(t,dt,.*?)" << endl;', (parameters.ROOT / "edp/core/record.idp").read_text(), re.S)[1]   # columns of history.csv
-HISTORY = re.findall(r"\w+", HISTORY)
+_HEADER = re.search(r'"(t,dt,.*?)" << endl;', (parameters.ROOT / "edp/core/record.idp").read_text(), re.S)[1]
+HISTORY_COLUMNS = re.findall(r"\w+", _HEADER)   # of history.csv, as the script writes them
 COLOURS, MARKERS = (BLUE, ORANGE, GREEN, PURPLE, GREY), "osd^v"
 
 
@@ -53,9 +53,9 @@ def check(given: dict, points: list[dict], collected: list[str]) -> dict:
     for key in results:
         names = figure.get(key) if key == "y" else [figure.get(key)]
         if not isinstance(names, list) or not names:
-            raise BadInput(f"figure: {key} is missing (accepted: one or several of {', '.join(collected if kind == 'lines' else HISTORY)})")
+            raise BadInput(f"figure: {key} is missing (accepted: one or several of {', '.join(collected if kind == 'lines' else HISTORY_COLUMNS)})")
         for name in names:
-            _name(key, name, HISTORY if kind == "histories" else collected)
+            _name(key, name, HISTORY_COLUMNS if kind == "histories" else collected)
     used = [figure[key] for key in (*axes, "by", "panel") if figure[key] is not None]
     if len(set(used)) < len(used) or len({tuple(point[name] for name in used) for point in points}) < len(points):
         raise BadInput(f"figure: {', '.join(used) or 'nothing'} does not tell the points apart (accepted: different names for "
