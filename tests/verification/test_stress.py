@@ -1,4 +1,4 @@
-"""The stress in the snapshots against closed forms."""
+"""The stress in the snapshots, and the energy of a step, against closed forms."""
 
 import numpy as np
 import pytest
@@ -32,3 +32,28 @@ def test_homogeneous_deformation_has_the_stress_of_the_closed_form(measure, tmp_
     assert found["cauchy_stress"] == pytest.approx(np.tile(voigt, (len(found["jacobian"]), 1)), rel=1e-7)
     assert found["von_mises"] == pytest.approx(np.full(len(found["jacobian"]), np.sqrt(1.5 * (deviator**2).sum())), rel=1e-7)
     assert found["jacobian"] == pytest.approx(np.full(len(found["jacobian"]), np.linalg.det(F)), rel=1e-7)
+
+
+def longer(found: dict, name: str) -> np.ndarray:
+    """Entries 11, 22, 12 of M or H at the ten points of work-excess.edp, (3, 10), in extended precision."""
+    return np.array([[found[f"{name}{entry}_{i}"] for i in range(10)] for entry in ("11", "22", "12")]).astype(np.longdouble)
+
+
+def neo(C: np.ndarray) -> np.ndarray:
+    """W/mu of (6) in plane strain, C (3, points)."""
+    log = np.log(C[0] * C[1] - C[2] ** 2)
+    return (C[0] + C[1] - 2) / 2 - log / 2 + LAMBDA / MU * log**2 / 8
+
+
+@pytest.mark.parametrize("size", [1e-4, 1e-2, 0.2, 0.35])
+def test_work_of_a_step_against_extended_precision(measure, size):
+    """Energy and work excess of the neo-Hookean law, small steps and large ones: 13 digits of the larger of the terms that make
+    them, where the difference of two energies would keep 16 less their size squared."""
+    found = measure("work-excess", law="neohookean", young=YOUNG, nu=NU, speed=size)
+    M, H = longer(found, "M"), longer(found, "H")
+    det = M[0] * M[1] - M[2] ** 2
+    inverse = np.array([M[1], M[0], -M[2]]) / det
+    S = np.array([1, 1, 0])[:, None] * np.longdouble(1) + (LAMBDA / MU * np.log(det) / 2 - 1) * inverse   # over mu
+    excess = 2 * (neo(M + H) - neo(M - H) - (S * H * np.array([1, 1, 2])[:, None]).sum(axis=0))
+    assert [found[f"excess{i}"] for i in range(10)] == pytest.approx(excess.astype(float), rel=1e-12, abs=3e-14 * size)
+    assert [found[f"energy{i}"] for i in range(10)] == pytest.approx(neo(M).astype(float), rel=1e-12, abs=3e-15 * size)
