@@ -79,3 +79,12 @@ def test_friction_derivatives(measure, coefficients, transition, regularization)
     assert found[f"stiff_{kind}"] < 1e-6 and found[f"drag_{kind}"] < 1e-6 and found[f"coupling_{kind}"] < 1e-6
     assert found[f"cross_{kind}"] == 0
     assert found[f"falls_{kind}"] == 0   # one side of the jump never weakens with speed
+
+
+@pytest.mark.parametrize("law, breakdown, height, refused", [("svk", "stop", 0.19, 1), ("svk", "stop", 0.21, 0), ("neohookean", "stop", 0.19, 1),
+                                                             ("svk", "continue", 0.19, 0)])
+def test_a_step_that_loses_four_fifths_of_a_volume_is_refused(measure, law, breakdown, height, refused):
+    """Of the several solutions of an implicit step the collapsed ones are no motion; `breakdown=continue` takes what comes."""
+    found = measure("collapse", law=law, breakdown=breakdown, speed=height)
+    assert found["left"] == pytest.approx(height)
+    assert found["refused"] == refused
