@@ -9,7 +9,6 @@ from .run import RunResult, shown
 
 REFERENCE = Path(__file__).resolve().parent / "reference"
 
-CHATTER = 20       # separate contacts of the body in one impact: above, the contact is noise
 LEFT_OUT_AT_ZERO = ("friction_work", "rebound_vx", "spin", "sliding_time", "sticking_time", "reverse_slip_time", "unsolved_jumps")
 
 
@@ -93,8 +92,8 @@ def report(result: RunResult) -> str:
         beside = [quantity.beside(number) for number in known.get(quantity.key, [])] or [""]
         lines.append(f"  {quantity.label:<24}{quantity.text(value):<18}{beside[0]}".rstrip())
         lines += [f"  {'':<42}{more}" for more in beside[1:]]
-    if (summary.get("contact_intervals") or 0) > CHATTER:
-        lines.append(f"  chatter: more than {CHATTER} separate contacts; take a smaller penalty, or a finer mesh and step")
+    if summary["message"]:
+        lines.append(f"  {'warning':<24}{summary['message']}")
     if summary.get("skipped"):
         lines.append(f"  {'skipped':<24}{', '.join(summary['skipped'])}")
     pictures = sorted((result.folder / "figures").glob("*.png"))

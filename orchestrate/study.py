@@ -109,7 +109,7 @@ def there(folder: Path, wanted: scene.Scene) -> dict | None:
         result = run.reusable(wanted, folder)
     except Failure:                                      # will be said by the run
         return None
-    return result and _row(0, "", True, result.summary)
+    return result and _row(0, result.summary["message"], True, result.summary)
 
 
 def _outcome(folder: Path, wanted: scene.Scene) -> dict | None:
@@ -119,7 +119,7 @@ def _outcome(folder: Path, wanted: scene.Scene) -> dict | None:
         return found
     try:
         result = run.run(wanted, out=folder, pictures=False)
-        return _row(0, "", result.reused, result.summary)
+        return _row(0, result.summary["message"], result.reused, result.summary)
     except Busy:
         return None
     except Failure as failure:

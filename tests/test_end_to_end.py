@@ -208,3 +208,19 @@ def test_folder_that_cannot_be_read_is_14(tmp_path):
     (tmp_path / "out/scene.toml").write_text("")
     (tmp_path / "out/summary.json").write_text("{")
     check_failure(call(out=tmp_path / "out"), 14, "summary.json cannot be read.*--force")
+
+
+# ---- answers with a warning
+
+@pytest.mark.parametrize("penalty, chatters", [("8.39e12", True), ("1e10", False)])
+def test_chatter_is_said(tmp_path, penalty, chatters):
+    """A single node of a coarse mesh on a far too stiff penalty bounces a hundred times: the run ends well, and says that in its
+    summary and in print; a sensible penalty says nothing."""
+    process = call("speed=1.84", f"penalty={penalty}", "accuracy=0.05", "degree=1", out=tmp_path / "out")
+    assert process.returncode == 0, process.stderr
+    summary = run.read_summary(tmp_path / "out")
+    assert summary["status"] == "ok" and summary["message"].startswith("chatter: the body left the plane") == chatters
+    assert ("warning                 chatter: " in process.stdout) == chatters
+    assert summary["message"] == "" or chatters
+    direct_process = direct("-speed", "1.84", "-penalty", penalty, "-accuracy", "0.05", "-degree", "1", "-fields", "0", "-out", str(tmp_path / "direct"))
+    assert ("warning           chatter: " in direct_process.stdout) == chatters
