@@ -37,7 +37,7 @@ def find() -> FreeFem:
     command = shutil.which(wanted)
     if not command:
         raise NotInstalled(f"{wanted} not found; {HOW}")
-    environment = os.environ | {"OPENBLAS_NUM_THREADS": "1"}
+    environment = os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}   # one process a core
     version = _probe(command, environment)
     if not version and "FF_LOADPATH" not in environment:
         environment["FF_LOADPATH"] = DEBIAN_PLUGINS
