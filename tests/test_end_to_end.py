@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from orchestrate import freefem, parameters, report, run, scene, vtu
+from orchestrate.sweep_figures import HISTORY_COLUMNS
 
 COLUMNS = ("t dt normal_force friction_force kinetic elastic contact friction_work external_work balance momentum_x momentum_y "
            "vx vy spin max_penetration contact_size sliding_fraction min_jacobian min_stretch newton_iterations").split()
@@ -224,3 +225,13 @@ def test_chatter_is_said(tmp_path, penalty, chatters):
     assert summary["message"] == "" or chatters
     direct_process = direct("-speed", "1.84", "-penalty", penalty, "-accuracy", "0.05", "-degree", "1", "-fields", "0", "-out", str(tmp_path / "direct"))
     assert ("warning           chatter: " in direct_process.stdout) == chatters
+
+
+def test_readme_gives_the_unit_of_every_number(result):
+    """Each column of the history and each key of the summary is in the README's table of units, but for counts, words and lists."""
+    text = (parameters.ROOT / "README.md").read_text()
+    told = set(re.findall(r"`(\w+)`", text[text.index("Units (per metre"):text.index("**Looking at fields.**")]))
+    counts = {"status", "message", "skipped", "provenance", "contact_intervals", "steps", "rejected_steps", "newton_iterations", "factorizations",
+              "residual_evaluations", "dofs", "unsolved_jumps"}
+    assert set(result.summary) - counts <= told, set(result.summary) - counts - told
+    assert set(HISTORY_COLUMNS) <= told, set(HISTORY_COLUMNS) - told
