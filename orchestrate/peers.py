@@ -1,6 +1,6 @@
 """Other programs on the same disc (tests/oracle/*_disc.py): found where they are installed, run one process at a time.
 
-NGSolve: `pip install ngsolve`, in this Python or in the one that $NGSOLVE_PYTHON names. GetFEM: Debian's python3-getfem,
+NGSolve: `pip install ngsolve==6.2.2608`, in this Python or in the one that $NGSOLVE_PYTHON names. GetFEM: Debian's python3-getfem,
 in /usr/bin/python3 or in $GETFEM_PYTHON. Nothing else needs them.
 """
 
@@ -18,7 +18,7 @@ from .freefem import die_with_parent
 from .parameters import ROOT, Value
 
 PYTHONS = {"ngsolve": ("NGSOLVE_PYTHON", sys.executable), "getfem": ("GETFEM_PYTHON", "/usr/bin/python3")}
-INSTALL = {"ngsolve": "pip install ngsolve", "getfem": "apt-get install python3-getfem"}
+INSTALL = {"ngsolve": "pip install ngsolve==6.2.2608", "getfem": "apt-get install python3-getfem"}
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 RADIUS = 0.05               # m, of disc-normal and the peers' default
 

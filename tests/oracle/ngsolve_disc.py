@@ -1,4 +1,4 @@
-"""disc-normal with NGSolve (`pip install ngsolve`): curved P2 triangles of netgen with our sizes, one thread.
+"""disc-normal with NGSolve (`pip install ngsolve==6.2.2608`): curved P2 triangles of netgen with our sizes, one thread.
 
 plain: as its users would write it: one nonlinear form, contact on the whole circle, full Newton with UMFPACK.
 tuned: compiled forms, constant mass matrix, contact on the lowest arc alone, a symmetric tangent factorised by sparse
