@@ -9,6 +9,7 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from . import mesh, peers, scene, study, textbook
 from .figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE
@@ -245,6 +246,9 @@ def draw(name: str, rows: pd.DataFrame, bars: dict[str, float], path: Path) -> N
             axes.set(title=words, ylabel="error [%]")
             axes.grid(alpha=0.3)
         for axes in grid[-1]:
+            axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+            axes.xaxis.set_major_formatter("{x:g}")
+            axes.xaxis.set_minor_formatter(NullFormatter())
             axes.set_xlabel("processor time [s]")
         law = CASES[name].base["law"]
         figure.suptitle(f"{CASES[name].scene}, {LAWS[law]}; grey: below the error bar of the reference", fontsize=9)
