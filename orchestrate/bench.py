@@ -245,7 +245,8 @@ def draw(name: str, rows: pd.DataFrame, bars: dict[str, float], path: Path) -> N
             axes.axhspan(1e-4, max(1e-4, bars[column.removesuffix("_error")]), color=GREY, alpha=0.25, linewidth=0)
             axes.set(title=words, ylabel="error [%]")
             axes.grid(alpha=0.3)
-        for axes in grid[-1]:
+        for axes in grid.flat[max(0, len(columns) - wide):len(columns)]:   # the lowest of each column
+            axes.tick_params(labelbottom=True)
             axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
             axes.xaxis.set_major_formatter("{x:g}")
             axes.xaxis.set_minor_formatter(NullFormatter())
