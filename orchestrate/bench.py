@@ -139,7 +139,8 @@ def measure(name: str, out: Path, quick: bool) -> tuple[pd.DataFrame, dict[str, 
     found["force_error"] = [100 * distance(histories[0], _force(study.place(folder, point))) if code == 0 else np.nan
                             for (_, point), code in zip(labels, rows.exit)]
     if name == "normal-svk":
-        found = pd.concat([found, _peers(best, histories[0], out / "peers", quick).assign(case=name)], ignore_index=True)
+        ours = {study.place(folder, point) for _, point in labels}
+        found = pd.concat([found, _peers(best, histories[0], out / "peers", quick, folder, ours).assign(case=name)], ignore_index=True)
     return found, bars
 
 
@@ -155,8 +156,9 @@ def _words(point: study.Point) -> str:
     return ", ".join(filter(None, [sizes, *rest]))
 
 
-def _peers(best: pd.Series, force: tuple[np.ndarray, np.ndarray], out: Path, quick: bool) -> pd.DataFrame:
-    """The same rows for the other programs: one with the reason for each that is not installed or failed."""
+def _peers(best: pd.Series, force: tuple[np.ndarray, np.ndarray], out: Path, quick: bool, folder: Path, ours: set[Path]) -> pd.DataFrame:
+    """The same rows for the other programs: one with the reason for each that is not installed or failed. force_from_ours: of the force
+    history against that of our run with the same sizes and step, where `folder` has it among `ours`."""
     rows = []
     for program, form, factor, dt in (PEERS_QUICK if quick else PEERS):
         sizes = sized(factor)
@@ -174,6 +176,8 @@ def _peers(best: pd.Series, force: tuple[np.ndarray, np.ndarray], out: Path, qui
             if history.exists():
                 t, values = np.loadtxt(history, delimiter=",", skiprows=1).T
                 row["force_error"] = 100 * distance(force, (t - dt / 2, values))
+                if (same := study.place(folder, sizes | {"dt": dt})) in ours:
+                    row["force_from_ours"] = 100 * distance((t - dt / 2, values), _force(same))
         rows.append(row | {"message": reason})
     return pd.DataFrame(rows)
 
@@ -211,6 +215,9 @@ def page(name: str, rows: pd.DataFrame, bars: dict[str, float]) -> str:
              for program, group in rows.groupby("program", sort=False)]
     lines += ["At most " + ", ".join(f"{level:g} % in {answer.replace('_', ' ')}" for answer, level in asked.items()) + ":", "",
               study.table(pd.DataFrame(found), dict.fromkeys(found[0], "")), ""]
+    if "force_from_ours" in rows and rows.force_from_ours.notna().any():
+        lines += ["Force history against that of our run with the same sizes and step, in % (L2; GetFEM takes our mesh, NGSolve makes its own):", "",
+                  study.table(rows[rows.force_from_ours.notna()], {"program": "", "setting": "", "force_from_ours": ".2f"}), ""]
     lines += ["All settings; errors in %:", ""]
     shown_rows = rows.rename(columns={column: words for column, words in columns.items()})
     lines.append(study.table(shown_rows, {"family": "", "setting": "", "dofs": ".0f", "steps": ".0f", "seconds": ".2f"}
