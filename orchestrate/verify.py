@@ -8,6 +8,7 @@ import json
 import math
 import shutil
 import sys
+import tomllib
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,6 +24,7 @@ from .failure import Failure
 from .figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE
 from .measure import disc, measure
 from .parameters import ROOT
+from .report import REFERENCE
 from .run import shown
 
 COLUMNS = ["case", "what", "size", "value", "expected", "error", "tolerance"]   # of verify.csv; a row with a tolerance is judged
@@ -239,15 +241,13 @@ def oblique(folder: Path) -> Iterator[Row]:
             yield Row(f"{words}: rim", size, -found["spin"] * STIFF["radius"] / along, 2 * lost if slides else 2 / 3)
 
 
-PEERS = {"contact_time": ("contact time", 4.67e-3), "impulse": ("impulse", 208.20), "rebound_vy": ("rebound", 7.394)}   # reference/converged.toml
-
-
 def independent(folder: Path) -> Iterator[Row]:
-    """disc-normal over `accuracy`, against the converged values of NGSolve and GetFEM."""
-    for accuracy in (0.02, 0.01, 0.005, 0.0025):
-        found = disc(folder, law="svk", nu=0.45, speed=8, penalty=1e10, accuracy=accuracy).summary
-        for key, (words, value) in PEERS.items():
-            yield Row(words, accuracy, found[key], value)
+    """disc-normal over `accuracy`, against the converged values of NGSolve and GetFEM (reference/converged.toml)."""
+    peers = tomllib.loads((REFERENCE / "converged.toml").read_text())["run"][0]
+    for accuracy in (0.05, 0.02, 0.01, 0.005, 0.0025):
+        found = disc(folder, accuracy=accuracy, **peers["when"]).summary
+        for key, words in (("contact_time", "contact time"), ("impulse", "impulse"), ("rebound_vy", "rebound")):
+            yield Row(words, accuracy, found[key], peers["numbers"][key]["value"])
 
 
 CASES = (
