@@ -139,7 +139,7 @@ def measure(name: str, out: Path, quick: bool) -> tuple[pd.DataFrame, dict[str, 
     found["force_error"] = [100 * distance(histories[0], _force(study.place(folder, point))) if code == 0 else np.nan
                             for (_, point), code in zip(labels, rows.exit)]
     if name == "normal-svk":
-        ours = {study.place(folder, point) for _, point in labels}
+        ours = {study.place(folder, point) for (_, point), code in zip(labels, rows.exit) if code == 0}
         found = pd.concat([found, _peers(best, histories[0], out / "peers", quick, folder, ours).assign(case=name)], ignore_index=True)
     return found, bars
 
