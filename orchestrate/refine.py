@@ -157,7 +157,7 @@ def draw(tables: dict[str, pd.DataFrame], wanted: dict[str, Series], answers: tu
             axes.set(xlabel=LABELS[name][0], ylabel=LABELS[name][1], ylim=(SHOWN / 2, 100))
             axes.yaxis.labelpad = 6
             axes.grid(alpha=0.3)
-        figure.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=6, handlelength=1.6,
+        figure.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=4, handlelength=1.6,
                       columnspacing=1.4)
         figure.savefig(path)
         plt.close(figure)
