@@ -23,7 +23,7 @@ CLOSED = 1e-8               # largest energy drift of a finished run
 LIMIT = 120.0               # seconds a run may take
 READ = ("energy_drift", "max_penetration", "wall_seconds", "newton_iterations", "steps")   # of the summaries
 KINDS = ("closed", "open", "no step", "breakdown", "other")   # outcomes, in the words of the table
-LETTERS = {"open": ("o", "balance open"), "no step": ("s", "no step converged (exit 11)"),
+LETTERS = {"open": ("o", "balance open"), "no step": ("s", "no convergence, or chatter (exit 11)"),
            "breakdown": ("b", "material broke down (exit 12)"), "other": ("!", "anything else")}   # in the figure
 
 

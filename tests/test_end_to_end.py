@@ -211,20 +211,34 @@ def test_folder_that_cannot_be_read_is_14(tmp_path):
     check_failure(call(out=tmp_path / "out"), 14, "summary.json cannot be read.*--force")
 
 
-# ---- answers with a warning
+# ---- chatter
 
-@pytest.mark.parametrize("penalty, chatters", [("8.39e12", True), ("1e10", False)])
-def test_chatter_is_said(tmp_path, penalty, chatters):
-    """A single node of a coarse mesh on a far too stiff penalty bounces a hundred times: the run ends well, and says that in its
-    summary and in print; a sensible penalty says nothing."""
-    process = call("speed=1.84", f"penalty={penalty}", "accuracy=0.05", "degree=1", out=tmp_path / "out")
-    assert process.returncode == 0, process.stderr
-    summary = run.read_summary(tmp_path / "out")
-    assert summary["status"] == "ok" and summary["message"].startswith("chatter: the body left the plane") == chatters
-    assert ("warning                 chatter: " in process.stdout) == chatters
-    assert summary["message"] == "" or chatters
-    direct_process = direct("-speed", "1.84", "-penalty", penalty, "-accuracy", "0.05", "-degree", "1", "-fields", "0", "-out", str(tmp_path / "direct"))
-    assert ("warning           chatter: " in direct_process.stdout) == chatters
+COARSE = {"speed": "1.84", "accuracy": "0.05", "degree": "1"}
+
+
+@pytest.mark.parametrize("how", ["stop", "continue"])
+def test_chatter_is_11_or_a_warning(tmp_path, how):
+    """A single node of a coarse mesh on a far too stiff penalty bounces without end: exit code 11, or with breakdown=continue a finished
+    run that warns in its summary and in print, in both ways to start it."""
+    given = COARSE | {"penalty": "8.39e12", "breakdown": how}
+    process = call(*(f"{name}={value}" for name, value in given.items()), out=tmp_path / "out")
+    plain = direct(*(word for name, value in given.items() for word in (f"-{name}", value)), "-fields", "0", "-out", str(tmp_path / "direct"))
+    told = r"chatter: by t = \S+ s the body had left the plane and was back within a wave's transit \d+ times: .*a smaller penalty, or a finer mesh"
+    if how == "stop":
+        check_failure(process, 11, told + r" \(breakdown=continue runs on\)")
+        assert json.loads((tmp_path / "out/failure.json").read_text())["status"] == "chatter"
+        assert plain.returncode == 11
+    else:
+        assert process.returncode == plain.returncode == 0, process.stderr
+        summary = run.read_summary(tmp_path / "out")
+        assert summary["status"] == "ok" and re.fullmatch(told, summary["message"]) and summary["rebound_vy"] > 0
+        assert "warning                 chatter: " in process.stdout and "warning           chatter: " in plain.stdout
+
+
+def test_a_sensible_penalty_does_not_chatter(tmp_path):
+    """The same coarse disc at the default penalty ends without a message."""
+    process = call(*(f"{name}={value}" for name, value in COARSE.items()), out=tmp_path / "out")
+    assert process.returncode == 0 and run.read_summary(tmp_path / "out")["message"] == ""
 
 
 def test_readme_gives_the_unit_of_every_number(result):
