@@ -36,9 +36,9 @@ class Mesh:
 
 
 def accuracy_made(values: dict[str, Value]) -> float:
-    """The accuracy that mesh and steps of a scene are made for: finer with friction, by edp/core/parameters.idp."""
-    share = re.search(r"^real accuracyMade = frictionStatic > 0 \? accuracy / (\S+) : accuracy;", TABLE.read_text(), re.M)
-    return values["accuracy"] / (float(share[1]) if values["friction_static"] > 0 else 1)
+    """The accuracy that mesh and steps of a scene are made for: finer than asked, and more so with friction, by edp/core/parameters.idp."""
+    share = re.search(r"^real accuracyMade = accuracy / \(frictionStatic > 0 \? (\S+) : (\S+)\);", TABLE.read_text(), re.M)
+    return values["accuracy"] / float(share[1] if values["friction_static"] > 0 else share[2])
 
 
 def sizes_from_accuracy(accuracy: float, radius: float) -> tuple[float, float]:

@@ -11,7 +11,7 @@ from .parameters import ROOT, defaults
 from .run import shown
 
 ASKED = defaults()["accuracy"]
-FINE = 0.3                  # of the accuracy: the finer run
+FINE = 0.4                  # of the accuracy: the finer run
 LIMIT = 900.0               # seconds a run may take
 KEPT = 0.95                 # of the scenes in which the promise must be kept
 ANSWERS = ("impulse", "rebound", "contact time", "friction work")

@@ -50,7 +50,7 @@ def series(scene: str, quick: bool) -> dict[str, Series]:
         "accuracy": Series("accuracy, which sets mesh and adaptive step", "accuracy",
                            {a: {"accuracy": a} for a in ((2e-2, 5e-3) if quick else (2e-2, 1e-2, 5e-3, 2.5e-3, 1e-3)[slice(None if normal else 4)])}),
     }
-    coarse = {"accuracy": 2e-2}                      # of the series that show what a parameter does
+    coarse = {"accuracy": 4e-2}                      # of the series that show what a parameter does
     if normal:
         found["penalty"] = Series("penalty k [Pa/m]: a parameter of the model, its influence is no error", "penalty",
                                   {k: {"penalty": k} for k in ((1e9, 1e10) if quick else (1e9, 1e10, 1e11, 1e12))})

@@ -28,7 +28,7 @@ def test_finished_run_is_complete(fake, tmp_path):
 def test_mesh_sizes_are_recorded(fake, tmp_path):
     """The sizes that follow from the accuracy are in scene.toml as used, not as 0."""
     used = go(tmp_path / "out").scene
-    assert (used["mesh_size"], used["contact_mesh_size"]) == mesh.sizes_from_accuracy(used["accuracy"], used["radius"])
+    assert (used["mesh_size"], used["contact_mesh_size"]) == mesh.sizes_from_accuracy(mesh.accuracy_made(used), used["radius"])
 
 
 @pytest.mark.parametrize("given, half", [

@@ -9,9 +9,9 @@ from orchestrate import mesh
 from orchestrate.failure import Failure
 from test_disc import mirrored
 
-COARSE = dict(accuracy=0.05)
+COARSE = dict(accuracy=0.1)
 RUBBING = dict(friction_static=0.7, friction_dynamic=0.5)
-RUBBING_COARSE = dict(accuracy=0.2)      # the same mesh and steps: with friction a quarter of the accuracy is worked for
+RUBBING_COARSE = dict(accuracy=0.4)      # the same mesh and steps: with friction they are made for a fourth of that
 OBLIQUE = dict(law="neohookean", speed=12, angle=60) | RUBBING | RUBBING_COARSE   # the paper's case (3.1), on a coarse mesh
 MASS = 1722 * math.pi * 0.05**2
 
@@ -47,7 +47,7 @@ def test_energy_and_momentum_are_accounted_for(disc, law, speed, transition, reg
 
 def test_balances_hold_at_a_finer_setting(disc):
     """The same at a better accuracy and a smaller slip velocity."""
-    check_balances(disc(**OBLIQUE | dict(accuracy=0.02, slip_velocity=0.01)))
+    check_balances(disc(**OBLIQUE | dict(accuracy=0.04, slip_velocity=0.01)))
 
 
 @pytest.mark.parametrize("law", ["svk", "neohookean"])
@@ -156,7 +156,7 @@ def test_integrators_agree_at_small_steps(disc, integrator, rebound, work, balan
 
 def test_explicit_steps_agree(disc):
     """Central differences, with the step that they choose for the friction, agree with the conserving integrator within
-    the error of the lumped mass on this mesh (3 %, of the work 10 %; 1 % at accuracy 0.015), and find the same sticking."""
+    the error of the lumped mass on this mesh (3 %, of the work 10 %; 1 % at accuracy 0.03), and find the same sticking."""
     settings = OBLIQUE | dict(penalty=1e9, slip_velocity=1)
     reference, found = disc(dt=1e-5, **settings).summary, disc(integrator="central-difference", **settings).summary
     for name, band in (("rebound_vx", 0.03), ("rebound_vy", 0.03), ("spin", 0.03), ("friction_work", 0.1), ("sticking_time", 0.05)):

@@ -27,7 +27,7 @@ def test_residual_is_the_one_of_the_equations(measure, law, integrator, exponent
 @pytest.mark.parametrize("body", ["block", "disc"])
 def test_tangent_is_the_derivative_of_the_residual(measure, body, law, degree, integrator):
     """Moduli and mass give the derivative of the residual at large strain, on straight and curved elements."""
-    found = measure(f"tangent-{body}", law=law, degree=degree, integrator=integrator, accuracy=0.05)
+    found = measure(f"tangent-{body}", law=law, degree=degree, integrator=integrator, accuracy=0.1)
     assert found["state"] == 0 and found["smallest"] < 0.6
     assert found["tangent"] < 1e-6
 
@@ -35,7 +35,7 @@ def test_tangent_is_the_derivative_of_the_residual(measure, body, law, degree, i
 @pytest.mark.parametrize("law", LAWS)
 def test_factorised_matrix_solves_and_holds_the_constraints(measure, law):
     """The symmetric factorisation solves the tangent system; constrained unknowns stay where they are."""
-    found = measure("tangent-disc", law=law, degree=2, integrator="newmark", accuracy=0.05)
+    found = measure("tangent-disc", law=law, degree=2, integrator="newmark", accuracy=0.1)
     assert found["solve"] < 1e-11 and found["stray"] < 1e-15
 
 

@@ -25,7 +25,7 @@ def cauchy(law: str) -> np.ndarray:
 @pytest.mark.parametrize("degree", [1, 2])
 def test_homogeneous_deformation_has_the_stress_of_the_closed_form(measure, tmp_path, law, degree):
     """Cauchy stress, its von Mises stress and det F of x = F X at every node of the curved half disc, to the file's 9 digits."""
-    measure("homogeneous", law=law, degree=degree, young=YOUNG, nu=NU, accuracy=0.05, out=tmp_path)
+    measure("homogeneous", law=law, degree=degree, young=YOUNG, nu=NU, accuracy=0.1, out=tmp_path)
     found, sigma = vtu.read(tmp_path / "homogeneous.vtu").fields, cauchy(law)
     deviator = sigma - np.trace(sigma) / 3 * np.eye(3)
     voigt = sigma[[0, 1, 2, 0, 1, 0], [0, 1, 2, 1, 2, 2]]   # xx yy zz xy yz xz
