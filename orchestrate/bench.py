@@ -26,7 +26,7 @@ PEERS = [("ngsolve", "tuned", 2, 1.5e-4), ("ngsolve", "tuned", 2, 1e-4), ("ngsol
          ("getfem", "tuned", 2, 1.5e-4), ("getfem", "tuned", 1, 1e-4), ("getfem", "tuned", 1, 5e-5), ("getfem", "tuned", 1, 2e-5),
          ("getfem", "plain", 2, 1.5e-4), ("getfem", "plain", 1, 1e-4), ("textbook", "FreeFEM", 2, 1e-4), ("textbook", "FreeFEM", 1, 5e-5)]
 PEERS_QUICK = [("ngsolve", "tuned", 1, 1e-4), ("textbook", "FreeFEM", 2, 1e-4)]
-BULK, CONTACT = mesh.sizes_from_accuracy(defaults()["accuracy"], defaults()["radius"])   # [m], the default sizes
+BULK, CONTACT = mesh.sizes_from_accuracy(defaults()["accuracy"], defaults()["radius"])   # [m], of mesh factor 1
 
 
 @dataclass(frozen=True)
@@ -103,7 +103,7 @@ def settings(case: Case, quick: bool) -> dict[str, list[study.Point]]:
 
 
 def sized(factor: float, **given) -> study.Point:
-    """A mesh of `factor` times the default sizes."""
+    """A mesh of `factor` times the sizes BULK and CONTACT."""
     return {"mesh_size": factor * BULK, "contact_mesh_size": factor * CONTACT} | given
 
 
