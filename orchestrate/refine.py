@@ -6,10 +6,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import matplotlib.pyplot as plt
+import numpy as np
 import pandas as pd
 from matplotlib.ticker import NullLocator
 
-from . import mesh, study
+from . import mesh, scene as scenes, study
 from .failure import Failure
 from .figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE
 from .parameters import ROOT, defaults
@@ -23,6 +24,7 @@ ASKED = 0.5                 # % of the converged values, for the run with defaul
 LABELS = {"mesh": ("mesh factor", "off the finest mesh [%]"), "step": ("time step [s]", "off the smallest step [%]"),
           "accuracy": ("accuracy", "off the converged values [%]"), "penalty": ("penalty [Pa/m]", "off the stiffest [%]"),
           "slip": ("slip velocity [m/s]", "off the smallest [%]")}
+SCATTER = {"disc-normal": 16, "disc-oblique": 4}   # meshes
 LIMIT = 600.0               # seconds a run may take
 
 
@@ -50,6 +52,14 @@ def series(scene: str, quick: bool) -> dict[str, Series]:
         "accuracy": Series("accuracy, which sets mesh and adaptive step", "accuracy",
                            {a: {"accuracy": a} for a in ((2e-2, 5e-3) if quick else (2e-2, 1e-2, 5e-3, 2.5e-3, 1e-3)[slice(None if normal else 4)])}),
     }
+    if not quick:
+        default_bulk, default_contact = mesh.sizes_from_accuracy(mesh.accuracy_made(scenes.load(scene).values), defaults()["radius"])
+        around = {f: {"mesh_size": f * default_bulk, "contact_mesh_size": f * default_contact} for f in np.linspace(0.85, 1.15, SCATTER[scene]).round(3).tolist()}
+        found["scatter"] = Series("the default run on meshes about as fine, their sizes times a factor: how far answers scatter by chance",
+                                  "factor", around)
+        if normal:
+            found["scatter-neohookean"] = Series("the same with the neo-Hookean law", "factor",
+                                                 {f: sizes | {"law": "neohookean"} for f, sizes in around.items()})
     coarse = {"accuracy": 4e-2}                      # of the series that show what a parameter does
     if normal:
         found["penalty"] = Series("penalty k [Pa/m]: a parameter of the model, its influence is no error", "penalty",
@@ -82,7 +92,10 @@ def main(argv: list[str]) -> int:
     compare(tables, best)
     for name, frame in tables.items():
         study.save(frame, out / f"{name}.csv")
-        print(f"{wanted[name].title}\n{as_text(frame, wanted[name].axis, answers)}\n")
+        print(f"{wanted[name].title}\n{as_text(frame, wanted[name].axis, answers)}")
+        if name.startswith("scatter"):
+            print("mean and rms: " + ", ".join(f"{each} {frame[each].mean():.6g}, {frame[each + ' %'].std():.2g} %" for each in answers))
+        print()
     draw({name: frame for name, frame in tables.items() if name in LABELS}, wanted, answers, out / "refine.png")
     result = pd.DataFrame({"answer": answers, "converged": best.values, "+-": error.values, "default": at_default.values,
                            "off %": 100 * (at_default / best - 1).values})
@@ -120,9 +133,9 @@ def converged(tables: dict[str, pd.DataFrame], wanted: tuple[str, ...]) -> tuple
 
 
 def compare(tables: dict[str, pd.DataFrame], best: pd.Series) -> None:
-    """Adds the difference in % of each answer: accuracy from the converged values, the others from their finest run."""
+    """Adds the difference in % of each answer: accuracy from the converged values, scatter from its mean, the others from their finest run."""
     for name, frame in tables.items():
-        against = best if name == "accuracy" else frame.iloc[-1]
+        against = best if name == "accuracy" else frame[list(best.index)].mean() if name.startswith("scatter") else frame.iloc[-1]
         for answer in best.index:
             frame[f"{answer} %"] = 100 * (frame[answer] / against[answer] - 1)
 
