@@ -31,18 +31,20 @@ BULK, CONTACT = mesh.sizes_from_accuracy(defaults()["accuracy"], defaults()["rad
 
 @dataclass(frozen=True)
 class Case:
-    """A scene, what is set in it, the answers that are judged, and the accuracy over that which its mesh and steps are made for."""
+    """A scene, what is set in it, the answers that are judged, the accuracy over that which its mesh and steps are made
+    for, and the finest of the latter."""
 
     scene: str
     base: study.Point
     answers: tuple[str, ...]
     finer: float = 2.0
+    finest: float = 0.00125
 
 
 CASES = {
     "normal-svk": Case("disc-normal", {"law": "svk"}, ("impulse", "rebound_vy", "contact_time")),
     "normal-neohookean": Case("disc-normal", {"law": "neohookean"}, ("impulse", "rebound_vy", "contact_time")),
-    "oblique-neohookean": Case("disc-oblique", {"law": "neohookean"}, ("impulse", "rebound_vx", "rebound_vy", "spin", "friction_work", "contact_time"), 8.0),
+    "oblique-neohookean": Case("disc-oblique", {"law": "neohookean"}, ("impulse", "rebound_vx", "rebound_vy", "spin", "friction_work", "contact_time"), 8.0, 0.000625),
 }
 
 
@@ -90,7 +92,7 @@ def settings(case: Case, quick: bool) -> dict[str, list[study.Point]]:
                 "fixed step, P2": [sized(1, dt=1e-4), sized(1, dt=4e-5)],
                 "midpoint": adaptive((0.02, 0.005), integrator="midpoint"), "bdf2": adaptive((0.02, 0.005), integrator="bdf2")}
     found = {
-        "adaptive, P2": adaptive((0.05, 0.02, 0.01, 0.005, 0.0025, 0.00125)),
+        "adaptive, P2": adaptive([a for a in (0.05, 0.02, 0.01, 0.005, 0.0025, 0.00125, 0.000625) if a >= case.finest]),
         "adaptive, P1": adaptive((0.02, 0.005, 0.00125, 0.0005), degree=1),
         "fixed step, P2": [sized(factor, dt=dt) for factor, dt in ((2, 1.5e-4), (2, 1e-4), (2, 5e-5), (1, 1e-4), (1, 5e-5), (1, 2e-5), (0.5, 2e-5))],
         "fixed step, P1": [sized(factor, dt=dt, degree=1) for factor, dt in ((1, 5e-5), (0.5, 5e-5), (0.5, 2e-5))],
@@ -111,7 +113,7 @@ def references(case: Case, quick: bool) -> list[study.Point]:
     """The two finest runs: by accuracy, and by mesh and step."""
     if quick:
         return [{"accuracy": 0.005}, sized(0.7, dt=2e-5)]
-    return [{"accuracy": 0.0006 * case.finer}, sized(0.4, dt=6e-6)]
+    return [{"accuracy": 0.48 * case.finest * case.finer}, sized(float(f"{0.4 * (case.finest / 0.00125) ** 0.5:.3g}"), dt=6e-6)]
 
 
 # ---- the measurement

@@ -85,7 +85,7 @@ def growth(out: Path, quick: bool) -> tuple[pd.DataFrame, dict[str, tuple[float,
     bulk, contact = mesh.sizes_from_accuracy(defaults()["accuracy"], defaults()["radius"])
     points = []
     for dofs in DOFS[:3] if quick else DOFS:
-        factor = (1028 / dofs) ** (1 / 1.79)      # the default mesh has 1,028; all elements shrink alike, the graded ones fewer at first
+        factor = (1028 / dofs) ** (1 / 1.79)      # that mesh has 1,028; all elements shrink alike, the graded ones fewer at first
         points.append({"mesh_size": float(f"{factor * bulk:.4g}"), "contact_mesh_size": float(f"{factor * contact:.4g}")})
     rows = study.study(points, out, {"fields": 0, "dt": DT, "end_time": STEPS * DT}, LIMIT, cores=1)
     if rows.exit.any():
