@@ -41,17 +41,17 @@ def accuracy_made(values: dict[str, Value]) -> float:
     return values["accuracy"] / float(share[1] if values["friction_static"] > 0 else share[2])
 
 
-def sizes_from_accuracy(accuracy: float, radius: float) -> tuple[float, float]:
-    """(mesh_size, contact_mesh_size) in m for a relative accuracy, with the numbers of edp/core/disc-mesh.idp."""
+def sizes_from_accuracy(made: float, radius: float) -> tuple[float, float]:
+    """(mesh_size, contact_mesh_size) in m for the relative accuracy that they are made for, with the numbers of edp/core/disc-mesh.idp."""
     text = (ROOT / "edp/core/disc-mesh.idp").read_text()
     bulk, contact = map(float, re.search(r"^real bulkSize = (\S+), arcSize = (\S+);", text, re.M).groups())
-    scale = math.sqrt(accuracy / 5e-3)
+    scale = math.sqrt(made / 5e-3)
     return radius * min(bulk * scale, 0.5), radius * min(contact * scale, 0.25)
 
 
-def resolve_sizes(mesh_size: float, contact_mesh_size: float, accuracy: float, radius: float) -> tuple[float, float]:
-    """Both sizes in m, where 0 means "from accuracy"; BadInput where the two do not fit each other or the disc."""
-    bulk, contact = sizes_from_accuracy(accuracy, radius)
+def resolve_sizes(mesh_size: float, contact_mesh_size: float, made: float, radius: float) -> tuple[float, float]:
+    """Both sizes in m, where 0 means "from the accuracy that they are made for"; BadInput where the two do not fit each other or the disc."""
+    bulk, contact = sizes_from_accuracy(made, radius)
     if mesh_size > radius:
         raise BadInput(f"mesh_size: {mesh_size:g} is larger than the radius {radius:g}")
     if mesh_size and contact_mesh_size > mesh_size:

@@ -72,7 +72,7 @@ def series(scene: str, quick: bool) -> dict[str, Series]:
         found["slip-smooth"] = Series("slip velocity [m/s] with the smooth transition", "slip_velocity", {
             e: coarse | {"slip_velocity": e, "friction_transition": "smooth"} for e in found["slip"].points})
         found["frictionless"] = Series("without friction on the mesh and with the steps of the series before, for the iterations", "friction_static", {
-            0.0: sized[1] | {"accuracy": 1e-2, "friction_static": 0.0, "friction_dynamic": 0.0}})
+            0.0: sized[1] | {"accuracy": coarse["accuracy"] / 4, "friction_static": 0.0, "friction_dynamic": 0.0}})
     return found
 
 

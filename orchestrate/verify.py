@@ -107,7 +107,7 @@ def bar(folder: Path, elements: int) -> Iterator[Row]:
     speed, young = 0.05, 7e6
     c = math.sqrt(young / DENSITY)
     measure("impact", nu=0, radius=LENGTH, density=DENSITY, speed=speed, young=young, penalty=1e12, mesh_size=LENGTH / elements,
-            dt=LENGTH / elements / c / 2, breakdown="continue", out=folder)   # its end chatters on a plane that is all but rigid
+            dt=LENGTH / elements / c / 2, chatter="continue", out=folder)   # its end chatters on a plane that is all but rigid
     summary, history = run.read_summary(folder), run.read_history(folder)
     time = summary["contact_time"]
     plateau = (history["t"] > 0.1 * time) & (history["t"] < 0.9 * time)

@@ -9,7 +9,7 @@ import sys
 import numpy as np
 import pytest
 
-from orchestrate import freefem, parameters, report, run, scene, vtu
+from orchestrate import freefem, mesh, parameters, report, run, scene, vtu
 from orchestrate.sweep_figures import HISTORY_COLUMNS
 
 COLUMNS = ("t dt normal_force friction_force kinetic elastic contact friction_work external_work balance momentum_x momentum_y "
@@ -211,6 +211,20 @@ def test_folder_that_cannot_be_read_is_14(tmp_path):
     check_failure(call(out=tmp_path / "out"), 14, "summary.json cannot be read.*--force")
 
 
+# ---- sizes
+
+@pytest.mark.parametrize("rubs", [False, True])
+def test_both_ways_choose_the_same_sizes(tmp_path, rubs):
+    """Mesh sizes that follow from the accuracy are the same from Python and in a direct run, without friction and with it (finer)."""
+    given = {"friction_static": 0.3, "friction_dynamic": 0.3} if rubs else {}
+    flags = [word for name, value in given.items() for word in (f"-{name}", str(value))]
+    assert direct("-accuracy", "0.1", "-end_time", "1e-6", *flags, "-out", str(tmp_path)).returncode == 0
+    found = scene.load(str(tmp_path / "scene.toml")).values
+    wanted = mesh.resolve_sizes(0, 0, mesh.accuracy_made(parameters.defaults() | given | {"accuracy": 0.1}), found["radius"])
+    assert (found["mesh_size"], found["contact_mesh_size"]) == pytest.approx(wanted, rel=1e-5)
+    assert wanted == pytest.approx(mesh.sizes_from_accuracy(0.1 / (8 if rubs else 2), found["radius"]))
+
+
 # ---- chatter
 
 COARSE = {"speed": "1.84", "accuracy": "0.1", "degree": "1"}
@@ -218,14 +232,14 @@ COARSE = {"speed": "1.84", "accuracy": "0.1", "degree": "1"}
 
 @pytest.mark.parametrize("how", ["stop", "continue"])
 def test_chatter_is_11_or_a_warning(tmp_path, how):
-    """A single node of a coarse mesh on a far too stiff penalty bounces without end: exit code 11, or with breakdown=continue a finished
+    """A single node of a coarse mesh on a far too stiff penalty bounces without end: exit code 11, or with chatter=continue a finished
     run that warns in its summary and in print, in both ways to start it."""
-    given = COARSE | {"penalty": "8.39e12", "breakdown": how}
+    given = COARSE | {"penalty": "8.39e12", "chatter": how}
     process = call(*(f"{name}={value}" for name, value in given.items()), out=tmp_path / "out")
     plain = direct(*(word for name, value in given.items() for word in (f"-{name}", value)), "-fields", "0", "-out", str(tmp_path / "direct"))
-    told = r"chatter: by t = \S+ s the body had left the plane and was back within a wave's transit \d+ times: .*a smaller penalty, or a finer mesh"
+    told = r"chatter: by t = \S+ s the body had left the plane and was back within a wave's transit \d+ times in a row: .*a smaller penalty, or a finer mesh"
     if how == "stop":
-        check_failure(process, 11, told + r" \(breakdown=continue runs on\)")
+        check_failure(process, 11, told + r" \(chatter=continue runs on\)")
         assert json.loads((tmp_path / "out/failure.json").read_text())["status"] == "chatter"
         assert plain.returncode == 11
     else:
@@ -239,6 +253,14 @@ def test_a_sensible_penalty_does_not_chatter(tmp_path):
     """The same coarse disc at the default penalty ends without a message."""
     process = call(*(f"{name}={value}" for name, value in COARSE.items()), out=tmp_path / "out")
     assert process.returncode == 0 and run.read_summary(tmp_path / "out")["message"] == ""
+
+
+def test_hopping_is_no_chatter(tmp_path):
+    """A disc that hops on the plane under gravity is back within a wave's transit many times, but not in a row: no failure, no warning."""
+    process = direct("-law", "neohookean", "-speed", "0", "-height", "1e-5", "-gravity", "9.81", "-end_time", "0.7", "-accuracy", "0.4", "-degree", "1",
+                     "-mesh_size", "0.01", "-contact_mesh_size", "0.01", "-out", str(tmp_path / "out"))
+    summary = run.read_summary(tmp_path / "out")
+    assert process.returncode == 0 and summary["contact_intervals"] > 40 and summary["message"] == ""
 
 
 def test_readme_gives_the_unit_of_every_number(result):

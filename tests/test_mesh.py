@@ -118,7 +118,7 @@ def test_same_input_same_mesh():
 def test_sizes_that_do_not_fit_are_named(sizes, words):
     """Sizes that contradict each other or the disc are bad input, named with the limit."""
     with pytest.raises(BadInput, match=words):
-        mesh.resolve_sizes(*sizes, accuracy=5e-3, radius=0.05)
+        mesh.resolve_sizes(*sizes, made=5e-3, radius=0.05)
 
 
 def test_sizes_follow_the_accuracy():
