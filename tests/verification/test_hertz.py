@@ -12,3 +12,8 @@ def test_half_width_and_pressure_of_hertz(tmp_path, law, nu):
     coarse, fine = (list(verify.hertz(tmp_path / str(share), share, law, nu)) for share in (0.3, 0.15))
     assert all(row.error < 0.02 for row in fine)
     assert max(row.error for row in fine) < max(row.error for row in coarse)
+
+
+def test_finest_cylinder_of_the_report(tmp_path):
+    """Elements of a twenty-seventh of the half-width, steps that take the cylinder to rest at once: hard for the line search."""
+    assert max(row.error for row in verify.hertz(tmp_path, 0.0375)) < 5e-3
