@@ -103,7 +103,7 @@ def test_stress_map_is_always_the_same_and_covers_all():
 
 @pytest.mark.parametrize("change, holds", [
     ({}, True), ({"energy_drift": 1e-6}, False), ({"contact_intervals": 50}, False),
-    ({"exit": 1, "message": "killed"}, False),
+    ({"exit": 11, "contact_intervals": 50, "message": "chatter: ..."}, True), ({"exit": 1, "message": "killed"}, False),
     ({"exit": study.TOO_LONG, "message": "no end"}, False), ({"exit": 12, "message": "det F"}, True), ({"exit": 12, "message": ""}, False),
     ({"exit": 11, "message": "the step"}, True)])
 def test_stress_map_requirement(change, holds):
