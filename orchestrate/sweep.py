@@ -122,9 +122,10 @@ def _ours(wanted: Sweep, out: Path) -> Iterator[None]:
             with study.complete(out / "sweep.toml") as part:
                 part.write_text(wanted.text)
         except BlockingIOError:
-            if not (out / "sweep.toml").exists() or (out / "sweep.toml").read_text() != wanted.text:
-                raise Busy(f"{out} is being written by another sweep; wait, or choose another --out") from None
-        fcntl.flock(lock, fcntl.LOCK_SH)
+            pass
+        fcntl.flock(lock, fcntl.LOCK_SH)      # waits for one who is just writing the file; from here on nobody changes it
+        if not (out / "sweep.toml").exists() or (out / "sweep.toml").read_text() != wanted.text:
+            raise Busy(f"{out} is being written by another sweep; wait, or choose another --out")
         yield
     finally:
         os.close(lock)

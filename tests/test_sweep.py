@@ -1,6 +1,7 @@
 """Sweeps: the file and its errors, the table, kills and two drivers at once, Snakemake, trends, maps and histories."""
 
 import errno
+import fcntl
 import os
 import re
 import shutil
@@ -277,6 +278,22 @@ def test_two_drivers_share_a_folder(fake, tmp_path, monkeypatch):
         said, err = process.communicate(timeout=60)
         assert process.returncode == 0 and "6 of 6 points finished" in said, err
     assert fake.starts() == 6 and (table(out).exit == 0).all() and not orphans(out)
+
+
+def test_driver_waits_for_one_that_just_begins(fake, tmp_path):
+    """A driver that finds another between locking the folder and writing sweep.toml waits and then shares the folder."""
+    path, out = write(tmp_path, SIX), tmp_path / "out"
+    out.mkdir()
+    first = os.open(out, os.O_RDONLY)
+    fcntl.flock(first, fcntl.LOCK_EX)
+    process = start("sweep", str(path), "--out", str(out))
+    with pytest.raises(subprocess.TimeoutExpired):
+        process.wait(2)
+    (out / "sweep.toml").write_text(SIX)
+    fcntl.flock(first, fcntl.LOCK_SH)
+    said, err = process.communicate(timeout=60)
+    os.close(first)
+    assert process.returncode == 0 and "6 of 6 points finished" in said, err
 
 
 def test_one_run_of_the_list(fake, tmp_path):
