@@ -117,14 +117,17 @@ def _ours(wanted: Sweep, out: Path) -> Iterator[None]:
     except OSError as error:
         raise Unreadable(f"{out} cannot be made: {error.strerror}; choose another --out") from None
     try:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)      # nobody here: the folder is ours
-            with study.complete(out / "sweep.toml") as part:
-                part.write_text(wanted.text)
-        except BlockingIOError:
-            pass
-        fcntl.flock(lock, fcntl.LOCK_SH)      # waits for one who is just writing the file; from here on nobody changes it
-        if not (out / "sweep.toml").exists() or (out / "sweep.toml").read_text() != wanted.text:
+        for _ in range(2):                                            # again where one died before it had written the file
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)      # nobody here: the folder is ours
+                with study.complete(out / "sweep.toml") as part:
+                    part.write_text(wanted.text)
+            except BlockingIOError:
+                pass
+            fcntl.flock(lock, fcntl.LOCK_SH)  # waits for one who is just writing the file; from here on nobody changes it
+            if (out / "sweep.toml").exists() and (out / "sweep.toml").read_bytes() == wanted.text.encode():
+                break
+        else:
             raise Busy(f"{out} is being written by another sweep; wait, or choose another --out")
         yield
     finally:

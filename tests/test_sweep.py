@@ -280,8 +280,10 @@ def test_two_drivers_share_a_folder(fake, tmp_path, monkeypatch):
     assert fake.starts() == 6 and (table(out).exit == 0).all() and not orphans(out)
 
 
-def test_driver_waits_for_one_that_just_begins(fake, tmp_path):
-    """A driver that finds another between locking the folder and writing sweep.toml waits and then shares the folder."""
+@pytest.mark.parametrize("dies", [False, True])
+def test_driver_waits_for_one_that_just_begins(fake, tmp_path, dies):
+    """A driver that finds another between locking the folder and writing sweep.toml waits, then shares the folder; it has
+    the folder to itself where the other dies over it."""
     path, out = write(tmp_path, SIX), tmp_path / "out"
     out.mkdir()
     first = os.open(out, os.O_RDONLY)
@@ -289,10 +291,13 @@ def test_driver_waits_for_one_that_just_begins(fake, tmp_path):
     process = start("sweep", str(path), "--out", str(out))
     with pytest.raises(subprocess.TimeoutExpired):
         process.wait(2)
-    (out / "sweep.toml").write_text(SIX)
-    fcntl.flock(first, fcntl.LOCK_SH)
-    said, err = process.communicate(timeout=60)
+    if not dies:
+        (out / "sweep.toml").write_text(SIX)
+        fcntl.flock(first, fcntl.LOCK_SH)
+        said, err = process.communicate(timeout=60)
     os.close(first)
+    if dies:
+        said, err = process.communicate(timeout=60)
     assert process.returncode == 0 and "6 of 6 points finished" in said, err
 
 
