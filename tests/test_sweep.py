@@ -291,13 +291,12 @@ def test_driver_waits_for_one_that_just_begins(fake, tmp_path, dies):
     process = start("sweep", str(path), "--out", str(out))
     with pytest.raises(subprocess.TimeoutExpired):
         process.wait(2)
-    if not dies:
+    if dies:
+        os.close(first)
+    else:
         (out / "sweep.toml").write_text(SIX)
         fcntl.flock(first, fcntl.LOCK_SH)
-        said, err = process.communicate(timeout=60)
-    os.close(first)
-    if dies:
-        said, err = process.communicate(timeout=60)
+    said, err = process.communicate(timeout=60)
     assert process.returncode == 0 and "6 of 6 points finished" in said, err
 
 
