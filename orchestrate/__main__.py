@@ -96,7 +96,7 @@ def _parameters(options: argparse.Namespace) -> None:
     from . import parameters
     for name in parameters.names():
         p = parameters.table()[name]
-        default = p.default if p.kind == "word" else f"{p.default:g}"
+        default = p.default if isinstance(p.default, str) else f"{p.default:g}"
         print(f"{name:<21}{default:<17}{p.unit:<9}{p.help}; accepted: {p.accepted}")
 
 

@@ -12,8 +12,9 @@ import pandas as pd
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from . import mesh, peers, scene, study, textbook
+from .describe import describe
 from .figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE
-from .parameters import ROOT, defaults
+from .parameters import ROOT
 from .run import read_history, shown
 from .sweep_figures import distance
 
@@ -26,7 +27,6 @@ PEERS = [("ngsolve", "tuned", 2, 1.5e-4), ("ngsolve", "tuned", 2, 1e-4), ("ngsol
          ("getfem", "tuned", 2, 1.5e-4), ("getfem", "tuned", 1, 1e-4), ("getfem", "tuned", 1, 5e-5), ("getfem", "tuned", 1, 2e-5),
          ("getfem", "plain", 2, 1.5e-4), ("getfem", "plain", 1, 1e-4), ("textbook", "FreeFEM", 2, 1e-4), ("textbook", "FreeFEM", 1, 5e-5)]
 PEERS_QUICK = [("ngsolve", "tuned", 1, 1e-4), ("textbook", "FreeFEM", 2, 1e-4)]
-BULK, CONTACT = mesh.sizes_from_accuracy(defaults()["accuracy"], defaults()["radius"])   # [m], of mesh factor 1
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class Case:
     def finer(self) -> float:
         """The accuracy of the scene over that which its mesh and steps are made for."""
         values = scene.load(self.scene).values
-        return values["accuracy"] / mesh.accuracy_made(values)
+        return values["accuracy"] / describe(values)["accuracy_made"]
 
 
 CASES = {
@@ -109,8 +109,8 @@ def settings(case: Case, quick: bool) -> dict[str, list[study.Point]]:
 
 
 def sized(factor: float, **given) -> study.Point:
-    """A mesh of `factor` times the sizes BULK and CONTACT."""
-    return {"mesh_size": factor * BULK, "contact_mesh_size": factor * CONTACT} | given
+    """A mesh of `factor` times the sizes study.BULK and study.CONTACT."""
+    return {"mesh_size": factor * study.BULK, "contact_mesh_size": factor * study.CONTACT} | given
 
 
 def references(case: Case, quick: bool) -> list[study.Point]:

@@ -12,10 +12,10 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
-from . import mesh, run, scene, study
+from . import run, scene, study
 from .failure import Failure
 from .figures import BLUE, GREY, ORANGE, STYLE
-from .parameters import ROOT, defaults
+from .parameters import ROOT
 from .run import shown
 
 PHASES = ("assembly", "factor", "solve", "contact", "output", "audit", "setup", "other")
@@ -82,11 +82,10 @@ def profile(out: Path, rate: float, quick: bool) -> pd.DataFrame:
 def growth(out: Path, quick: bool) -> tuple[pd.DataFrame, dict[str, tuple[float, float]]]:
     """A row a mesh: dofs, seconds of processor time, of a step and of the set-up, memory [MB]; and the fitted power laws
     value = factor dofs^power from the four largest, as name: (power, factor)."""
-    bulk, contact = mesh.sizes_from_accuracy(defaults()["accuracy"], defaults()["radius"])
     points = []
     for dofs in DOFS[:3] if quick else DOFS:
         factor = (1028 / dofs) ** (1 / 1.79)      # that mesh has 1,028; all elements shrink alike, the graded ones fewer at first
-        points.append({"mesh_size": float(f"{factor * bulk:.4g}"), "contact_mesh_size": float(f"{factor * contact:.4g}")})
+        points.append({"mesh_size": float(f"{factor * study.BULK:.4g}"), "contact_mesh_size": float(f"{factor * study.CONTACT:.4g}")})
     rows = study.study(points, out, {"fields": 0, "dt": DT, "end_time": STEPS * DT}, LIMIT, cores=1)
     if rows.exit.any():
         raise Failure(f"costs: {rows.message[rows.exit != 0].iloc[0]}", int(rows.exit.max()))

@@ -12,7 +12,7 @@ from functools import partial
 from pathlib import Path
 
 from .failure import NotInstalled
-from .parameters import ROOT
+from .places import ROOT
 
 OLDEST = (4, 9)                          # the version in the banner; Debian's 4.11 calls itself 4.9
 DEBIAN_PLUGINS = "/usr/lib/freefem++"    # where Debian puts the plugins, and its FreeFem++ does not look

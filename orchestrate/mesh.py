@@ -5,7 +5,6 @@ the FreeFEM side curves the boundary. The lowest point of the disc touches the p
 """
 
 import math
-import re
 import signal
 import threading
 from collections.abc import Iterator
@@ -18,11 +17,9 @@ from pathlib import Path
 import numpy as np
 
 from .failure import BadInput, NotInstalled
-from .parameters import ROOT, TABLE, Value
 
 FREE, AXIS = 1, 2          # boundary labels
 GROWTH = 0.3               # element size gained per length of distance from the contact arc
-MOST_EDGES = 20_000        # along the contact arc; more than that is a slip of the pen
 
 
 @dataclass(frozen=True)
@@ -35,47 +32,16 @@ class Mesh:
     labels: np.ndarray
 
 
-def accuracy_made(values: dict[str, Value]) -> float:
-    """The accuracy that mesh and steps of a scene are made for: finer than asked, and more so with friction, by edp/core/parameters.idp."""
-    share = re.search(r"^real accuracyMade = accuracy / \(frictionStatic > 0 \? (\S+) : (\S+)\);", TABLE.read_text(), re.M)
-    return values["accuracy"] / float(share[1] if values["friction_static"] > 0 else share[2])
-
-
-def sizes_from_accuracy(made: float, radius: float) -> tuple[float, float]:
-    """(mesh_size, contact_mesh_size) in m for the relative accuracy that they are made for, with the numbers of edp/core/disc-mesh.idp."""
-    text = (ROOT / "edp/core/disc-mesh.idp").read_text()
-    bulk, contact = map(float, re.search(r"^real bulkSize = (\S+), arcSize = (\S+);", text, re.M).groups())
-    scale = math.sqrt(made / 5e-3)
-    return radius * min(bulk * scale, 0.5), radius * min(contact * scale, 0.25)
-
-
-def resolve_sizes(mesh_size: float, contact_mesh_size: float, made: float, radius: float) -> tuple[float, float]:
-    """Both sizes in m, where 0 means "from the accuracy that they are made for"; BadInput where the two do not fit each other or the disc."""
-    bulk, contact = sizes_from_accuracy(made, radius)
-    if mesh_size > radius:
-        raise BadInput(f"mesh_size: {mesh_size:g} is larger than the radius {radius:g}")
-    if mesh_size and contact_mesh_size > mesh_size:
-        raise BadInput(f"contact_mesh_size: {contact_mesh_size:g} is larger than mesh_size {mesh_size:g}")
-    if contact_mesh_size > radius:
-        raise BadInput(f"contact_mesh_size: {contact_mesh_size:g} is larger than the radius {radius:g}")
-    mesh_size = mesh_size or max(bulk, contact_mesh_size)
-    contact_mesh_size = contact_mesh_size or min(contact, mesh_size)
-    if contact_mesh_size * MOST_EDGES < radius:
-        raise BadInput(f"contact_mesh_size: {contact_mesh_size:g} is too small for the radius {radius:g} "
-                       f"(accepted: from {radius / MOST_EDGES:g})")
-    return mesh_size, contact_mesh_size
-
-
 @cache
 def gmsh_version() -> str:
     """The version of the gmsh package."""
     return metadata.version("gmsh")
 
 
-def disc(radius: float, mesh_size: float, contact_mesh_size: float, half: bool, contact_angle: float = 45.0) -> Mesh:
+def disc(radius: float, mesh_size: float, contact_mesh_size: float, half: bool, contact_arc: float = math.pi / 4) -> Mesh:
     """A disc, or its half x >= 0, centre (0, radius), all lengths in m.
 
-    The size is contact_mesh_size along the lowest arc of +-contact_angle degrees (seen from the centre) and grows
+    The size is contact_mesh_size along the lowest arc of +-contact_arc radians (seen from the centre) and grows
     linearly to mesh_size away from it. Vertices of the circle and of the axis lie on them to rounding.
     """
     unit = 1.0 / radius    # meshed at radius 1: gmsh's tolerances are absolute
@@ -84,11 +50,11 @@ def disc(radius: float, mesh_size: float, contact_mesh_size: float, half: bool, 
         gmsh.option.setNumber("Mesh.Algorithm", 6)   # frontal Delaunay: the best triangles
         for source in ("FromPoints", "FromCurvature", "ExtendFromBoundary"):
             gmsh.option.setNumber(f"Mesh.MeshSize{source}", 0)
-        arcs, axis = _outline(gmsh.model.geo, half, math.radians(contact_angle))
+        arcs, axis = _outline(gmsh.model.geo, half, min(contact_arc, 0.99 * math.pi))
         gmsh.model.geo.addPlaneSurface([gmsh.model.geo.addCurveLoop(arcs + axis)])
         gmsh.model.geo.synchronize()
         contact_arcs = arcs[:1] if half else [arcs[0], arcs[-1]]
-        _grade(gmsh.model.mesh.field, contact_arcs, mesh_size * unit, contact_mesh_size * unit, contact_angle)
+        _grade(gmsh.model.mesh.field, contact_arcs, mesh_size * unit, contact_mesh_size * unit, contact_arc)
         gmsh.model.mesh.generate(2)
         tags, coordinates, _ = gmsh.model.mesh.getNodes()
         _, triangle_tags = gmsh.model.mesh.getElementsByType(2)
@@ -128,24 +94,24 @@ def _gmsh() -> Iterator:
         gmsh.finalize()
 
 
-def _outline(geo, half: bool, contact_angle: float) -> tuple[list[int], list[int]]:
+def _outline(geo, half: bool, contact_arc: float) -> tuple[list[int], list[int]]:
     """Arcs of the unit circle, counter-clockwise from its lowest point, and the axis; as curves of gmsh."""
     def point(angle):   # measured from the lowest point
         return geo.addPoint(math.sin(angle), -math.cos(angle), 0)
 
     centre, bottom, top = geo.addPoint(0, 0, 0), point(0.0), point(math.pi)
-    corners = [bottom, point(contact_angle), top]
+    corners = [bottom, point(contact_arc), top]
     if not half:
-        corners += [point(-contact_angle), bottom]
+        corners += [point(-contact_arc), bottom]
     arcs = [geo.addCircleArc(a, centre, b) for a, b in zip(corners, corners[1:])]
     return arcs, [geo.addLine(top, bottom)] if half else []
 
 
-def _grade(field, contact_arcs: list[int], bulk: float, contact: float, contact_angle: float) -> None:
+def _grade(field, contact_arcs: list[int], bulk: float, contact: float, contact_arc: float) -> None:
     """Element size `contact` on the arcs, growing linearly with the distance from them up to `bulk`."""
     distance, size = field.add("Distance"), field.add("Threshold")
     field.setNumbers(distance, "CurvesList", contact_arcs)
-    field.setNumber(distance, "Sampling", math.ceil(2 * math.radians(contact_angle) / contact))
+    field.setNumber(distance, "Sampling", math.ceil(2 * contact_arc / contact))
     for name, value in dict(InField=distance, SizeMin=contact, SizeMax=bulk, DistMin=0,
                             DistMax=max(bulk - contact, 1e-9) / GROWTH).items():
         field.setNumber(size, name, value)

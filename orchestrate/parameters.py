@@ -1,30 +1,25 @@
-"""The parameters of a run, read from THE TABLE of edp/core/parameters.idp: nothing is copied by hand."""
+"""The parameters of a run, as the scripts describe them: nothing is copied by hand."""
 
 import difflib
 import math
 import re
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 
 from .failure import BadInput
-
-ROOT = Path(__file__).resolve().parent.parent
-TABLE = ROOT / "edp/core/parameters.idp"
+from .places import ROOT as ROOT
 
 Value = float | int | str
 
 NOT_DECISIVE = ("checkpoint_every",)   # parameters that do not change the answer
 
-_NUMBER = re.compile(r"[+-]?(\d+(\.\d+)?|\.\d+)([eE][+-]?\d+)?")
-_ROW = re.compile(
-    r"""^(?:real|int|string)\s+\w+\s*=\s*parameter(?P<kind>Real|Int|Word|Path)\(\s*"(?P<name>\w+)",\s*"""
-    r"""(?P<rest>.*?)\);\s*//\s*\[(?P<unit>[^]]*)\]\s*(?P<help>.*?)\s*$""", re.MULTILINE)
+_NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]+)?|\.[0-9]+)([eE][+-]?[0-9]+)?")
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """One row of the table. `kind` is real, int, word or path; `low`/`high` bound numbers, `words` lists words."""
+    """One row of the table. `kind` is real, int, word or path; `low`/`high` bound numbers, `words` lists the words that are
+    accepted, beside numbers too (auto)."""
 
     name: str
     kind: str
@@ -38,14 +33,14 @@ class Parameter:
     @property
     def accepted(self) -> str:
         """What is accepted, in the words of the error messages."""
-        return "|".join(self.words) if self.kind == "word" else f"{self.low:g} to {self.high:g}"
+        return "|".join(self.words) if self.kind == "word" else ", ".join([*self.words, f"{self.low:g} to {self.high:g}"])
 
     def check(self, given: Value) -> Value:
         """`given` (text, or a TOML value) as float, int or word; BadInput where it is not accepted."""
-        if self.kind == "word":
-            if given not in self.words:
-                raise BadInput(f"{self.name}: '{given}' is not known (accepted: {self.accepted})")
+        if isinstance(given, str) and given in self.words:
             return given
+        if self.kind == "word":
+            raise BadInput(f"{self.name}: '{given}' is not known (accepted: {self.accepted})")
         wanted = "a whole number" if self.kind == "int" else "a number"
         is_number = _NUMBER.fullmatch(given) if isinstance(given, str) else type(given) in (int, float)
         if not is_number or (self.kind == "int" and not isinstance(given, int) and float(given) % 1 != 0):
@@ -62,19 +57,14 @@ class Parameter:
 @cache
 def table() -> dict[str, Parameter]:
     """All parameters by name, in the order of the table."""
-    text = TABLE.read_text().partition("// THE TABLE")[2].partition("// END OF THE TABLE")[0]
+    from .describe import describe                        # it looks for FreeFem++: only when the table is wanted
     rows = {}
-    for row in _ROW.finditer(text):
-        name, kind = row["name"], row["kind"].lower()
-        default, *bounds = [part.strip().strip('"') for part in row["rest"].split(",")]
-        common = dict(name=name, kind=kind, unit=row["unit"], help=row["help"])
-        if kind == "word":
-            rows[name] = Parameter(default=default, words=tuple(bounds[0].split("|")), **common)
-        elif kind == "path":
-            rows[name] = Parameter(default=default, **common)
-        else:
-            number = int if kind == "int" else float
-            rows[name] = Parameter(default=number(default), low=float(bounds[0]), high=float(bounds[1]), **common)
+    for row in describe()["parameters"]:
+        words = row.pop("words", [])
+        row["words"] = tuple(words.split("|") if isinstance(words, str) else words)
+        if row["kind"] == "real":
+            row |= {name: float(row[name]) for name in ("default", "low", "high") if not isinstance(row[name], str)}
+        rows[row["name"]] = Parameter(**row)
     return rows
 
 

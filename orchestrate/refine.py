@@ -10,7 +10,8 @@ import numpy as np
 import pandas as pd
 from matplotlib.ticker import NullLocator
 
-from . import mesh, scene as scenes, study
+from . import scene as scenes, study
+from .describe import describe
 from .failure import Failure
 from .figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE
 from .parameters import ROOT, defaults
@@ -39,8 +40,7 @@ class Series:
 
 def series(scene: str, quick: bool) -> dict[str, Series]:
     """The series of a scene by name; quick: coarser, a few seconds."""
-    bulk, contact = mesh.sizes_from_accuracy(defaults()["accuracy"], defaults()["radius"])
-    sized = {factor: {"mesh_size": factor * bulk, "contact_mesh_size": factor * contact} for factor in (2, 1, 0.5, 0.35, 0.25)}
+    sized = {factor: {"mesh_size": factor * study.BULK, "contact_mesh_size": factor * study.CONTACT} for factor in (2, 1, 0.5, 0.35, 0.25)}
     normal = scene == "disc-normal"
     small, fine = (4e-5, 1.0) if quick else (5e-6, 0.5)
     finest = 1.0 if quick else (0.25 if normal else 0.35)
@@ -53,8 +53,8 @@ def series(scene: str, quick: bool) -> dict[str, Series]:
                            {a: {"accuracy": a} for a in ((2e-2, 5e-3) if quick else (2e-2, 1e-2, 5e-3, 2.5e-3, 1e-3)[slice(None if normal else 4)])}),
     }
     if not quick:
-        default_bulk, default_contact = mesh.sizes_from_accuracy(mesh.accuracy_made(scenes.load(scene).values), defaults()["radius"])
-        around = {f: {"mesh_size": f * default_bulk, "contact_mesh_size": f * default_contact} for f in np.linspace(0.85, 1.15, SCATTER[scene]).round(3).tolist()}
+        used = describe(scenes.load(scene).values)["used"]
+        around = {f: {name: f * used[name] for name in ("mesh_size", "contact_mesh_size")} for f in np.linspace(0.85, 1.15, SCATTER[scene]).round(3).tolist()}
         found["scatter"] = Series("the default run on meshes about as fine, their sizes times a factor: how far answers scatter by chance",
                                   "factor", around)
         if normal:

@@ -26,6 +26,7 @@ from pathlib import Path
 import numpy as np
 
 from . import freefem, mesh
+from .describe import describe
 from .failure import BadInput, Busy, Failure, Unreadable
 from .parameters import ROOT, Value, decisive
 from .scene import Scene
@@ -66,8 +67,7 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | Non
     if mesh_file:
         mesh_file = mesh_file.resolve()
         mesh.read(mesh_file)
-    else:
-        scene = with_mesh_sizes(scene)
+    description = describe(scene.values)
     finished = _finished(folder, force)
     if not force and (there := reusable(scene, folder, mesh_file)):
         return there
@@ -83,8 +83,8 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | Non
         if not goes_on:
             _clear(stage)
             _write_json(stage / "checkpoint.json", asked)
-            _write_mesh(stage / "mesh.msh", scene.values, mesh_file)
-        provenance |= {"git": _git(), "mesh": _sha256(stage / "mesh.msh")}
+            _write_mesh(stage / "mesh.msh", description, mesh_file)
+        provenance |= {"asked": decisive(scene.values), "git": _git(), "mesh": _sha256(stage / "mesh.msh")}
         flags = [text for name, value in scene.values.items() for text in (f"-{name}", str(value))]
         flags += ["-mesh", str(stage / "mesh.msh"), "-out", str(stage)]
         flags += ["-restart", str(stage / "checkpoint")] if goes_on else []
@@ -162,8 +162,6 @@ def _why(error: Exception) -> str:
 def reusable(scene: Scene, folder: Path, mesh_file: Path | None = None) -> RunResult | None:
     """The finished run in `folder` if it is of this very scene, mesh and code, else None; Unreadable if it is not ours."""
     summary = _finished(folder, force=False)
-    if not mesh_file:
-        scene = with_mesh_sizes(scene)
     same = summary and (folder / "history.csv").exists() and _same(folder, summary, scene, mesh_file, code_hash())
     return RunResult(folder, summary, reused=True) if same else None
 
@@ -207,33 +205,19 @@ def _same(folder: Path, summary: dict, scene: Scene, mesh_file: Path | None, cod
         same_mesh = provenance.get("mesh") == _sha256(mesh_file)
     else:
         same_mesh = provenance.get("gmsh") == mesh.gmsh_version()
-    used = read_scene(folder)
-    return same_mesh and all(used.get(name) == value for name, value in decisive(scene.values).items())
+    read_scene(folder)   # Unreadable where it is broken
+    return same_mesh and provenance.get("asked") == decisive(scene.values)
 
 
 # ---- the mesh
 
-def with_mesh_sizes(scene: Scene) -> Scene:
-    """The scene with the mesh sizes that its accuracy stands for, where they are 0."""
-    values = scene.values
-    sizes = mesh.resolve_sizes(values["mesh_size"], values["contact_mesh_size"], mesh.accuracy_made(values), values["radius"])
-    return scene.override(dict(zip(("mesh_size", "contact_mesh_size"), sizes)))
-
-
-def _write_mesh(path: Path, values: dict[str, Value], mesh_file: Path | None) -> None:
-    """The mesh of a run: a copy of `mesh_file`, or our own of the sizes in `values`."""
+def _write_mesh(path: Path, description: dict, mesh_file: Path | None) -> None:
+    """The mesh of a run: a copy of `mesh_file`, or our own, of the sizes and the part of the body that the description says."""
     if mesh_file:
         shutil.copy(mesh_file, path)
     else:
-        mesh.write(mesh.disc(values["radius"], values["mesh_size"], values["contact_mesh_size"], _is_half(values)), path)
-
-
-def _is_half(values: dict[str, Value]) -> bool:
-    """Half a disc is enough where nothing breaks the symmetry x -> -x."""
-    symmetric = values["angle"] == 90 and values["spin"] == 0 and values["body_force_x"] == 0
-    if values["symmetry"] == "half" and not symmetric:
-        raise BadInput("symmetry: half needs angle = 90, spin = 0 and body_force_x = 0 (accepted here: auto|full)")
-    return symmetric and values["symmetry"] != "full"
+        sizes = (description["used"][name] for name in ("radius", "mesh_size", "contact_mesh_size"))
+        mesh.write(mesh.disc(*sizes, description["half"], description["touch_arc"]), path)
 
 
 # ---- the folder of a run

@@ -5,10 +5,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from . import parameters
+from .describe import describe
 from .failure import BadInput
 
 SCENES = Path(__file__).resolve().parent / "scenes"
-MARCH = 'include "core/march.idp"'   # what tells the script of a scene from others
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ def load(name: str) -> Scene:
     except (OSError, ValueError) as error:
         raise BadInput(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
     script, title = given.pop("script", "disc-plane"), given.pop("title", path.stem)
-    scripts = [file.stem for file in sorted((parameters.ROOT / "edp").glob("*.edp")) if MARCH in file.read_text()]
+    scripts = describe()["scripts"]
     if script not in scripts:
         raise BadInput(f"{path}: script: '{script}' is not known (accepted: {'|'.join(scripts)})")
     try:

@@ -9,7 +9,8 @@ import sys
 import numpy as np
 import pytest
 
-from orchestrate import freefem, mesh, parameters, report, run, scene, vtu
+from orchestrate import freefem, parameters, report, run, scene, vtu
+from orchestrate.describe import describe
 from orchestrate.sweep_figures import HISTORY_COLUMNS
 
 COLUMNS = ("t dt normal_force friction_force kinetic elastic contact friction_work external_work balance momentum_x momentum_y "
@@ -220,14 +221,14 @@ def test_both_ways_choose_the_same_sizes(tmp_path, rubs):
     flags = [word for name, value in given.items() for word in (f"-{name}", str(value))]
     assert direct("-accuracy", "0.1", "-end_time", "1e-6", *flags, "-out", str(tmp_path)).returncode == 0
     found = scene.load(str(tmp_path / "scene.toml")).values
-    wanted = mesh.resolve_sizes(0, 0, mesh.accuracy_made(parameters.defaults() | given | {"accuracy": 0.1}), found["radius"])
-    assert (found["mesh_size"], found["contact_mesh_size"]) == pytest.approx(wanted, rel=1e-5)
-    assert wanted == pytest.approx(mesh.sizes_from_accuracy(0.1 / (8 if rubs else 2), found["radius"]))
+    wanted = describe(given | {"accuracy": 0.1})["used"]
+    for name in ("mesh_size", "contact_mesh_size", "penalty", "slip_velocity", "friction_dynamic"):
+        assert found[name] == wanted[name], name
 
 
 # ---- chatter
 
-COARSE = {"speed": "1.84", "accuracy": "0.1", "degree": "1"}
+COARSE = {"speed": "1.84", "accuracy": "0.1", "degree": "1", "mesh_size": "0.025", "contact_mesh_size": "0.0079"}
 
 
 @pytest.mark.parametrize("how", ["stop", "continue"])

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from orchestrate import freefem, mesh
+from orchestrate.describe import describe
 from orchestrate.failure import BadInput
 
 CASES = [
@@ -109,25 +110,30 @@ def test_same_input_same_mesh():
     assert np.array_equal(first.points, second.points)
 
 
-@pytest.mark.parametrize("sizes, words", [
-    ((0.001, 0.002), "contact_mesh_size: 0.002 is larger than mesh_size 0.001"),
-    ((0.06, 0.0), "mesh_size: 0.06 is larger than the radius 0.05"),
-    ((0.0, 0.06), "contact_mesh_size: 0.06 is larger than the radius 0.05"),
-    ((0.0, 1e-9), "too small"),
+@pytest.mark.parametrize("values, words", [
+    ({"mesh_size": 0.001, "contact_mesh_size": 0.002}, "contact_mesh_size: 0.002 is larger than mesh_size 0.001"),
+    ({"mesh_size": 0.06}, "mesh_size: 0.06 is larger than the radius 0.05"),
+    ({"contact_mesh_size": 0.06}, "mesh_size: 0.06 is larger than the radius 0.05"),
+    ({"contact_mesh_size": 1e-9}, "too small"),
 ])
-def test_sizes_that_do_not_fit_are_named(sizes, words):
+def test_sizes_that_do_not_fit_are_named(values, words):
     """Sizes that contradict each other or the disc are bad input, named with the limit."""
     with pytest.raises(BadInput, match=words):
-        mesh.resolve_sizes(*sizes, made=5e-3, radius=0.05)
+        describe(values)
+
+
+def sizes(**values) -> tuple[float, float]:
+    used = describe(values)["used"]
+    return used["mesh_size"], used["contact_mesh_size"]
 
 
 def test_sizes_follow_the_accuracy():
     """A size of 0 comes from the accuracy, and a given size is kept with the other one fitted to it."""
-    bulk, contact = mesh.resolve_sizes(0, 0, 5e-3, 0.05)
-    finer_bulk, finer_contact = mesh.resolve_sizes(0, 0, 5e-4, 0.05)
+    bulk, contact = sizes(accuracy=1e-2)
+    finer_bulk, finer_contact = sizes(accuracy=1e-3)
     assert finer_bulk < bulk and finer_contact < contact < bulk
-    assert mesh.resolve_sizes(1e-3, 0, 5e-3, 0.05) == (1e-3, 1e-3)
-    assert mesh.resolve_sizes(0, 1e-2, 5e-3, 0.05) == pytest.approx((1e-2, 1e-2))
+    assert sizes(mesh_size=1e-3) == (1e-3, 1e-3)
+    assert sizes(contact_mesh_size=1e-2)[1] == 1e-2 and sizes(contact_mesh_size=4e-2) == (4e-2, 4e-2)
 
 
 @pytest.mark.parametrize("text", ["", "1 2", "3 1 3\n0 0 x", "$MeshFormat\n2.2 0 8"])

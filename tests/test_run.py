@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from orchestrate import freefem, mesh, run, scene
+from orchestrate.describe import describe
 from orchestrate.failure import BadInput, Failure, NotInstalled, Unreadable
 
 
@@ -19,16 +20,19 @@ def test_finished_run_is_complete(fake, tmp_path):
     result = go(tmp_path / "out", {"fields": 2}, pictures=True)
     assert {"scene.toml", "history.csv", "summary.json", "log.txt", "mesh.msh", "fields.pvd", "fields", "figures"} == {
         p.name for p in result.folder.iterdir()}
-    assert set(result.summary["provenance"]) == {"script", "git", "code", "freefem", "gmsh", "mesh"}
+    assert set(result.summary["provenance"]) == {"script", "asked", "git", "code", "freefem", "gmsh", "mesh"}
     assert result.summary["status"] == "ok" and not result.reused
     assert result.history["t"].shape == (200,) and result.scene["speed"] == 8.0
     assert not list(tmp_path.glob("out.*"))
 
 
-def test_mesh_sizes_are_recorded(fake, tmp_path):
-    """The sizes that follow from the accuracy are in scene.toml as used, not as 0."""
+def test_mesh_has_the_described_sizes(fake, tmp_path):
+    """The mesh that Python makes has the sizes that the scripts describe."""
     used = go(tmp_path / "out").scene
-    assert (used["mesh_size"], used["contact_mesh_size"]) == mesh.sizes_from_accuracy(mesh.accuracy_made(used), used["radius"])
+    m = mesh.read(tmp_path / "out/mesh.msh")
+    length = np.linalg.norm(m.points[m.edges[:, 1]] - m.points[m.edges[:, 0]], axis=1)
+    wanted = describe(used)["used"]
+    assert wanted["contact_mesh_size"] == pytest.approx(length.min(), rel=0.2) and wanted["mesh_size"] == pytest.approx(length.max(), rel=0.3)
 
 
 @pytest.mark.parametrize("given, half", [
@@ -41,7 +45,7 @@ def test_half_is_meshed_where_it_is_enough(fake, tmp_path, given, half):
 
 def test_half_of_an_oblique_impact_is_refused(fake, tmp_path):
     """Half a disc cannot stand for an oblique impact."""
-    with pytest.raises(BadInput, match="symmetry: half needs angle = 90"):
+    with pytest.raises(BadInput, match="symmetry: half needs a normal impact"):
         go(tmp_path / "out", {"symmetry": "half", "angle": 60})
     assert fake.starts() == 0
 
