@@ -440,9 +440,12 @@ def _provenance(folders: list[Path]) -> str:
               if all(used.get(name) == value for used in scenes) and (name == "script" or standard.get(name) != value)}
     varied = {name: sorted({used.get(name) for used in scenes}, key=lambda value: (isinstance(value, str), value)) for name in scenes[0]
               if any(used.get(name) != scenes[0][name] for used in scenes)}
-    made = [json.loads(path.read_text()).get("provenance", {}) for folder in folders
-            for path in (folder / "summary.json", folder / "failure.json") if path.exists()]
-    lines = [f"runs          {len(scenes)}", "parameters    " + ", ".join(f"{name} = {value}" for name, value in common.items())]
+    records = [json.loads(path.read_text()) for folder in folders
+               for path in (folder / "summary.json", folder / "failure.json") if path.exists()]
+    made = [record.get("provenance", {}) for record in records]
+    warned = study.warned("; ".join(each.get("warnings", [])) for each in records)
+    lines = [f"runs          {len(scenes)}", f"warnings      {warned or 'none'}",
+             "parameters    " + ", ".join(f"{name} = {value}" for name, value in common.items())]
     lines += [f"varied        {name}: {_shown(values)}" for name, values in varied.items()]
     for name, words in (("git", "commit"), ("code", "code sha256"), ("freefem", "FreeFem++"), ("gmsh", "gmsh")):
         lines.append(f"{words:<14}" + ", ".join(sorted({str(each.get(name)) for each in made})))
