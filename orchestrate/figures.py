@@ -3,6 +3,7 @@ the friction force, what slides and sticks, and the flight, as figures 4 to 6 of
 
 from dataclasses import dataclass
 from pathlib import Path
+from textwrap import wrap
 
 import matplotlib
 
@@ -26,8 +27,9 @@ SHAPES = 9   # small multiples at most
 DASHED = (0, (4, 2))
 
 
-def draw(folder: Path) -> list[Path]:
-    """Draws all figures of the run in `folder` into folder/figures; the files. Unreadable where the folder is broken."""
+def draw(folder: Path, warnings: list[str]) -> list[Path]:
+    """Draws all figures of the run in `folder` into folder/figures, with its warnings below; the files. Unreadable where the
+    folder is broken."""
     history, scene = read_history(folder), read_scene(folder)
     snapshots = vtu.series(folder / "fields.pvd")
     target = folder / "figures"
@@ -47,10 +49,20 @@ def draw(folder: Path) -> list[Path]:
         files = []
         for name, figure in drawn.items():
             figure.suptitle(title(scene), fontsize=9)
+            footer(figure, warnings)
             files.append(target / f"{name}.png")
             figure.savefig(files[-1])
             plt.close(figure)
     return files
+
+
+def footer(figure: plt.Figure, warnings: list[str]) -> None:
+    """The warnings of the run, small, below the figure, which grows by their height; without what to do about them."""
+    width, height = figure.get_size_inches()
+    lines = [line for sentence in warnings for line in wrap("! " + sentence.rpartition(": ")[0], int(22 * width), subsequent_indent="  ")]
+    if lines:
+        figure.set_size_inches(width, height + 0.11 * len(lines) + 0.05)
+        figure.supxlabel("\n".join(lines), fontsize=6, color=ORANGE, x=0.01, ha="left")
 
 
 def title(scene: dict[str, Value]) -> str:

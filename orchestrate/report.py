@@ -37,6 +37,7 @@ def rows(per_metre: bool) -> list[Quantity]:
     per = "/m" if per_metre else ""
     return [
         Quantity("contact_time", "contact time", "ms", 1e3),
+        Quantity("thresholded_contact_time", "  above 1 % of the peak", "ms", 1e3),
         Quantity("contact_intervals", "contact intervals", digits=".0f"),
         Quantity("peak_force", "peak force", f"kN{per}", 1e-3),
         Quantity("impulse", "impulse", f"N s{per}", digits=".5g"),
@@ -53,6 +54,10 @@ def rows(per_metre: bool) -> list[Quantity]:
         Quantity("max_penetration", "largest penetration", "mm", 1e3, ".3g"),
         Quantity("min_jacobian", "smallest det F", digits=".3f"),
         Quantity("min_stretch", "smallest stretch", digits=".3f"),
+        Quantity("min_ellipticity", "smallest ellipticity", "mu"),
+        Quantity("ellipticity_lost_time", "ellipticity lost from", "ms", 1e3),
+        Quantity("ellipticity_lost_x", "  there X =", "mm", 1e3),
+        Quantity("ellipticity_lost_y", "  there Y =", "mm", 1e3),
         Quantity("breakdown_time", "det F <= 0 from", "ms", 1e3),
         Quantity("breakdown_x", "  there X =", "mm", 1e3),
         Quantity("breakdown_y", "  there Y =", "mm", 1e3),
@@ -92,8 +97,7 @@ def report(result: RunResult) -> str:
         beside = [quantity.beside(number) for number in known.get(quantity.key, [])] or [""]
         lines.append(f"  {quantity.label:<24}{quantity.text(value):<18}{beside[0]}".rstrip())
         lines += [f"  {'':<42}{more}" for more in beside[1:]]
-    if summary["message"]:
-        lines.append(f"  {'warning':<24}{summary['message']}")
+    lines += [f"  {'warning':<24}{sentence}" for sentence in summary["warnings"]]
     if summary.get("skipped"):
         lines.append(f"  {'skipped':<24}{', '.join(summary['skipped'])}")
     pictures = sorted((result.folder / "figures").glob("*.png"))

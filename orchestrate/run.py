@@ -329,7 +329,7 @@ def _finish(stage: Path, provenance: dict, pictures: bool) -> None:
     if pictures:
         from . import figures
         try:
-            figures.draw(stage)
+            figures.draw(stage, summary["warnings"])
         except Exception as error:   # a picture is no reason to lose a run
             print(f"ffimpact: the figures could not be drawn: {error!r}", file=sys.stderr)
     os.replace(stage / "summary.json.part", stage / "summary.json")

@@ -33,7 +33,7 @@ def main(argv: list[str]) -> int:
     out = options.out.resolve()
     points = sample(max(1, options.sets))
     rows = study.study(points, out, {"fields": 0}, LIMIT)
-    rows = rows.reindex(columns=rows.columns.union([*stress.READ, "contact_intervals", "min_jacobian", "min_stretch"], sort=False))
+    rows = rows.reindex(columns=rows.columns.union([*stress.READ, "contact_intervals", "min_jacobian", "ellipticity_lost_time"], sort=False))
     rows["outcome"] = [judge(row) for _, row in rows.iterrows()]
     study.save(rows, out / "stress-map.csv")
     draw(rows, out / "stress-map.png")
@@ -108,8 +108,8 @@ def _region(group: pd.DataFrame, every: pd.DataFrame) -> str:
 
 def _reason(group: pd.DataFrame) -> str:
     if (group.outcome == "breakdown").all() and (group.law == "svk").all():
-        soft = (group.min_stretch < 0.577).sum()
-        return f"The law softens below the stretch 0.577 and elements invert: {soft} of the {len(group)} had reached it."
+        lost = group.ellipticity_lost_time.notna().sum()
+        return f"Compressed, the law loses ellipticity, and elements invert: {lost} of the {len(group)} had lost it before."
     return "First message: " + str(group.message.iloc[0])
 
 

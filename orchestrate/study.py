@@ -6,8 +6,8 @@ import os
 import signal
 import sys
 import time
-from collections import deque
-from collections.abc import Iterator
+from collections import Counter, deque
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
@@ -28,7 +28,8 @@ Point = dict[str, Value]    # the parameters that tell this run from the others 
 
 
 def study(points: list[Point], folder: Path, base: Point, limit: float, name: str = "disc-normal", cores: int = CORES) -> pd.DataFrame:
-    """A row for each of `points`, in their order: its parameters, exit, message, reused, and the numbers of its summary.
+    """A row for each of `points`, in their order: its parameters, exit, message, warnings (joined by "; "), reused, and
+    the numbers of its summary.
 
     Every run is the scene `name` with `base` and the point's parameters on top, in folder/runs/, and may take `limit`
     seconds; `cores` of them run at a time. What is there already is not run again: finished runs, and failures of the same scene and code. A run
@@ -132,7 +133,7 @@ def _outcome(folder: Path, wanted: scene.Scene) -> dict | None:
 
 def _row(code: int, message: str, reused: bool, summary: dict) -> dict:
     numbers = {name: value for name, value in summary.items() if type(value) in (int, float) and name != "exit_code"}
-    return {"exit": code, "message": message, "reused": reused} | numbers
+    return {"exit": code, "message": message, "warnings": "; ".join(summary.get("warnings", [])), "reused": reused} | numbers
 
 
 def _failed_before(wanted: scene.Scene, folder: Path) -> dict | None:
@@ -151,6 +152,13 @@ def _read_json(path: Path) -> dict:
     except (OSError, ValueError):
         return {}
     return content if isinstance(content, dict) else {}
+
+
+def warned(warnings: Iterable[str]) -> str:
+    """How many runs have which warning, from the warnings of each, joined by "; "; empty where none has any."""
+    every = list(warnings)
+    counts = Counter(sentence.split(":")[0] for joined in every for sentence in joined.split("; ") if sentence)
+    return f"{', '.join(f'{name} in {count}' for name, count in counts.most_common())} of {len(every)} runs" if counts else ""
 
 
 def table(frame: pd.DataFrame, formats: dict[str, str]) -> str:

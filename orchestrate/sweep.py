@@ -255,8 +255,8 @@ def collect(wanted: Sweep, out: Path) -> pd.DataFrame:
 
 
 def table(wanted: Sweep, out: Path) -> pd.DataFrame:
-    """Runs what is not there yet; a row a point, tidy: what varies, exit, message, what is collected, with `refine` of the refined
-    run and beside it <name>_error [same unit], |refined - plain|; seconds.
+    """Runs what is not there yet; a row a point, tidy: what varies, exit, message, warnings, what is collected, with `refine` of the
+    refined run and beside it <name>_error [same unit], |refined - plain|; seconds.
 
     A point of which a run failed keeps that run's exit code and message, and has no numbers.
     """
@@ -266,10 +266,10 @@ def table(wanted: Sweep, out: Path) -> pd.DataFrame:
             runs[name] = np.nan
     n = len(wanted.points)
     plain, fine = runs[:n], runs[-n:].set_axis(runs.index[:n])
-    rows = fine[wanted.axes + ["exit", "message"] + wanted.collect].copy()
+    rows = fine[wanted.axes + ["exit", "message", "warnings"] + wanted.collect].copy()
     if wanted.refine:
         worse = (plain.exit != 0) & (fine.exit == 0)
-        rows.loc[worse, ["exit", "message"]] = plain.loc[worse, ["exit", "message"]]
+        rows.loc[worse, ["exit", "message", "warnings"]] = plain.loc[worse, ["exit", "message", "warnings"]]
         for name in wanted.collect:
             rows[f"{name}_error"] = (fine[name] - plain[name]).abs()
     rows[wanted.collect] = rows[wanted.collect].where(rows.exit == 0)
@@ -291,6 +291,8 @@ def report(wanted: Sweep, rows: pd.DataFrame, out: Path) -> str:
     for (code, message), group in failed.groupby(["exit", "message"], sort=False):
         where = "; ".join(study.place(Path(), point).name for point in group[wanted.axes].to_dict("records"))
         lines.append(f"failed, exit {code}: {where}: {message}")
+    if found := study.warned(rows.warnings):
+        lines.append(f"warnings: {found}")
     lines += sweep_figures.findings(wanted, rows, out)
     files = ", ".join(path.name for path in (out / "sweep.csv", out / "sweep.png") if path.exists())
     lines.append(f"{len(rows) - len(failed)} of {len(rows)} points finished; {shown(out)}/: {files}")

@@ -13,7 +13,7 @@ import time
 from pathlib import Path
 
 COLUMNS = ("t dt normal_force friction_force kinetic elastic contact friction_work external_work balance momentum_x momentum_y "
-           "angular_momentum vx vy spin max_penetration contact_size sliding_fraction min_jacobian min_stretch newton_iterations")
+           "angular_momentum vx vy spin max_penetration contact_size sliding_fraction min_jacobian min_stretch newton_iterations min_ellipticity")
 ENERGY, MASS, SPEED, CONTACT = 432.8, 13.525, 8.0, 4.67e-3
 
 
@@ -93,7 +93,7 @@ def write_scene(folder: Path, values: dict[str, str]) -> None:
 
 def summary(status: str = "ok", message: str = "") -> dict:
     """summary.json without provenance."""
-    return dict(status=status, message=message, contact_time=CONTACT, contact_intervals=1, peak_force=70e3, impulse=208.2,
+    return dict(status=status, message=message, warnings=[], contact_time=CONTACT, contact_intervals=1, peak_force=70e3, impulse=208.2,
                 rebound_vx=0.0, rebound_vy=7.394, spin=0.0, energy_initial=ENERGY, energy_final=ENERGY, vibration_energy=60.0,
                 friction_work=0.0, energy_drift=1e-11, momentum_drift=1e-12, min_jacobian=0.8, min_stretch=0.7,
                 breakdown_time=None, max_penetration=6e-6, sliding_time=0.0, sticking_time=0.0, steps=200, rejected_steps=3,

@@ -109,7 +109,7 @@ def test_stress_map_is_always_the_same_and_covers_all():
 def test_stress_map_requirement(change, holds):
     """No open balance, chatter, crash or hang among the finished; a failure has a message; exit 11 is rare."""
     row = {"law": "svk", "nu": 0.3, "speed": 4.0, "penalty": 1e10, "exit": 0, "message": "", "energy_drift": 1e-11, "contact_intervals": 1,
-           "min_stretch": 0.5, "max_penetration": 1e-4, "wall_seconds": 1.0, "newton_iterations": 10, "steps": 2}
+           "ellipticity_lost_time": 1e-4, "max_penetration": 1e-4, "wall_seconds": 1.0, "newton_iterations": 10, "steps": 2}
     rows = pd.DataFrame([row] * 99 + [row | change])
     rows["outcome"] = [stress_map.judge(each) for _, each in rows.iterrows()]
     assert stress_map.holds(rows) == holds and f"the requirement {'holds' if holds else 'FAILS'}" in stress_map.report(rows)[-1]

@@ -1,0 +1,142 @@
+"""Warnings: each appears where its condition holds, with its number, and not where it does not; tables, figures and reports show them."""
+
+import json
+import re
+import subprocess
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from orchestrate import figures, freefem, measure, parameters, report, run, scene, study, sweep
+from orchestrate.figures import plt
+
+OBLIQUE = dict(angle=60, law="neohookean", friction_static=0.7, accuracy=0.3)
+COARSE = dict(accuracy=0.1)
+LONG = dict(mesh_size=0.008, contact_mesh_size=0.006, dt=2e-5, penalty=1e10)   # its last touch is a grazing one
+CASES = [   # name, flags with which it appears, flags with which it does not, a number it tells and what that is about
+    ("penalty", COARSE | dict(penalty=1e9), COARSE, r"(\S+) % of the elastic energy", (2, 50)),
+    ("penetration", COARSE | dict(penalty=1e8), COARSE | dict(penalty=1e9), r"(\S+) % of the radius", (10, 40)),
+    ("creep", OBLIQUE | dict(slip_velocity=2), OBLIQUE | dict(slip_velocity=0.05), r"at (\S+) % of the centre's speed", (10, 40)),
+    ("creep", OBLIQUE | dict(slip_velocity=2), OBLIQUE | dict(slip_velocity=2, angle=90, symmetry="full"), r"at (\S+) %", (10, 40)),
+    ("contact points", dict(speed=0.25, penalty=1e11, mesh_size=0.012, contact_mesh_size=0.012, accuracy=0.05), dict(speed=0.25, accuracy=0.1),
+     r"(\d+) of the body touch", (2, 8)),
+    ("energy", dict(integrator="backward-euler", accuracy=0.02), dict(accuracy=0.02), r"backward-euler integrator lost (\S+) %", (3, 30)),
+    ("energy", dict(integrator="bdf2", accuracy=0.02, dt=2e-4), dict(integrator="bdf2", accuracy=0.02, dt=1e-5), r"bdf2 integrator lost (\S+) %", (2, 30)),
+    ("contact time", LONG, LONG | dict(accuracy=0.05), r"for the last (\S+) % of it", (0.5, 5)),
+    ("ellipticity", COARSE | dict(speed=9), COARSE | dict(speed=9, law="neohookean"), r"eigenvalue of the acoustic tensor (\S+) mu", (-1, 0)),
+    ("breakdown", COARSE | dict(speed=14, breakdown="continue"), COARSE | dict(speed=9, breakdown="continue"), r"from t = (\S+) s", (1e-4, 3e-3)),
+    ("friction", OBLIQUE | dict(friction_dynamic=0.5, slip_velocity=1, regularization="linear-printed"),
+     OBLIQUE | dict(friction_dynamic=0.5, slip_velocity=1), r"no solution in (\S+) % of the points and steps", (1, 20)),
+]
+
+
+@pytest.fixture(scope="module")
+def disc(tmp_path_factory):
+    """The outcome of a run with these flags, each set once."""
+    known = {}
+
+    def go(flags: dict) -> measure.Outcome:
+        key = json.dumps(flags, sort_keys=True)
+        if key not in known:
+            known[key] = measure.disc(tmp_path_factory.mktemp("disc"), **flags)
+        return known[key]
+    return go
+
+
+def found(outcome: measure.Outcome, name: str) -> list[str]:
+    return [sentence for sentence in outcome.summary["warnings"] if sentence.startswith(name + ": ")]
+
+
+@pytest.mark.parametrize("name, bad, good, number, limits", CASES)
+def test_each_warning_appears_where_it_should_and_only_there(disc, name, bad, good, number, limits):
+    """One sentence that says what, how much, and what to do; none of that name where the condition does not hold. `message` is for failures."""
+    sentences = found(disc(bad), name)
+    assert len(sentences) == 1 and ": take " in sentences[0] and not set(sentences[0]) & set('";'), sentences
+    assert limits[0] <= float(re.search(number, sentences[0])[1]) <= limits[1], sentences[0]
+    assert disc(bad).summary["message"] == "" and found(disc(good), name) == []
+
+
+def test_numbers_of_the_warnings_are_those_of_the_history(disc):
+    """Penetration, energy and ellipticity of the warnings are found again in history and summary."""
+    deep = disc(COARSE | dict(penalty=1e8))
+    told = float(re.search(r"(\S+) % of the radius", found(deep, "penetration")[0])[1])
+    assert told == pytest.approx(100 * deep.history["max_penetration"].max() / 0.05, rel=0.05)
+    damped = disc(dict(integrator="backward-euler", accuracy=0.02))
+    told = float(re.search(r"lost (\S+) %", found(damped, "energy")[0])[1])
+    assert told == pytest.approx(-100 * damped.history["balance"].min() / damped.summary["energy_initial"], rel=0.05)
+    lost = disc(COARSE | dict(speed=9))
+    told = float(re.search(r"from t = (\S+) s", found(lost, "ellipticity")[0])[1])
+    assert told == pytest.approx(lost.summary["ellipticity_lost_time"], rel=1e-5)
+    soft = disc(COARSE | dict(penalty=1e9))
+    h = soft.history
+    peak = np.argmax(np.where(h["max_penetration"] > 0, h["elastic"], 0))
+    told = float(re.search(r"(\S+) % of the elastic", found(soft, "penalty")[0])[1])
+    assert told == pytest.approx(100 * h["contact"][peak] / h["elastic"][peak], rel=0.05)
+
+
+@pytest.mark.parametrize("flags", [LONG, COARSE, COARSE | dict(height=1e-3), OBLIQUE | dict(slip_velocity=2)])
+def test_thresholded_contact_time(disc, flags):
+    """From the first to the last crossing of 1 % of the largest step mean of the normal force, linear between the middles of the steps."""
+    outcome = disc(flags)
+    h = outcome.history
+    k = np.argmax(h["normal_force"] > 0)   # the row before it ends the flight
+    t, force = np.concatenate([[h["t"][k - 1]], (h["t"] - h["dt"] / 2)[k:]]), h["normal_force"][k - 1:]
+    level = 0.01 * force.max()
+    above = np.flatnonzero(force >= level)
+    a, b = above[0], above[-1]
+    first = np.interp(level, force[a - 1:a + 1], t[a - 1:a + 1])
+    last = np.interp(-level, -force[b:b + 2], t[b:b + 2])
+    assert outcome.summary["thresholded_contact_time"] == pytest.approx(last - first, rel=1e-12)
+    assert 0.9 < outcome.summary["thresholded_contact_time"] / outcome.summary["contact_time"] < 1.01
+
+
+def test_contact_that_is_not_over_is_measured_to_the_end(disc):
+    """At an end_time in the middle of the contact, both contact times end there; nothing is said of the last touch."""
+    outcome = disc(COARSE | dict(end_time=2e-3))
+    assert outcome.summary["contact_time"] == pytest.approx(2e-3 - outcome.summary["contact_start"], rel=1e-9)
+    assert 0.95 * 2e-3 < outcome.summary["thresholded_contact_time"] <= 2e-3 and found(outcome, "contact time") == []
+
+
+def test_no_contact_no_contact_time(disc):
+    """A flight has neither contact time, and no warning."""
+    outcome = disc(COARSE | dict(height=1, end_time=1e-3))
+    assert outcome.summary["contact_time"] is outcome.summary["thresholded_contact_time"] is None and outcome.summary["warnings"] == []
+
+
+def test_direct_run_prints_its_warnings(tmp_path):
+    """Lines `warning` at the end of what FreeFem++ prints, the sentences of summary.json."""
+    program = freefem.find()
+    process = subprocess.run([program.command, "-nw", "-ne", "-v", "0", "edp/disc-plane.edp", "-accuracy", "0.1", "-penalty", "1e8", "-out", str(tmp_path / "out")],
+                             cwd=parameters.ROOT, env=program.environment, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=120)
+    said = re.findall(r"^warning +(.*)$", process.stdout, re.MULTILINE)
+    assert len(said) > 1 and said == run.read_summary(tmp_path / "out")["warnings"]
+
+
+def test_report_and_figures_show_them(tmp_path):
+    """A row each in the report; below each figure, without what to do."""
+    result = run.run(scene.load("disc-normal"), dict(penalty=1e8, accuracy=0.1, fields=0), tmp_path / "out", pictures=False)
+    told, lines = result.summary["warnings"], report.report(result).splitlines()
+    assert len(told) > 1 and [line.split(None, 1)[1] for line in lines if line.startswith("  warning ")] == told
+    figure, _ = plt.subplots(figsize=(5.2, 3.2))
+    figures.footer(figure, told)
+    shown = " ".join(figure.get_supxlabel().split())
+    assert all(sentence.rpartition(": ")[0] in shown for sentence in told) and "take" not in shown and figure.get_figheight() > 3.2
+    figures.footer(figure, [])
+    plt.close(figure)
+
+
+def test_tables_have_a_column_of_them(tmp_path, capsys):
+    """Sweeps: the column `warnings` of sweep.csv joins the sentences with "; "; the printed report counts them by name."""
+    (tmp_path / "soft.toml").write_text('scene = "disc-normal"\n[set]\naccuracy = 0.1\nfields = 0\n[product]\npenalty = [1e8, 1e10]\n')
+    assert sweep.main([str(tmp_path / "soft.toml"), "--out", str(tmp_path / "out")]) == 0
+    rows = pd.read_csv(tmp_path / "out/sweep.csv", keep_default_na=False)
+    for where, joined in zip(("penalty=100000000.0", "penalty=10000000000.0"), rows.warnings):
+        assert joined == "; ".join(run.read_summary(tmp_path / "out/runs" / where)["warnings"])
+    assert rows.warnings[0].startswith("penalty: ") and "penalty in 1" in capsys.readouterr().out
+
+
+def test_warnings_are_counted_by_name():
+    """The most frequent first; nothing where there is none."""
+    assert study.warned(["penalty: a; creep: b", "", "creep: c"]) == "creep in 2, penalty in 1 of 3 runs"
+    assert study.warned(["", ""]) == ""

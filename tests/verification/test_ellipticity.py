@@ -1,0 +1,74 @@
+"""Ellipticity: the smallest eigenvalue of the acoustic tensor over all directions, against directions tried one by one, the
+program's own stress and the limits that are known in closed form."""
+
+import numpy as np
+import pytest
+
+STATES = range(100)
+
+
+def acoustic(C: np.ndarray, nu: float, law: str, directions: int = 2000) -> np.ndarray:
+    """Smallest eigenvalue of Q(N) over mu, the least of so many directions N in the plane, of the states C (n, 2, 2), from Q as in
+    the textbook: svk (N.S N) I + (lambda + mu) FN (x) FN + mu F F^T, neo-Hookean mu I + (lambda (1 - ln J) + mu) g (x) g."""
+    ratio = 2 * nu / (1 - 2 * nu)
+    angle = np.pi * np.arange(directions) / directions
+    N = np.stack([np.cos(angle), np.sin(angle)])                        # (2, directions)
+    U = np.array([np.linalg.cholesky(c).T for c in C])                  # U^T U = C: any F will do
+    one, least = np.eye(2), []
+    for F, c in zip(U, C):
+        if law == "svk":
+            S = ratio * (np.trace(c) - 2) / 2 * one + c - one
+            FN = F @ N
+            Q = (np.einsum("id,ij,jd->d", N, S, N)[:, None, None] * one + (ratio + 1) * np.einsum("id,jd->dij", FN, FN) + F @ F.T)
+        else:
+            g = np.linalg.inv(F).T @ N
+            Q = one + (ratio * (1 - np.log(np.linalg.det(F))) + 1) * np.einsum("id,jd->dij", g, g)
+        least.append(np.linalg.eigvalsh(Q).min())
+    return np.array(least)
+
+
+def states(found: dict) -> np.ndarray:
+    """C (100, 2, 2) of ellipticity.edp."""
+    a, b, c = (np.array([found[f"C{name}_{i}"] for i in STATES]) for name in ("11", "22", "12"))
+    return np.moveaxis(np.array([[a, c], [c, b]]), 2, 0)
+
+
+@pytest.mark.parametrize("law", ["svk", "neohookean"])
+@pytest.mark.parametrize("nu", [0, 0.1, 0.25, 0.3, 0.45, 0.499])
+def test_closed_form_is_the_least_of_all_directions(measure, law, nu):
+    """Stretches from 0.05 to 2.5: the closed form is below every one of 2,000 directions, and by no more than their spacing makes."""
+    found = measure("ellipticity", law=law, nu=nu)
+    closed, C = np.array([found[f"closed{i}"] for i in STATES]), states(found)
+    tried = acoustic(C, nu, law)
+    largest = np.array([np.trace(c) for c in C]) / (1 - 2 * nu)         # of the size of Q's largest eigenvalue
+    if law == "neohookean":
+        largest = 1 + abs(closed) + 1 / (1 - 2 * nu)
+    assert (closed <= tried + 1e-12 * largest).all()
+    assert (tried - closed <= 1e-5 * largest).all(), ((tried - closed) / largest).max()
+    assert (closed < 0).any() or law == "neohookean"
+
+
+@pytest.mark.parametrize("law", ["svk", "neohookean"])
+@pytest.mark.parametrize("nu", [0.1, 0.45])
+def test_closed_form_is_that_of_the_stress_of_the_program(measure, law, nu):
+    """The same states: the least second derivative of the energy along a (x) N, from differences of the program's own stress."""
+    found = measure("ellipticity", law=law, nu=nu)
+    closed, tried = (np.array([found[f"{name}{i}"] for i in STATES]) for name in ("closed", "found"))
+    scale = 1 + abs(closed) + (np.array([np.trace(c) for c in states(found)]) if law == "svk" else 0)
+    assert (abs(tried - closed) <= 1e-4 * scale).all(), (abs(tried - closed) / scale).max()
+
+
+@pytest.mark.parametrize("nu", [0, 0.1, 0.25, 0.3, 0.45, 0.49])
+def test_limits_of_ellipticity(nu):
+    """Equal compression in the plane loses ellipticity at J = 1/(2 (1 - nu)). Uniaxial strain loses it in a shear along the axes
+    at sqrt(nu/(1 - nu)), a little earlier in an oblique one, and for every nu before the limit point 1/sqrt(3)."""
+    least = lambda L1, L2: acoustic(np.array([np.diag([L1**2, L2**2])]), nu, "svk", 20_000)[0]   # noqa: E731
+    equal, aligned = np.sqrt(1 / (2 * (1 - nu))), np.sqrt(nu / (1 - nu))
+    assert least(equal, equal) == pytest.approx(0, abs=1e-10)
+    S22 = (1 / (1 - 2 * nu) + 1) * (aligned**2 - 1) / 2
+    assert S22 + 1 == pytest.approx(0, abs=1e-12)                       # Q_11 over mu at N = e_2
+    low, high = 0.3, 1.0
+    for _ in range(40):
+        low, high = ((low + high) / 2, high) if least(1, (low + high) / 2) < 0 else (low, (low + high) / 2)
+    assert high > aligned and high > 1 / np.sqrt(3)
+    assert high == pytest.approx({0: 0.586, 0.3: 0.706, 0.45: 0.906}.get(nu, high), abs=5e-4)   # as svk.idp says
