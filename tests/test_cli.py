@@ -69,7 +69,7 @@ def test_quiet_is_quiet(fake, tmp_path):
 
 @pytest.mark.parametrize("arguments, code, line", [
     (["run", "disc-nowhere"], 10, "ffimpact: disc-nowhere: no such scene"),
-    (["run", "disc-normal", "--set", "speed=8x"], 10, "ffimpact: speed: '8x' is not a number (accepted: 0 to 10000)"),
+    (["run", "disc-normal", "--set", "speed=8x"], 10, "ffimpact: speed: '8x' is not a number (accepted: 0 to 1e+09)"),
     (["run", "disc-normal", "--set", "speed"], 10, "ffimpact: --set: 'speed' is not of the form name=value"),
     (["run", "disc-normal", "--set", "sped=8"], 10, "ffimpact: sped: no such parameter; did you mean speed"),
     (["run", "disc-normal", "--mesh", "nowhere.msh"], 10, "ffimpact: mesh: "),

@@ -1,0 +1,66 @@
+"""Scenes drawn at random, the same ones for the same seed: what promises and robustness are tried on."""
+
+import random
+
+from .study import Point
+
+# young [Pa], density [kg/m3], nu: from gel to steel, round values of handbooks
+MATERIALS = {"gel": (3e4, 1050.0, 0.45), "soft rubber": (1e5, 1000.0, 0.4), "foam": (1e6, 100.0, 0.0), "rubber": (7e6, 1722.0, 0.45), "cork": (3e7, 200.0, 0.05),
+             "ptfe": (5e8, 2200.0, 0.46), "nylon": (2.5e9, 1150.0, 0.4), "wood": (1e10, 700.0, 0.3), "lead": (1.6e10, 11340.0, 0.44),
+             "glass": (7e10, 2500.0, 0.22), "aluminium": (7e10, 2700.0, 0.33), "steel": (2.1e11, 7850.0, 0.3)}
+SLOWEST, FASTEST = 5e-4, {"svk": 0.1, "neohookean": 0.18}   # speeds, over sqrt(E/density); svk breaks down above
+
+
+def bar_speed(young: float, density: float) -> float:
+    """c = sqrt(E/rho) [m/s], which scales the speeds of impacts."""
+    return (young / density) ** 0.5
+
+
+def draw(seed: int, count: int, hard: bool = False) -> list[Point]:
+    """`count` impacts of a disc: material, law, speed, radius; some oblique or spinning, with and without friction, exponents.
+
+    `hard`: also gravity, other integrators, linear elements, other accuracies, penalties and friction laws.
+    """
+    chance = random.Random(seed)
+    return [_scene(chance, hard) for _ in range(count)]
+
+
+def _scene(chance: random.Random, hard: bool) -> Point:
+    young, density, nu = chance.choice(list(MATERIALS.values()))
+    law = chance.choice(list(FASTEST))
+    c, radius = bar_speed(young, density), chance.choice([0.005, 0.05, 0.5])
+    speed = c * SLOWEST * (FASTEST[law] / SLOWEST) ** chance.random()
+    point = {"law": law, "young": young, "density": density, "nu": nu, "radius": radius, "speed": _round(speed)}
+    kind = chance.choice(["normal", "normal", "smooth oblique", "oblique", "oblique", "spin"])
+    if "oblique" in kind:
+        point["angle"] = chance.choice([30.0, 45.0, 60.0, 75.0])
+    if kind == "spin":
+        point["spin"] = _round(chance.uniform(-1, 1) * speed / radius)
+    if kind in ("oblique", "spin"):
+        static = chance.choice([0.1, 0.3, 0.7])
+        point |= {"friction_static": static, "friction_dynamic": _round(static * chance.choice([0.7, 1.0]))}
+    if chance.random() < 0.2:
+        point["exponent"] = 1.5
+    return point | (_harder(chance, point, c) if hard else {})
+
+
+def _harder(chance: random.Random, point: Point, c: float) -> Point:
+    """What a user may ask for besides; each in a small part of the scenes."""
+    more: Point = {"accuracy": chance.choice([0.002, 0.005, 0.01, 0.03])}
+    if chance.random() < 0.15:
+        more["integrator"] = chance.choice(["midpoint", "newmark", "bdf2", "backward-euler"])
+    if chance.random() < 0.1:
+        more["degree"] = 1
+    if chance.random() < 0.15:
+        more["penalty"] = _round(point["young"] / point["radius"] * 10 ** chance.uniform(0.5, 3)) if "exponent" not in point else "auto"
+    if chance.random() < 0.1:
+        more |= {"gravity": _round(0.01 * c**2 / point["radius"] * chance.random()), "height": _round(chance.random() * point["radius"])}
+    if "friction_static" in point and chance.random() < 0.3:
+        more["regularization"] = chance.choice(["sqrt", "tanh"])
+    if chance.random() < 0.1:
+        more["symmetry"] = "full"
+    return more
+
+
+def _round(value: float) -> float:
+    return float(f"{value:.3g}")
