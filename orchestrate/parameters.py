@@ -16,7 +16,7 @@ Value = float | int | str
 
 NOT_DECISIVE = ("checkpoint_every",)   # parameters that do not change the answer
 
-_NUMBER = re.compile(r"[+-]?(\d+(\.\d+)?|\.\d+)([eE][+-]?\d+)?")
+_NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]+)?|\.[0-9]+)([eE][+-]?[0-9]+)?")
 _ROW = re.compile(
     r"""^(?:real|int|string)\s+\w+\s*=\s*parameter(?P<kind>Real|Int|Word|Path)\(\s*"(?P<name>\w+)",\s*"""
     r"""(?P<rest>.*?)\);\s*//\s*\[(?P<unit>[^]]*)\]\s*(?P<help>.*?)\s*$""", re.MULTILINE)
