@@ -3,10 +3,10 @@
 import argparse
 import importlib
 import os
-import signal
 import sys
 from pathlib import Path
 
+from . import stopping
 from .failure import BadInput, Failure, Unreadable
 
 OWN_MAIN = ("compare", "movie", "friction-laws", "stick-slip", "sweep", "verify", "paper", "stress", "stress-map", "bench", "textbook",
@@ -16,8 +16,6 @@ OWN_MAIN = ("compare", "movie", "friction-laws", "stick-slip", "sweep", "verify"
 def main(argv: list[str]) -> int:
     """The exit code of the command; see the table in the run contract."""
     argparse.ArgumentParser.error = _bad_usage   # one line and exit code 10 as for any bad input
-    signal.signal(signal.SIGTERM, _stop)
-    signal.signal(signal.SIGHUP, _stop)
     try:
         if argv[:1] and argv[0] in OWN_MAIN:
             return importlib.import_module(f"{__package__}.{argv[0].replace('-', '_')}").main(argv[1:]) or 0
@@ -34,8 +32,9 @@ def main(argv: list[str]) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
     except OSError as error:  # a full disk, a folder that was taken away
-        print(f"ffimpact: {error.filename or 'the result folder'}: {error.strerror}; make room, or choose another --out", file=sys.stderr)
-        return Unreadable("").code
+        failure = Unreadable(f"{error.filename or 'the result folder'}: {error.strerror}; make room, or choose another --out")
+        print(f"ffimpact: {failure}", file=sys.stderr)
+        return failure.code
     except KeyboardInterrupt:
         print("ffimpact: interrupted", file=sys.stderr)
         return 130
@@ -43,10 +42,6 @@ def main(argv: list[str]) -> int:
 
 def _bad_usage(parser: argparse.ArgumentParser, message: str) -> None:
     raise BadInput(f"{message} (see {parser.prog} --help)")
-
-
-def _stop(number: int, frame) -> None:
-    sys.exit(128 + number)
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -107,4 +102,6 @@ def _figures(options: argparse.Namespace) -> None:
 
 
 if __name__ == "__main__":
+    stopping.obey()
+    sys.stdout.reconfigure(errors="surrogateescape")   # paths are bytes, not all of them text
     sys.exit(main(sys.argv[1:]))

@@ -11,7 +11,7 @@ from . import report, scene
 from .failure import BadInput, Failure
 from .figures import BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE
 from .parameters import ROOT, overrides
-from .run import RunResult, run, shown
+from .run import RunResult, result_folder, run, shown
 
 
 def main(argv: list[str]) -> int:
@@ -21,7 +21,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--set", metavar="NAME=VALUE", nargs="+", action="extend", default=[], help="set a parameter in all of them")
     parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results", help="a folder for a folder of each scene")
     options = parser.parse_args(argv)
-    scenes, folder = [scene.load(name) for name in options.scenes], options.out.resolve()
+    scenes, folder = [scene.load(name) for name in options.scenes], result_folder(options.out)
     if len({each.name for each in scenes}) < max(2, len(scenes)):
         raise BadInput("compare: two or more different scenes are needed")
     results, failed = {}, None

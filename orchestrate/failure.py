@@ -13,7 +13,7 @@ class Failure(Exception):
     folder: Path | None = None
 
     def __init__(self, message: str, code: int = 1):
-        super().__init__(message)
+        super().__init__(" ".join(message.splitlines()))   # one line, whatever the user's text had in it
         self.code = code
 
 

@@ -60,27 +60,33 @@ def _probe(command: str, environment: dict[str, str]) -> str | None:
     return match and match[1]
 
 
-def run(freefem: FreeFem, script: str, flags: list[str], log: Path, progress: Progress | None = None) -> int:
-    """Runs edp/<script>.edp with its output in `log`; the exit code, negative for a signal.
+def run(freefem: FreeFem, script: str, flags: list[str], log: Path, progress: Progress | None = None, lock: int | None = None) -> tuple[int, str]:
+    """Runs edp/<script>.edp with its output in `log`; the exit code, negative for a signal, and the script's line for the user, or "".
 
     The child has a process group of its own, is killed when this function is left in any way, and by the kernel
-    when this process dies. Lines "progress <fraction> t=<time> steps=<n>" go to `progress` as well.
+    when this process dies. Lines "progress <fraction> t=<time> steps=<n>" go to `progress` as well. It shares the open file
+    `lock`, and so what is locked stays locked until it has ended.
     """
     command = [freefem.command, "-nw", "-ne", "-v", "0", f"edp/{script}.edp", *flags]
-    with open(log, "w") as file, subprocess.Popen(
+    with open(log, "w") as file, open(os.memfd_create("stderr"), "r+", errors="replace") as errors, subprocess.Popen(
             command, cwd=ROOT, env=freefem.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT, text=True, errors="replace", process_group=0,
+            stderr=errors, text=True, errors="replace", process_group=0, pass_fds=[] if lock is None else [lock],
             preexec_fn=partial(die_with_parent, os.getpid(), signal.SIGKILL)) as child:
         try:
             for line in child.stdout:
                 file.write(line)
                 if progress and (match := re.match(r"progress (\S+) t=(\S+) steps=(\S+)", line)):
                     progress(float(match[1]), match[2], match[3])
-            return child.wait()
+            code = child.wait()
         finally:
             if child.poll() is None:
                 os.killpg(child.pid, signal.SIGKILL)
                 child.wait()
+        errors.seek(0)
+        said = errors.read()
+        file.write(said)
+    lines = [line.removeprefix("ffimpact: ") for line in said.splitlines() if line.startswith("ffimpact: ")]
+    return code, lines[-1] if lines else ""
 
 
 _libc = ctypes.CDLL(None)

@@ -11,7 +11,7 @@ from . import freefem, parameters
 from .failure import Failure, Unreadable
 from .figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE
 from .parameters import ROOT
-from .run import shown
+from .run import result_folder, shown
 
 VALUES = {"friction_static": 0.7, "friction_dynamic": 0.5, "slip_velocity": 0.1}   # of section 3.1 and figure 3
 LABELS = {"linear": (r"linear, $\phi^3$ with $v_T/\varepsilon$", BLUE, "-"), "sqrt": (r"sqrt, $\phi^1$", GREEN, "-"),
@@ -27,7 +27,7 @@ def main(argv: list[str]) -> int:
         parser.add_argument(f"--{name}", metavar="VALUE", default=value, help=f"{parameters.table()[name].help} (default: {value:g})")
     options = parser.parse_args(argv)
     values = parameters.check({name: getattr(options, name) for name in VALUES})
-    folder = options.out.resolve()
+    folder = result_folder(options.out)
     draw(tabulate(folder, values), values, folder / "friction-laws.png")
     print(f"{shown(folder)}/friction-laws.png")
     return 0
@@ -43,11 +43,9 @@ def tabulate(folder: Path, values: dict[str, parameters.Value]) -> pd.DataFrame:
     except OSError as error:
         raise Unreadable(f"{folder} cannot be written: {error.strerror}; choose another --out") from None
     flags = [text for name, value in values.items() for text in (f"-{name}", str(value))]
-    code = freefem.run(program, "friction-laws", [*flags, "-out", os.fspath(folder)], folder / "log.txt")
+    code, said = freefem.run(program, "friction-laws", [*flags, "-out", os.fspath(folder)], folder / "log.txt")
     if code != 0:
-        lines = (folder / "log.txt").read_text().splitlines() or [f"FreeFem++ stopped with exit code {code}"]
-        said = [line.removeprefix("ffimpact: ") for line in lines if line.startswith("ffimpact: ")]
-        raise Failure((said or lines)[-1], code if said else 1)
+        raise Failure(said or f"FreeFem++ stopped with exit code {code}; see {folder / 'log.txt'}", code if said else 1)
     return pd.read_csv(folder / "laws.csv")
 
 

@@ -3,11 +3,14 @@
 A run happens in the folder DIR.part. Finished, it takes DIR's place by rename, complete: a folder with summary.json is
 a finished run. Interrupted, it leaves nothing, or DIR.part where it has made a checkpoint: there the same scene and code
 go on. Failed, its files stay for a look (log.txt, history.csv, scene.toml,
-failure.json), in DIR, or in DIR.failed where DIR holds an earlier finished run, which is not lost.
+failure.json), in DIR, or in DIR.failed where DIR holds an earlier finished run, which is not lost. What a run finds in its
+place stays as DIR.1 (.2 ...), unless it is of the same scene: then what the program wrote goes, and what else is there moves over.
 """
 
 import fcntl
+import fnmatch
 import hashlib
+import itertools
 import json
 import math
 import os
@@ -18,7 +21,7 @@ import subprocess
 import sys
 import tomllib
 from collections.abc import Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import ExitStack, contextmanager, nullcontext
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -31,6 +34,12 @@ from .failure import BadInput, Busy, Failure, Unreadable
 from .parameters import ROOT, Value, decisive
 from .scene import Scene
 
+# what the program writes into a folder
+OWN = ("scene.toml", "history.csv", "summary.json", "failure.json", "log.txt", "mesh.msh", "fields.pvd", "fields/[0-9]*.vtu",
+       "figures/energies.png", "figures/velocity.png", "figures/force.png", "figures/rolling.png", "figures/shapes.png", "figures/flight.png",
+       "checkpoint", "checkpoint.json", "checkpoint.part", "checkpoint.state", "scene.part", "history.part", "history.cut", "summary.part",
+       "summary.json.part", "fields.pvd.part", "fields.part/[0-9]*.vtu")
+OURS = {"scene.toml", "failure.json", "scene.part", "checkpoint.json"}   # a folder with one of these is the program's
 FAILURES = {10: "bad input", 11: "step failed", 12: "material broke down", 13: "not installed", 14: "unreadable"}
 
 
@@ -61,11 +70,9 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | Non
     date. With a checkpoint_every > 0 a run that is killed goes on from its last checkpoint when it is asked for again.
     """
     scene = scene.override(overrides or {})
-    folder = (out or ROOT / "results" / scene.name).resolve()
-    if "'" in str(folder):
-        raise BadInput(f"--out: {folder} has an apostrophe in it, which FreeFem++ cannot read (accepted: any other path)")
+    folder = result_folder(out or ROOT / "results" / scene.name)
     if mesh_file:
-        mesh_file = mesh_file.resolve()
+        mesh_file = _mesh_path(mesh_file)
         mesh.read(mesh_file)
     description = describe(scene.values)
     finished = _finished(folder, force)
@@ -73,7 +80,7 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | Non
         return there
 
     program = freefem.find()
-    with _staging(folder) as stage:
+    with _staging(folder) as (stage, lock):
         if not force and (there := reusable(scene, folder, mesh_file)):   # another run has finished it meanwhile
             return there
         provenance = {"script": scene.script, "code": code_hash(), "freefem": program.version,
@@ -89,22 +96,22 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | Non
         flags += ["-mesh", str(stage / "mesh.msh"), "-out", str(stage)]
         flags += ["-restart", str(stage / "checkpoint")] if goes_on else []
         with _progress_line(scene.name) if progress else nullcontext() as show:
-            exit_code = freefem.run(program, scene.script, flags, stage / "log.txt", show)
+            exit_code, said = freefem.run(program, scene.script, flags, stage / "log.txt", show, lock)
         unfinished = (stage / "checkpoint").exists()   # a script that comes to its end, good or bad, removes it
         log = stage / "log.txt"
         log.write_text(log.read_text(errors="replace").replace(str(stage), str(shown(stage if unfinished else folder))))
         try:
-            _check(stage, exit_code)
+            _check(stage, exit_code, said)
         except Failure as failure:
             if unfinished:
                 failure.folder = stage
-            else:
+            elif failure.code not in (BadInput("").code, Unreadable("").code):   # these leave nothing behind
                 failure.folder = _failed(folder) if finished else folder
-                _keep_failed(stage, failure, provenance)
-                _replace(stage, failure.folder)
+                _keep_failed(stage, failure, scene, provenance)
+                _replace(stage, failure.folder, _same_scene(failure.folder, scene, mesh_file))
             raise
         _finish(stage, provenance, pictures)
-        _replace(stage, folder)
+        _replace(stage, folder, _same_scene(folder, scene, mesh_file))
     return RunResult(folder, read_summary(folder), reused=False)
 
 
@@ -162,7 +169,8 @@ def _why(error: Exception) -> str:
 def reusable(scene: Scene, folder: Path, mesh_file: Path | None = None) -> RunResult | None:
     """The finished run in `folder` if it is of this very scene, mesh and code, else None; Unreadable if it is not ours."""
     summary = _finished(folder, force=False)
-    same = summary and (folder / "history.csv").exists() and _same(folder, summary, scene, mesh_file, code_hash())
+    same = (summary and (folder / "history.csv").exists() and summary.get("provenance", {}).get("code") == code_hash()
+            and read_scene(folder) and _same_scene(folder, scene, mesh_file))
     return RunResult(folder, summary, reused=True) if same else None
 
 
@@ -184,7 +192,7 @@ def _finished(folder: Path, force: bool) -> dict | None:
     for path in (folder, _failed(folder)):
         if path.exists() and not path.is_dir():
             raise Unreadable(f"{path} is a file; choose another --out")
-        if path.exists() and any(path.iterdir()) and not {"scene.toml", "failure.json"} & set(os.listdir(path)):
+        if path.exists() and any(path.iterdir()) and not OURS & set(os.listdir(path)):
             raise Unreadable(f"{path} has files of others in it and no scene.toml; choose another --out")
     if not (folder / "summary.json").exists():
         return None
@@ -196,17 +204,19 @@ def _finished(folder: Path, force: bool) -> dict | None:
         raise Unreadable(f"{error}; delete the folder, or run again with --force") from None
 
 
-def _same(folder: Path, summary: dict, scene: Scene, mesh_file: Path | None, code: str) -> bool:
-    """Whether the finished run in `folder` is the run that is asked for."""
-    provenance = summary.get("provenance", {})
-    if provenance.get("code") != code or provenance.get("script") != scene.script:
+def _same_scene(folder: Path, scene: Scene, mesh_file: Path | None) -> bool:
+    """Whether the run in `folder`, finished or failed, is one of this scene on this mesh, by whatever code."""
+    name = "summary.json" if (folder / "summary.json").exists() else "failure.json"
+    try:
+        provenance = json.loads((folder / name).read_text())["provenance"]
+        if mesh_file:
+            same_mesh = provenance["mesh"] == _sha256(mesh_file)
+        else:
+            same_mesh = provenance["gmsh"] == mesh.gmsh_version()
+        same_script, asked = provenance["script"] == scene.script, provenance["asked"]
+    except (FileNotFoundError, ValueError, KeyError, TypeError):   # it does not say
         return False
-    if mesh_file:
-        same_mesh = provenance.get("mesh") == _sha256(mesh_file)
-    else:
-        same_mesh = provenance.get("gmsh") == mesh.gmsh_version()
-    read_scene(folder)   # Unreadable where it is broken
-    return same_mesh and provenance.get("asked") == decisive(scene.values)
+    return same_mesh and same_script and asked == decisive(scene.values)
 
 
 # ---- the mesh
@@ -222,23 +232,76 @@ def _write_mesh(path: Path, description: dict, mesh_file: Path | None) -> None:
 
 # ---- the folder of a run
 
+def result_folder(out: Path) -> Path:
+    """The path of a result folder without links; Unreadable where there cannot be one."""
+    try:
+        folder = out.resolve()
+    except (OSError, RuntimeError) as error:   # a loop of links
+        raise Unreadable(f"{out} cannot be made: {getattr(error, 'strerror', None) or error}; choose another --out") from None
+    if not folder.name:
+        raise Unreadable(f"{out} cannot be the folder of a run; choose another --out")
+    return folder
+
+
+def _mesh_path(given: Path) -> Path:
+    try:
+        path = given.resolve()
+    except (OSError, RuntimeError):
+        path = given
+    if path.exists() and not path.is_file():   # reading a pipe or a device might never end
+        raise BadInput(f"mesh: {given} is no file")
+    return path
+
+
 @contextmanager
-def _staging(folder: Path) -> Iterator[Path]:
-    """The folder DIR.part, locked against a second run. Gone in the end, unless it has the checkpoint of a run that is not
+def _staging(folder: Path) -> Iterator[tuple[Path, int]]:
+    """The folder DIR.part and its lock, against a second run. Gone in the end, unless it has the checkpoint of a run that is not
     finished. What is in it at first was left by a run that was killed."""
     stage = folder.with_name(folder.name + ".part")
-    lock = _lock(stage, folder)
-    try:
-        old = folder.with_name(folder.name + ".old")
-        if old.exists() and not folder.exists():   # killed between the two renames of _replace
-            os.rename(old, folder)
+    with ExitStack() as leaving:
+        leaving.callback(_take_away, [parent for parent in stage.parents if not parent.exists()])
+        lock = leaving.enter_context(_open(_lock(stage, folder)))
+        if not folder.exists() and _is_complete(stage):   # killed between the two renames of _replace
+            os.rename(stage, folder)
+            lock = leaving.enter_context(_open(_lock(stage, folder)))
+        if folder.exists():
+            leaving.enter_context(_open(_hold(folder, folder)))   # against a run without Python
+        _refuse_files_of_others(stage)
         try:
-            yield stage
+            yield stage, lock
         finally:
             if not (stage / "checkpoint").exists():
                 shutil.rmtree(stage, ignore_errors=True)
+
+
+@contextmanager
+def _open(file: int) -> Iterator[int]:
+    try:
+        yield file
     finally:
-        os.close(lock)
+        os.close(file)
+
+
+def _take_away(folders: list[Path]) -> None:
+    """Removes those of the folders that are empty."""
+    for folder in folders:
+        try:
+            folder.rmdir()
+        except OSError:
+            pass
+
+
+def _is_complete(stage: Path) -> bool:
+    try:
+        return "code" in read_summary(stage).get("provenance", {})   # the last that _finish writes
+    except Unreadable:
+        return False
+
+
+def _refuse_files_of_others(stage: Path) -> None:
+    tops = {name.partition("/")[0] for name in OWN} | {"figures"}
+    if not OURS & set(os.listdir(stage)) and set(os.listdir(stage)) - tops:
+        raise Unreadable(f"{stage}, where the run would be made, has files of others in it; choose another --out")
 
 
 def _clear(stage: Path) -> None:
@@ -266,33 +329,66 @@ def _lock(stage: Path, folder: Path) -> int:
         except OSError as error:
             raise Unreadable(f"{stage} cannot be made: {error.strerror}; choose another --out") from None
         try:
-            lock = os.open(stage, os.O_RDONLY)
+            lock = _hold(stage, folder)
         except FileNotFoundError:   # its run has just put it in its place
             continue
         try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
             if os.path.samestat(os.fstat(lock), os.stat(stage)):
                 return lock
         except FileNotFoundError:   # likewise, while we locked it
             pass
-        except BlockingIOError:
-            os.close(lock)
-            raise Busy(f"{folder} is being written by another run; wait, or choose another --out") from None
         os.close(lock)
 
 
-def _replace(stage: Path, folder: Path) -> None:
-    """Puts `stage` in the place of `folder`, complete or not at all."""
-    old = folder.with_name(folder.name + ".old")
-    shutil.rmtree(old, ignore_errors=True)
-    if folder.exists():
-        os.rename(folder, old)
+def _hold(path: Path, folder: Path) -> int:
+    """The folder `path` opened and locked; Busy where a run in `folder` holds it."""
+    lock = os.open(path, os.O_RDONLY)
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(lock)
+        raise Busy(f"{folder} is being written by another run; wait, or choose another --out") from None
+    return lock
+
+
+def _replace(stage: Path, folder: Path, same: bool) -> None:
+    """Puts `stage` in the place of `folder`, complete or not at all.
+
+    What was there stays as DIR.1 (.2 ...); where it is of the `same` scene, what the program wrote there goes, and what else is there moves over.
+    """
+    earlier = None
+    if folder.exists() and any(folder.iterdir()):
+        earlier = next(place for n in itertools.count(1) if not os.path.lexists(place := folder.with_name(f"{folder.name}.{n}")))
+        os.rename(folder, earlier)
     os.rename(stage, folder)
-    shutil.rmtree(old, ignore_errors=True)
+    if earlier and not (same and _merge(earlier, folder)):
+        print(f"what was in {shown(folder)} before is now in {shown(earlier)}")
 
 
-def _check(stage: Path, exit_code: int) -> None:
-    """Failure unless FreeFem++ ended well AND left a finished summary and a finite history (0 alone says little)."""
+def _merge(earlier: Path, folder: Path) -> bool:
+    """Takes away what the program wrote in `earlier`, moves the rest to `folder`; False where something is in the way there."""
+    (earlier / "summary.json").unlink(missing_ok=True)        # first: no longer a finished run
+    for path in sorted(earlier.rglob("*"), reverse=True):     # what is in a folder, then the folder
+        name = path.relative_to(earlier).as_posix()
+        if path.is_dir() and not path.is_symlink():
+            if not any(path.iterdir()):
+                path.rmdir()
+        elif any(fnmatch.fnmatchcase(name, own) for own in OWN):
+            path.unlink()
+        elif not os.path.lexists(folder / name):
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            os.rename(path, folder / name)
+    if any(earlier.iterdir()):
+        return False
+    earlier.rmdir()
+    return True
+
+
+def _check(stage: Path, exit_code: int, said: str) -> None:
+    """Failure unless FreeFem++ ended well AND left a finished summary and a finite history (0 alone says little).
+
+    Its code is that of the process, its words those of the failure.json that the script wrote, else what it `said`.
+    """
     if exit_code == 0:
         try:
             read_summary(stage)
@@ -305,9 +401,9 @@ def _check(stage: Path, exit_code: int) -> None:
                 raise Failure(f"history.csv: {name} is not finite from row {1 + np.argmin(np.isfinite(column))} on")
         return
     log = (stage / "log.txt").read_text()
-    said = [line.removeprefix("ffimpact: ") for line in log.splitlines() if line.startswith("ffimpact: ")]
+    said = _read_json(stage / "failure.json").get("message") or said
     if exit_code in FAILURES and said:
-        raise Failure(said[-1], exit_code)
+        raise Failure(said, exit_code)
     if "Load error" in log:
         raise Failure(f"FreeFem++ lacks a plugin: {_tail(stage)}; {freefem.HOW}", 13)
     how = f"was killed by {signal.Signals(-exit_code).name}" if exit_code < 0 else f"stopped with exit code {exit_code}"
@@ -335,16 +431,23 @@ def _finish(stage: Path, provenance: dict, pictures: bool) -> None:
     os.replace(stage / "summary.json.part", stage / "summary.json")
 
 
-def _keep_failed(stage: Path, failure: Failure, provenance: dict) -> None:
+def _keep_failed(stage: Path, failure: Failure, scene: Scene, provenance: dict) -> None:
     """failure.json: the one the script wrote, or what is known; never a summary.json."""
     for name in ("summary.json", "checkpoint.json"):
         (stage / name).unlink(missing_ok=True)
-    record = {"status": FAILURES.get(failure.code, "crashed"), "message": str(failure)}
-    try:
-        record |= json.loads((stage / "failure.json").read_text())
-    except (OSError, ValueError):
-        pass
+    if not (stage / "scene.toml").exists():
+        (stage / "scene.toml").write_text("".join(f"{name} = {json.dumps(value)}\n" for name, value in scene.values.items()))
+    record = {"status": FAILURES.get(failure.code, "crashed"), "message": str(failure)} | _read_json(stage / "failure.json")
     _write_json(stage / "failure.json", record | {"exit_code": failure.code, "provenance": provenance})
+
+
+def _read_json(path: Path) -> dict:
+    """What is in a file, {} where there is none or it makes no sense."""
+    try:
+        content = json.loads(path.read_text())
+    except (OSError, ValueError):
+        return {}
+    return content if isinstance(content, dict) else {}
 
 
 def _write_json(path: Path, content: dict) -> None:

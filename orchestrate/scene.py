@@ -30,6 +30,21 @@ def built_in() -> list[str]:
     return sorted(path.stem for path in SCENES.glob("*.toml"))
 
 
+def read_toml(path: Path, missing: str) -> tuple[str, dict]:
+    """The text of a TOML file and what it says; BadInput with the words `missing` where there is none, or why it cannot be read."""
+    try:
+        if path.exists() and not path.is_file() and not path.is_dir():   # reading a pipe or a device might never end
+            raise BadInput(f"{path}: is no file")
+        text = path.read_text()
+        return text, tomllib.loads(text)
+    except (FileNotFoundError, IsADirectoryError, NotADirectoryError):
+        raise BadInput(missing) from None
+    except RecursionError:
+        raise BadInput(f"{path}: cannot be read: nested too deep") from None
+    except (OSError, ValueError) as error:
+        raise BadInput(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
+
+
 def load(name: str) -> Scene:
     """A built-in scene, or the scene of a TOML file: title, script and any parameters, all at top level.
 
@@ -37,12 +52,7 @@ def load(name: str) -> Scene:
     and on an unknown key.
     """
     path = SCENES / f"{name}.toml" if name in built_in() else Path(name)
-    try:
-        given = tomllib.loads(path.read_text())
-    except (FileNotFoundError, IsADirectoryError, NotADirectoryError):
-        raise BadInput(f"{name}: no such scene (built in: {', '.join(built_in())}; or the path of a TOML file)") from None
-    except (OSError, ValueError) as error:
-        raise BadInput(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
+    _, given = read_toml(path, f"{name}: no such scene (built in: {', '.join(built_in())}; or the path of a TOML file)")
     script, title = given.pop("script", "disc-plane"), given.pop("title", path.stem)
     scripts = describe()["scripts"]
     if script not in scripts:

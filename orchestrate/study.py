@@ -4,7 +4,6 @@ import json
 import multiprocessing
 import os
 import signal
-import sys
 import time
 from collections import Counter, deque
 from collections.abc import Iterable, Iterator
@@ -15,7 +14,7 @@ from pathlib import Path
 import pandas as pd
 from tqdm import tqdm
 
-from . import freefem, run, scene
+from . import freefem, run, scene, stopping
 from .failure import Busy, Failure, Unreadable
 from .parameters import Value, decisive
 
@@ -92,11 +91,11 @@ def _outcomes(tasks: dict[Path, scene.Scene], limit: float, cores: int) -> Itera
 
 def _work(sender: Connection, parent: int, limit: float, folder: Path, wanted: scene.Scene) -> None:
     """One point in a process of its own."""
-    def too_long(number, frame):
+    def too_long(number):
         raise Failure(f"no end after {limit:g} s: killed", TOO_LONG)
     signal.signal(signal.SIGINT, signal.SIG_IGN)         # Ctrl-C is for the parent, who then ends us
-    signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(128 + number))   # run() tidies up on the way out
-    signal.signal(signal.SIGALRM, too_long)              # likewise
+    stopping.on(signal.SIGTERM, stopping.leave)          # run() tidies up on the way out
+    stopping.on(signal.SIGALRM, too_long)                # likewise
     signal.pthread_sigmask(signal.SIG_UNBLOCK, STOPS)
     freefem.die_with_parent(parent, signal.SIGTERM)
     signal.setitimer(signal.ITIMER_REAL, limit)

@@ -23,7 +23,6 @@ import argparse
 import fcntl
 import itertools
 import os
-import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -84,7 +83,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--run", metavar="NAME", help="only this run of the list, without table and figure")
     options = parser.parse_args(argv)
     wanted = load(options.sweep)
-    out = (options.out or ROOT / "results/sweeps" / wanted.name).resolve()
+    out = run.result_folder(options.out or ROOT / "results/sweeps" / wanted.name)
     names = {study.place(out, point).name: point for point in wanted.runs}
     if options.list or options.open:
         base = scene.load(wanted.scene).override(wanted.base)
@@ -144,13 +143,7 @@ def built_in() -> list[str]:
 def load(name: str) -> Sweep:
     """A built-in sweep, or that of a TOML file; BadInput names the file, the field, the value and what is accepted."""
     path = SWEEPS / f"{name}.toml" if name in built_in() else Path(name)
-    try:
-        text = path.read_text()
-        given = tomllib.loads(text)
-    except (FileNotFoundError, IsADirectoryError):
-        raise BadInput(f"{name}: no such sweep (built in: {', '.join(built_in())}; or the path of a TOML file)") from None
-    except (OSError, ValueError) as error:
-        raise BadInput(f"{name}: cannot be read: {error}") from None
+    text, given = scene.read_toml(path, f"{name}: no such sweep (built in: {', '.join(built_in())}; or the path of a TOML file)")
     try:
         return _sweep(path, given, text)
     except BadInput as error:

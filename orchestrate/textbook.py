@@ -82,7 +82,7 @@ def textbook(wanted: scene.Scene, mesh_file: Path) -> dict:
     """Runs the textbook script; what it prints, under the names of summary.json. Seconds: processor time without set-up."""
     program, log = freefem.find(), mesh_file.with_suffix(".log")
     flags = [text for name, value in wanted.values.items() for text in (f"-{name}", str(value))]
-    code = freefem.run(program, TEXTBOOK, [*flags, "-mesh", str(mesh_file)], log)
+    code, _ = freefem.run(program, TEXTBOOK, [*flags, "-mesh", str(mesh_file)], log)
     said = log.read_text().strip().splitlines()
     words = said[-1].split() if said else []
     if code != 0 or words[:1] != ["textbook"]:

@@ -1,0 +1,55 @@
+"""Signals that end a program: obeyed at any moment, but not where Python would not survive it, or lose it."""
+
+import os
+import signal
+import sys
+import threading
+from collections.abc import Callable
+
+
+def obey() -> None:
+    """From here on SIGTERM and SIGHUP end this program with exit code 128 + number, and Ctrl-C with KeyboardInterrupt, in order."""
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        on(number, leave)
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:   # a shell's background job ignores it
+        on(signal.SIGINT, _interrupt)
+
+
+def leave(number: int) -> None:
+    """Out, as if the signal had ended the program, but through every `finally`."""
+    sys.exit(128 + number)
+
+
+def _interrupt(number: int) -> None:
+    raise KeyboardInterrupt
+
+
+def on(number: int, act: Callable[[int], None]) -> None:
+    """Lets the signal `number` call `act`, which raises.
+
+    It waits while a module is being imported (extension modules and importlib abort, or swallow it) and while a child is being
+    started (it would be left alone); it comes again where the exception was lost (in a callback or a destructor).
+    """
+    def handler(number: int, frame) -> None:
+        while frame:
+            if frame.f_code.co_filename.startswith("<frozen importlib") or frame.f_code.co_name == "_execute_child":
+                return _again(number)
+            frame = frame.f_back
+        try:
+            act(number)
+        except BaseException as error:
+            error.signal = number
+            raise
+    signal.signal(number, handler)
+    sys.unraisablehook = _lost
+
+
+def _again(number: int) -> None:
+    later = threading.Timer(0.01, os.kill, [os.getpid(), number])   # to the process: this wakes the main thread
+    later.daemon = True
+    later.start()
+
+
+def _lost(unraisable) -> None:
+    number = getattr(unraisable.exc_value, "signal", None)
+    _again(number) if number else sys.__unraisablehook__(unraisable)
