@@ -69,11 +69,11 @@ def _swap(stage: Path, coarser: Path, finer: Path) -> None:
     """The run in `stage` becomes the coarser one, that in `finer` takes its place."""
     shutil.rmtree(coarser)
     coarser.mkdir()
-    for entry in [entry for entry in stage.iterdir() if entry not in (coarser, finer)]:
-        os.rename(entry, coarser / entry.name)
-    for entry in list(finer.iterdir()):
-        os.rename(entry, stage / entry.name)
-    finer.rmdir()
+    kept = ("checkpoint.json", coarser.name, finer.name)     # what the run was asked for stays where it is
+    for source, target in ((stage, coarser), (finer, stage)):
+        for entry in [entry for entry in source.iterdir() if entry.name not in kept]:
+            os.rename(entry, target / entry.name)
+    shutil.rmtree(finer)
 
 
 def other(values: Mapping[str, Value], used: Mapping[str, Value], factor: float, own_mesh: bool = True) -> dict[str, Value]:

@@ -29,7 +29,7 @@ from pathlib import Path
 
 import numpy as np
 
-from . import freefem, mesh
+from . import estimate as estimates, freefem, mesh
 from .describe import describe
 from .failure import BadInput, Busy, Failure, Unreadable
 from .parameters import ROOT, Value, decisive
@@ -64,11 +64,12 @@ class RunResult:
 
 
 def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | None = None, *,
-        mesh_file: Path | None = None, force: bool = False, progress: bool = False, pictures: bool = True) -> RunResult:
+        mesh_file: Path | None = None, force: bool = False, progress: bool = False, pictures: bool = True, estimate: bool = True) -> RunResult:
     """Runs `scene` with some parameters overridden in the folder `out` (default results/<scene>), or reuses it.
 
     Raises Failure with the exit code of the run contract. `force` runs again, from the start, even if the folder is up to
     date. With a checkpoint_every > 0 a run that is killed goes on from its last checkpoint when it is asked for again.
+    With `estimate` a second, coarser run estimates the error, and finer ones follow until it is below the accuracy (estimate.py).
     """
     scene = scene.override(overrides or {})
     folder = result_folder(out or ROOT / "results" / scene.name)
@@ -77,43 +78,66 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | Non
     foreign = mesh.load(mesh_file) if mesh_file else None
     description = _describe(scene.values, foreign)
     finished = _finished(folder, force)
-    if not force and (there := reusable(scene, folder, mesh_file)):
+    if not force and (there := reusable(scene, folder, mesh_file, estimate)):
         return there
 
     program = freefem.find()
     with _staging(folder) as (stage, lock):
-        if not force and (there := reusable(scene, folder, mesh_file)):   # another run has finished it meanwhile
+        if not force and (there := reusable(scene, folder, mesh_file, estimate)):   # another run has finished it meanwhile
             return there
         provenance = {"script": scene.script, "code": code_hash(), "freefem": program.version,
                       "gmsh": None if mesh_file else mesh.gmsh_version()}
-        asked = decisive(scene.values) | provenance | {"mesh": _sha256(mesh_file) if mesh_file else None}
-        goes_on = not force and _unfinished(stage) == asked
-        if not goes_on:
+        asked_for = {"asked": decisive(scene.values), "estimate": estimate}
+        asked = asked_for | provenance | {"mesh": _sha256(mesh_file) if mesh_file else None}
+        if force or _unfinished(stage) != asked:
             _clear(stage)
             _write_json(stage / "checkpoint.json", asked)
-            _write_mesh(stage / "mesh.msh", description, foreign)
-        provenance |= {"asked": decisive(scene.values), "git": _git(), "mesh": _sha256(mesh_file or stage / "mesh.msh")}
-        flags = [text for name, value in scene.values.items() for text in (f"-{name}", str(value))]
-        flags += ["-mesh", str(stage / "mesh.msh"), "-out", str(stage)]
-        flags += ["-restart", str(stage / "checkpoint")] if goes_on else []
-        with _progress_line(scene.name) if progress else nullcontext() as show:
-            exit_code, said = freefem.run(program, scene.script, flags, stage / "log.txt", show, lock)
-        unfinished = (stage / "checkpoint").exists()   # a script that comes to its end, good or bad, removes it
-        log = stage / "log.txt"
-        log.write_text(log.read_text(errors="replace").replace(str(stage), str(shown(stage if unfinished else folder))))
+
+        def solve(values: dict[str, Value], where: Path) -> None:
+            with _progress_line(scene.name) if progress else nullcontext() as show:
+                _solve(program, scene.script, values, foreign, where, lock, show)
+
         try:
-            _check(stage, exit_code, said)
+            solve(scene.values, stage)
+            found = estimates.settle(stage, scene.values, foreign is None, solve, read_answers) if estimate else {}
         except Failure as failure:
-            if unfinished:
+            if _checkpoints(stage):   # a script that comes to its end, good or bad, removes it
                 failure.folder = stage
             elif failure.code not in (BadInput("").code, Unreadable("").code):   # these leave nothing behind
                 failure.folder = _failed(folder) if finished else folder
-                _keep_failed(stage, failure, scene, provenance)
+                _keep_failed(stage, failure, scene, provenance | asked_for)
+                _say_where(stage, failure.folder)
                 _replace(stage, failure.folder, _same_scene(failure.folder, scene, mesh_file))
             raise
-        _finish(stage, provenance, pictures)
+        provenance |= asked_for | {"git": _git(), "mesh": _sha256(mesh_file or stage / "mesh.msh")}
+        _say_where(stage, folder)
+        _finish(stage, found, provenance, pictures)
         _replace(stage, folder, _same_scene(folder, scene, mesh_file))
     return RunResult(folder, read_summary(folder), reused=False)
+
+
+def _solve(program: freefem.FreeFem, script: str, values: dict[str, Value], foreign: bytes | None, where: Path, lock: int,
+           show: freefem.Progress | None) -> None:
+    """Runs the script with `values` in the folder `where`: from its checkpoint where there is one, not again where it is finished."""
+    if (where / "summary.json").exists():
+        return
+    goes_on = (where / "checkpoint").exists()
+    if not goes_on:
+        where.mkdir(exist_ok=True)
+        if not (where / "checkpoint.json").exists():   # what makes the folder ours
+            _write_json(where / "checkpoint.json", values)
+        _write_mesh(where / "mesh.msh", _describe(values, foreign), foreign)
+    flags = [text for name, value in values.items() for text in (f"-{name}", str(value))]
+    flags += ["-mesh", str(where / "mesh.msh"), "-out", str(where)]
+    flags += ["-restart", str(where / "checkpoint")] if goes_on else []
+    exit_code, said = freefem.run(program, script, flags, where / "log.txt", show, lock)
+    _check(where, exit_code, said)
+
+
+def _say_where(stage: Path, folder: Path) -> None:
+    """The log names the folder that the run ends up in, not the one it was made in."""
+    log = stage / "log.txt"
+    log.write_text(log.read_text(errors="replace").replace(str(stage), str(shown(folder))))
 
 
 # ---- what is in a folder
@@ -136,6 +160,12 @@ def read_scene(folder: Path) -> dict[str, Value]:
         return tomllib.loads((folder / "scene.toml").read_text())
     except (OSError, ValueError) as error:
         raise Unreadable(f"{folder / 'scene.toml'} cannot be read: {_why(error)}") from None
+
+
+def read_answers(folder: Path) -> tuple[dict, dict[str, Value], float]:
+    """Of a finished run the summary, the scene as used, and the largest speed of the centre of mass [m/s], which scales velocities."""
+    history = read_history(folder)
+    return read_summary(folder), read_scene(folder), float(np.hypot(history["vx"], history["vy"]).max())
 
 
 def summary_numbers() -> list[str]:
@@ -167,11 +197,12 @@ def _why(error: Exception) -> str:
 
 # ---- reuse
 
-def reusable(scene: Scene, folder: Path, mesh_file: Path | None = None) -> RunResult | None:
-    """The finished run in `folder` if it is of this very scene, mesh and code, else None; Unreadable if it is not ours."""
+def reusable(scene: Scene, folder: Path, mesh_file: Path | None = None, estimate: bool = False) -> RunResult | None:
+    """The finished run in `folder` if it is of this very scene, mesh and code, with an estimate of its error where that is asked for,
+    else None; Unreadable if it is not ours."""
     summary = _finished(folder, force=False)
     same = (summary and (folder / "history.csv").exists() and summary.get("provenance", {}).get("code") == code_hash()
-            and read_scene(folder) and _same_scene(folder, scene, mesh_file))
+            and (summary["provenance"].get("estimate") or not estimate) and read_scene(folder) and _same_scene(folder, scene, mesh_file))
     return RunResult(folder, summary, reused=True) if same else None
 
 
@@ -179,7 +210,7 @@ def code_hash() -> str:
     """sha256 over what decides a result besides the scene: the FreeFEM scripts and the mesh generator."""
     files = sorted(path for path in (ROOT / "edp").rglob("*") if path.suffix in (".edp", ".idp"))
     digest = hashlib.sha256()
-    for path in [*files, ROOT / "orchestrate/mesh.py", ROOT / "orchestrate/gmsh_file.py"]:
+    for path in [*files, *(ROOT / f"orchestrate/{name}.py" for name in ("mesh", "gmsh_file", "estimate"))]:
         digest.update(f"{path.relative_to(ROOT)}\n".encode() + path.read_bytes())
     return digest.hexdigest()
 
@@ -281,7 +312,7 @@ def _staging(folder: Path) -> Iterator[tuple[Path, int]]:
         try:
             yield stage, lock
         finally:
-            if not (stage / "checkpoint").exists():
+            if not _checkpoints(stage):
                 shutil.rmtree(stage, ignore_errors=True)
 
 
@@ -316,14 +347,20 @@ def _refuse_files_of_others(stage: Path) -> None:
 
 
 def _clear(stage: Path) -> None:
-    (stage / "checkpoint").unlink(missing_ok=True)   # first: without the rest it is of no use
+    for checkpoint in _checkpoints(stage):   # first: without the rest they are of no use
+        checkpoint.unlink()
     for left_over in stage.iterdir():
         shutil.rmtree(left_over) if left_over.is_dir() else left_over.unlink()
 
 
+def _checkpoints(stage: Path) -> list[Path]:
+    """Those of the run in `stage`, and of the runs that estimate its error."""
+    return [path for path in (stage / "checkpoint", *stage.glob("*/checkpoint")) if path.exists()]
+
+
 def _unfinished(stage: Path) -> dict | None:
     """What the run was asked for whose checkpoint is in `stage`, None if there is none; Unreadable if it does not say."""
-    if not (stage / "checkpoint").exists():
+    if not _checkpoints(stage):
         return None
     try:
         return json.loads((stage / "checkpoint.json").read_text())
@@ -427,9 +464,13 @@ def _tail(stage: Path) -> str:
     return "end of its log: " + " | ".join([line for line in lines if line and not line.startswith("progress ")][-4:])
 
 
-def _finish(stage: Path, provenance: dict, pictures: bool) -> None:
-    """Figures, then the summary with its provenance, last and by rename."""
-    summary = read_summary(stage) | {"provenance": provenance}
+def _finish(stage: Path, found: dict, provenance: dict, pictures: bool) -> None:
+    """Figures, then the summary with what was `found` beside the run and its provenance, last and by rename."""
+    summary = read_summary(stage)
+    found["warnings"] = summary.get("warnings", []) + found.get("warnings", [])
+    if found.get("estimated_error"):
+        summary["skipped"].remove("error estimate")
+    summary |= {"estimated_error": None} | found | {"provenance": provenance}
     (stage / "summary.json").unlink()
     (stage / "checkpoint.json").unlink()
     _write_json(stage / "summary.json.part", summary)

@@ -26,24 +26,25 @@ BULK, CONTACT = 8e-3, 2.5e-3   # m: the sizes of mesh factor 1 of the studies on
 Point = dict[str, Value]    # the parameters that tell this run from the others of the study
 
 
-def study(points: list[Point], folder: Path, base: Point, limit: float, name: str = "disc-normal", cores: int = CORES) -> pd.DataFrame:
+def study(points: list[Point], folder: Path, base: Point, limit: float, name: str = "disc-normal", cores: int = CORES,
+          estimate: bool = False) -> pd.DataFrame:
     """A row for each of `points`, in their order: its parameters, exit, message, warnings (joined by "; "), reused, and
     the numbers of its summary.
 
     Every run is the scene `name` with `base` and the point's parameters on top, in folder/runs/, and may take `limit`
-    seconds; `cores` of them run at a time. What is there already is not run again: finished runs, and failures of the same scene and code. A run
+    seconds; `cores` of them run at a time; with `estimate` each estimates its error (estimated_error: the largest promised one). What is there already is not run again: finished runs, and failures of the same scene and code. A run
     that fails is a row like any other, with its exit code and message; NotInstalled, without FreeFem++, is raised.
     Several studies may share a folder: what one is running, the others leave to it. A number of the summary that has the
     name of a parameter of the point (spin) is called <name>_end.
     """
     places = [place(folder, point) for point in points]
     tasks = {where: scene.load(name).override(base | point) for where, point in zip(places, points)}
-    found = {where: outcome for where, wanted in tasks.items() if (outcome := there(where, wanted))}
+    found = {where: outcome for where, wanted in tasks.items() if (outcome := there(where, wanted, estimate))}
     to_do = {where: wanted for where, wanted in tasks.items() if where not in found}
     if to_do:
         freefem.find()
     with tqdm(desc="runs", total=len(tasks), initial=len(found), disable=None, leave=False) as line:
-        for where, outcome in _outcomes(to_do, limit, cores):
+        for where, outcome in _outcomes(to_do, limit, cores, estimate):
             found[where] = outcome
             line.update()
     return pd.DataFrame([point | {f"{name}_end" if name in point else name: value for name, value in found[where].items()}
@@ -55,7 +56,7 @@ def place(folder: Path, point: Point) -> Path:
     return folder / "runs" / (",".join(f"{name}={value}" for name, value in point.items()) or "run")
 
 
-def _outcomes(tasks: dict[Path, scene.Scene], limit: float, cores: int) -> Iterator[tuple[Path, dict]]:
+def _outcomes(tasks: dict[Path, scene.Scene], limit: float, cores: int, estimate: bool) -> Iterator[tuple[Path, dict]]:
     """(folder, outcome) as they are ready, a process each; leaving this in any way ends them and their FreeFem++."""
     context = multiprocessing.get_context("fork")
     waiting, running = deque(tasks), {}
@@ -64,7 +65,7 @@ def _outcomes(tasks: dict[Path, scene.Scene], limit: float, cores: int) -> Itera
             while waiting and len(running) < cores:
                 where = waiting.popleft()
                 receiver, sender = context.Pipe(duplex=False)
-                process = context.Process(target=_work, args=(sender, os.getpid(), limit, where, tasks[where]))
+                process = context.Process(target=_work, args=(sender, os.getpid(), limit, where, tasks[where], estimate))
                 signal.pthread_sigmask(signal.SIG_BLOCK, STOPS)      # a handler inside the fork would be lost
                 process.start()
                 signal.pthread_sigmask(signal.SIG_UNBLOCK, STOPS)
@@ -89,7 +90,7 @@ def _outcomes(tasks: dict[Path, scene.Scene], limit: float, cores: int) -> Itera
             process.join()
 
 
-def _work(sender: Connection, parent: int, limit: float, folder: Path, wanted: scene.Scene) -> None:
+def _work(sender: Connection, parent: int, limit: float, folder: Path, wanted: scene.Scene, estimate: bool) -> None:
     """One point in a process of its own."""
     def too_long(number):
         raise Failure(f"no end after {limit:g} s: killed", TOO_LONG)
@@ -99,27 +100,27 @@ def _work(sender: Connection, parent: int, limit: float, folder: Path, wanted: s
     signal.pthread_sigmask(signal.SIG_UNBLOCK, STOPS)
     freefem.die_with_parent(parent, signal.SIGTERM)
     signal.setitimer(signal.ITIMER_REAL, limit)
-    sender.send(_outcome(folder, wanted))
+    sender.send(_outcome(folder, wanted, estimate))
 
 
-def there(folder: Path, wanted: scene.Scene) -> dict | None:
+def there(folder: Path, wanted: scene.Scene, estimate: bool = False) -> dict | None:
     """The outcome that is in `folder` already: a finished run, or a failure that FreeFem++ would only repeat."""
     if failed := _failed_before(wanted, folder):
         return _row(failed["exit_code"], str(failed.get("message")), True, failed)
     try:
-        result = run.reusable(wanted, folder)
+        result = run.reusable(wanted, folder, estimate=estimate)
     except Failure:                                      # will be said by the run
         return None
     return result and _row(0, result.summary["message"], True, result.summary)
 
 
-def _outcome(folder: Path, wanted: scene.Scene) -> dict | None:
+def _outcome(folder: Path, wanted: scene.Scene, estimate: bool) -> dict | None:
     """Exit code, message, whether it was there already, and the numbers of the summary, as far as the run came; None
     where another run is at it."""
-    if found := there(folder, wanted):
+    if found := there(folder, wanted, estimate):
         return found
     try:
-        result = run.run(wanted, out=folder, pictures=False)
+        result = run.run(wanted, out=folder, pictures=False, estimate=estimate)
         return _row(0, result.summary["message"], result.reused, result.summary)
     except Busy:
         return None
@@ -131,6 +132,8 @@ def _outcome(folder: Path, wanted: scene.Scene) -> dict | None:
 
 
 def _row(code: int, message: str, reused: bool, summary: dict) -> dict:
+    if estimated := summary.get("estimated_error"):
+        summary = summary | {"estimated_error": estimates.largest(estimated)}
     numbers = {name: value for name, value in summary.items() if type(value) in (int, float) and name != "exit_code"}
     return {"exit": code, "message": message, "warnings": "; ".join(summary.get("warnings", [])), "reused": reused} | numbers
 
