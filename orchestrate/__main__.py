@@ -96,7 +96,7 @@ def _parameters(options: argparse.Namespace) -> None:
 
 
 def _figures(options: argparse.Namespace) -> None:
-    from . import figures
+    from . import figures, run
     for path in figures.draw(options.folder, run.read_summary(options.folder)["warnings"]):
         print(path)
 

@@ -19,7 +19,7 @@ from tqdm import tqdm
 from . import scene, vtu
 from .failure import BadInput, NotInstalled, Unreadable
 from .figures import BLACK, BLUE, GREY, ORANGE, STRESS, STYLE, Body, deformed, diameter, draw_body, draw_ground, limits, per_metre, title
-from .parameters import ROOT, overrides
+from .parameters import ROOT, overrides, whole
 from .run import RunResult, run, shown
 
 SECONDS = 8.0     # of the film
@@ -33,7 +33,7 @@ def main(argv: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="python -m orchestrate movie", description=__doc__)
     parser.add_argument("scene", metavar="SCENE", help="a built-in scene or the path of a TOML file")
     parser.add_argument("--set", metavar="NAME=VALUE", nargs="+", action="extend", default=[], help="set a parameter")
-    parser.add_argument("--frames", metavar="N", type=int, default=100, help="number of frames (default: 100), and of snapshots of the run")
+    parser.add_argument("--frames", metavar="N", type=whole, default=100, help="number of frames (default: 100), and of snapshots of the run")
     parser.add_argument("--format", choices=("mp4", "gif"), help="default: mp4 where there is ffmpeg, otherwise gif")
     parser.add_argument("--out", metavar="DIR", type=Path, help="the result folder (default: results/movies/SCENE)")
     options = parser.parse_args(argv)

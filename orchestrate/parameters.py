@@ -93,6 +93,13 @@ def defaults() -> dict[str, Value]:
     return {name: table()[name].default for name in names()}
 
 
+def whole(text: str) -> int:
+    """A whole number of the command line, for argparse."""
+    if not re.fullmatch("[0-9]+", text):   # int() takes the digits of every alphabet
+        raise ValueError
+    return int(text)
+
+
 def overrides(texts: list[str]) -> dict[str, str]:
     """The pairs of --set name=value; BadInput where one has another form."""
     pairs = [text.partition("=") for text in texts]

@@ -6,7 +6,7 @@ from pathlib import Path
 import pandas as pd
 
 from . import draws, estimate, study
-from .parameters import ROOT, defaults
+from .parameters import ROOT, defaults, whole
 from .run import read_scene, shown
 
 SEED, COUNT = 40, 40        # other scenes than those of the calibration
@@ -19,8 +19,8 @@ NEAR, FAR = 0.2, 1.0        # between which the median error must lie, over the 
 def main(argv: list[str]) -> int:
     """Prints the errors, scene by scene, writes promise.csv; 0 if the promise is kept in enough scenes, and not at too high a price."""
     parser = argparse.ArgumentParser(prog="python -m orchestrate promise", description=__doc__)
-    parser.add_argument("--scenes", metavar="N", type=int, default=COUNT, help=f"how many (default: {COUNT})")
-    parser.add_argument("--seed", metavar="N", type=int, default=SEED, help=f"other scenes (default: {SEED})")
+    parser.add_argument("--scenes", metavar="N", type=whole, default=COUNT, help=f"how many (default: {COUNT})")
+    parser.add_argument("--seed", metavar="N", type=whole, default=SEED, help=f"other scenes (default: {SEED})")
     parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/promise", help="the result folder")
     options = parser.parse_args(argv)
     points = draws.draw(options.seed, max(1, options.scenes))

@@ -288,10 +288,10 @@ def result_folder(out: Path) -> Path:
 def _mesh_path(given: Path) -> Path:
     try:
         path = given.resolve()
-    except (OSError, RuntimeError):
-        path = given
-    if path.exists() and not path.is_file():   # reading a pipe or a device might never end
-        raise BadInput(f"mesh: {given} is no file")
+        if path.exists() and not path.is_file():   # reading a pipe or a device might never end
+            raise BadInput(f"mesh: {given} is no file")
+    except (OSError, RuntimeError) as error:       # a loop of links, a name too long
+        raise BadInput(f"mesh: {given} cannot be read: {getattr(error, 'strerror', None) or error}") from None
     return path
 
 

@@ -13,7 +13,7 @@ from matplotlib.colors import LogNorm
 
 from . import study
 from .figures import LAWS, STYLE
-from .parameters import ROOT
+from .parameters import ROOT, whole
 from .run import shown
 
 AXES = {"law": ("svk", "neohookean"), "nu": (0.0, 0.3, 0.45, 0.49), "speed": (0.5, 4.0, 10.0), "penalty": (1e9, 1e10, 1e12),
@@ -30,7 +30,7 @@ LETTERS = {"open": ("o", "balance open"), "no step": ("s", "no convergence, or c
 def main(argv: list[str]) -> int:
     """Runs the sets, prints the outcomes; 0 if every set does what is required of it, else 1."""
     parser = argparse.ArgumentParser(prog="python -m orchestrate stress", description=__doc__)
-    parser.add_argument("--quick", metavar="N", type=int, help="N of the sets, always the same ones")
+    parser.add_argument("--quick", metavar="N", type=whole, help="N of the sets, always the same ones")
     parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/stress", help="the result folder")
     options = parser.parse_args(argv)
     points = [dict(zip(AXES, values)) for values in itertools.product(*AXES.values())]

@@ -9,7 +9,7 @@ import pandas as pd
 
 from . import stress, study
 from .figures import BLUE, ORANGE, PURPLE, STYLE
-from .parameters import ROOT
+from .parameters import ROOT, whole
 from .run import shown
 
 SEED, SETS = 2024, 300
@@ -27,7 +27,7 @@ WRONG = ("open", "chatter", "other")   # silent wrong answers, crashes, hangs: n
 def main(argv: list[str]) -> int:
     """Runs the sets, prints outcomes and regions, writes stress-map.csv, .png and .md; 0 if the requirement holds."""
     parser = argparse.ArgumentParser(prog="python -m orchestrate stress-map", description=__doc__)
-    parser.add_argument("--sets", metavar="N", type=int, default=SETS, help=f"the first N of them (default: {SETS})")
+    parser.add_argument("--sets", metavar="N", type=whole, default=SETS, help=f"the first N of them (default: {SETS})")
     parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/stress-map", help="the result folder")
     options = parser.parse_args(argv)
     out = options.out.resolve()

@@ -43,6 +43,7 @@ def study(points: list[Point], folder: Path, base: Point, limit: float, name: st
     to_do = {where: wanted for where, wanted in tasks.items() if where not in found}
     if to_do:
         freefem.find()
+        (folder / "runs").mkdir(parents=True, exist_ok=True)   # here: a run takes away what it had to make if it is interrupted
     with tqdm(desc="runs", total=len(tasks), initial=len(found), disable=None, leave=False) as line:
         for where, outcome in _outcomes(to_do, limit, cores, estimate):
             found[where] = outcome
