@@ -45,8 +45,7 @@ def disc(radius: float, mesh_size: float, contact_mesh_size: float, half: bool, 
     linearly to mesh_size away from it. Vertices of the circle and of the axis lie on them to rounding.
     """
     unit = 1.0 / radius    # meshed at radius 1: gmsh's tolerances are absolute
-    with _gmsh() as gmsh:
-        gmsh.option.setNumber("General.Terminal", 0)
+    with gmsh_session() as gmsh:
         gmsh.option.setNumber("Mesh.Algorithm", 6)   # frontal Delaunay: the best triangles
         for source in ("FromPoints", "FromCurvature", "ExtendFromBoundary"):
             gmsh.option.setNumber(f"Mesh.MeshSize{source}", 0)
@@ -73,18 +72,19 @@ def disc(radius: float, mesh_size: float, contact_mesh_size: float, half: bool, 
     points[circle] /= np.linalg.norm(points[circle], axis=1, keepdims=True)
     points[np.unique(edges[labels == AXIS]), 0] = 0.0
     points = radius * (points + (0.0, 1.0))
-    return Mesh(points, _counter_clockwise(points, triangles.reshape(-1, 3)), edges, labels)
+    return Mesh(points, counter_clockwise(points, triangles.reshape(-1, 3)), edges, labels)
 
 
 @contextmanager
-def _gmsh() -> Iterator:
-    """The module gmsh, started and ended; NotInstalled where a system library is missing."""
+def gmsh_session() -> Iterator:
+    """The module gmsh, started, silent, and ended; NotInstalled where a system library is missing."""
     try:
         import gmsh
     except OSError as error:
         raise NotInstalled(f"gmsh does not load ({error}); run: make setup") from None
     handlers = {number: signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGPIPE)}
     gmsh.initialize([], readConfigFiles=False, interruptible=False)
+    gmsh.option.setNumber("General.Terminal", 0)
     if threading.current_thread() is threading.main_thread():
         for number, handler in handlers.items():   # gmsh sets them back to their defaults
             signal.signal(number, handler)
@@ -118,7 +118,8 @@ def _grade(field, contact_arcs: list[int], bulk: float, contact: float, contact_
     field.setAsBackgroundMesh(size)
 
 
-def _counter_clockwise(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+def counter_clockwise(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """The triangles (t, 3), those that are clockwise turned over."""
     a, b, c = (points[triangles[:, k]] for k in range(3))
     clockwise = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) < (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
     return np.where(clockwise[:, None], triangles[:, [0, 2, 1]], triangles)
@@ -134,6 +135,21 @@ def write(mesh: Mesh, path: Path) -> None:
         file.writelines(f"{x:.17g} {y:.17g} {label}\n" for (x, y), label in zip(mesh.points, point_labels))
         file.writelines(f"{a} {b} {c} 0\n" for a, b, c in mesh.triangles + 1)
         file.writelines(f"{a} {b} {label}\n" for (a, b), label in zip(mesh.edges + 1, mesh.labels))
+
+
+def load(path: Path) -> bytes:
+    """The mesh in a file as FreeFEM's .msh: one of gmsh is converted, one of FreeFEM is taken as it is (what is in it is checked
+    by edp/core/mesh-file.idp). BadInput where it cannot be read or is neither."""
+    if path.exists() and not path.is_file():
+        raise BadInput(f"mesh: {path} is not a file")
+    try:
+        text = path.read_bytes()
+    except OSError as error:
+        raise BadInput(f"mesh: {path} cannot be read: {error.strerror}") from None
+    if text.startswith(b"$"):
+        from . import gmsh_file
+        return gmsh_file.convert(path)
+    return text
 
 
 def read(path: Path) -> Mesh:

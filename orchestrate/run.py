@@ -19,6 +19,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import tomllib
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, nullcontext
@@ -73,8 +74,8 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | Non
     folder = result_folder(out or ROOT / "results" / scene.name)
     if mesh_file:
         mesh_file = _mesh_path(mesh_file)
-        mesh.read(mesh_file)
-    description = describe(scene.values)
+    foreign = mesh.load(mesh_file) if mesh_file else None
+    description = _describe(scene.values, foreign)
     finished = _finished(folder, force)
     if not force and (there := reusable(scene, folder, mesh_file)):
         return there
@@ -90,8 +91,8 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | Non
         if not goes_on:
             _clear(stage)
             _write_json(stage / "checkpoint.json", asked)
-            _write_mesh(stage / "mesh.msh", description, mesh_file)
-        provenance |= {"asked": decisive(scene.values), "git": _git(), "mesh": _sha256(stage / "mesh.msh")}
+            _write_mesh(stage / "mesh.msh", description, foreign)
+        provenance |= {"asked": decisive(scene.values), "git": _git(), "mesh": _sha256(mesh_file or stage / "mesh.msh")}
         flags = [text for name, value in scene.values.items() for text in (f"-{name}", str(value))]
         flags += ["-mesh", str(stage / "mesh.msh"), "-out", str(stage)]
         flags += ["-restart", str(stage / "checkpoint")] if goes_on else []
@@ -178,7 +179,7 @@ def code_hash() -> str:
     """sha256 over what decides a result besides the scene: the FreeFEM scripts and the mesh generator."""
     files = sorted(path for path in (ROOT / "edp").rglob("*") if path.suffix in (".edp", ".idp"))
     digest = hashlib.sha256()
-    for path in [*files, ROOT / "orchestrate/mesh.py"]:
+    for path in [*files, ROOT / "orchestrate/mesh.py", ROOT / "orchestrate/gmsh_file.py"]:
         digest.update(f"{path.relative_to(ROOT)}\n".encode() + path.read_bytes())
     return digest.hexdigest()
 
@@ -221,10 +222,20 @@ def _same_scene(folder: Path, scene: Scene, mesh_file: Path | None) -> bool:
 
 # ---- the mesh
 
-def _write_mesh(path: Path, description: dict, mesh_file: Path | None) -> None:
-    """The mesh of a run: a copy of `mesh_file`, or our own, of the sizes and the part of the body that the description says."""
-    if mesh_file:
-        shutil.copy(mesh_file, path)
+def _describe(values: dict[str, Value], foreign: bytes | None) -> dict:
+    """What the scripts say of the scene, on the mesh `foreign` (FreeFEM's .msh) where there is one; BadInput where they refuse it."""
+    if foreign is None:
+        return describe(values)
+    with tempfile.NamedTemporaryFile(suffix=".msh") as file:
+        file.write(foreign)
+        file.flush()
+        return describe(values | {"mesh": file.name})
+
+
+def _write_mesh(path: Path, description: dict, foreign: bytes | None) -> None:
+    """The mesh of a run: `foreign`, or our own, of the sizes and the part of the body that the description says."""
+    if foreign is not None:
+        path.write_bytes(foreign)
     else:
         sizes = (description["used"][name] for name in ("radius", "mesh_size", "contact_mesh_size"))
         mesh.write(mesh.disc(*sizes, description["half"], description["touch_arc"]), path)
