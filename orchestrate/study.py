@@ -14,7 +14,7 @@ from pathlib import Path
 import pandas as pd
 from tqdm import tqdm
 
-from . import freefem, run, scene, stopping
+from . import estimate as estimates, freefem, run, scene, stopping
 from .failure import Busy, Failure, Unreadable
 from .parameters import Value, decisive
 
