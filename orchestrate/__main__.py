@@ -10,7 +10,7 @@ from . import stopping
 from .failure import BadInput, Failure, Unreadable
 
 OWN_MAIN = ("compare", "movie", "friction-laws", "stick-slip", "sweep", "verify", "paper", "stress", "stress-map", "bench", "textbook",
-            "skipping", "costs", "promise", "refine")   # modules with a main(argv)
+            "skipping", "costs", "promise", "refine", "scaling", "materials")   # modules with a main(argv)
 
 
 def main(argv: list[str]) -> int:

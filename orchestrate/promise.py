@@ -12,6 +12,7 @@ from .run import read_scene, shown
 SEED, COUNT = 40, 40        # other scenes than those of the calibration
 FINER = 3                   # elements and steps of the reference are so many times smaller
 LIMIT = 900.0               # seconds a run may take
+OPEN = {"fields": 0, "penalty": "auto"}   # the scene that runs are made of states its own
 KEPT = 0.95                 # share of the scenes in which the promise must be kept
 NEAR, FAR = 0.2, 1.0        # between which the median error must lie, over the accuracy asked for: who asks for little shall pay little
 
@@ -21,21 +22,23 @@ def main(argv: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="python -m orchestrate promise", description=__doc__)
     parser.add_argument("--scenes", metavar="N", type=whole, default=COUNT, help=f"how many (default: {COUNT})")
     parser.add_argument("--seed", metavar="N", type=whole, default=SEED, help=f"other scenes (default: {SEED})")
+    parser.add_argument("--hard", action="store_true", help="also gravity, other integrators, linear elements ...: nothing above what was asked without a warning")
     parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/promise", help="the result folder")
     options = parser.parse_args(argv)
-    points = draws.draw(options.seed, max(1, options.scenes))
+    points = draws.draw(options.seed, max(1, options.scenes), options.hard)
     table = compare(points, options.out.resolve())
     study.save(table, options.out / "promise.csv")
-    print(report(table, defaults()["accuracy"]) + f"\n{shown(options.out.resolve())}/promise.csv")
-    return 0 if kept(table, defaults()["accuracy"]) else 1
+    good = silent(table) == 0 if options.hard else kept(table)
+    print(report(table) + f"; {'the requirement' if options.hard else 'the promise'} {'is kept' if good else 'IS NOT KEPT'}\n{shown(options.out.resolve())}/promise.csv")
+    return 0 if good else 1
 
 
 def compare(points: list[study.Point], out: Path) -> pd.DataFrame:
     """A row a scene: what it is, the error of each promised answer and the largest, over the accuracy asked for; the estimate of the
     largest; warnings; processor seconds of the run with its estimate, and of the reference; nan where one of the two failed."""
-    plain = study.study(points, out, {"fields": 0}, LIMIT, estimate=True)
+    plain = study.study(points, out, OPEN, LIMIT, estimate=True)
     finer = [_finer(study.place(out, point), point) if code == 0 else point for point, code in zip(points, plain.exit)]
-    fine = study.study(finer, out / "finer", {"fields": 0}, LIMIT)
+    fine = study.study(finer, out / "finer", OPEN, LIMIT)
     rows = []
     for point, (_, run), (_, reference) in zip(points, plain.iterrows(), fine.iterrows()):
         asked = point.get("accuracy", defaults()["accuracy"])
@@ -55,20 +58,23 @@ def _finer(folder: Path, point: study.Point) -> study.Point:
     return estimate.other(point, read_scene(folder), 1 / FINER)
 
 
-def kept(table: pd.DataFrame, asked: float) -> bool:
+def silent(table: pd.DataFrame) -> int:
+    """How many scenes are above what was asked without a warning."""
+    return int(((table.error > 1) & (table.warnings.fillna("") == "")).sum())
+
+
+def kept(table: pd.DataFrame) -> bool:
     """Whether enough of the scenes that ended are within what was asked, and their median not far below."""
     ended = table.error.dropna()
     return len(ended) > 0 and (ended <= 1).sum() >= KEPT * len(ended) and NEAR <= ended.median() <= FAR
 
 
-def report(table: pd.DataFrame, asked: float) -> str:
-    """The table and the verdict."""
+def report(table: pd.DataFrame) -> str:
+    """The table and what it says."""
     ended = table.error.dropna()
-    above = ended > 1
-    silent = (above & (table.warnings[ended.index].fillna("") == "")).sum()
     return "\n".join([
-        f"Errors over the accuracy asked for ({asked:g}), against {FINER} times smaller elements and steps", "",
+        f"Errors over the accuracy asked for, against {FINER} times smaller elements and steps", "",
         study.table(table.assign(warnings=table.warnings.fillna("").str.len() > 0), {"scene": ""} | dict.fromkeys(estimate.PROMISED, ".2f")
                     | {"error": ".2f", "estimated": ".2f", "seconds": ".1f", "finer seconds": ".1f", "warnings": "", "message": ""}), "",
-        f"{(~above).sum()} of {len(ended)} within what was asked (required: {KEPT:.0%}), {silent} above it without a warning; median {ended.median():.2f} of "
-        f"it (required: {NEAR:g} to {FAR:g}): the promise {'is kept' if kept(table, asked) else 'IS NOT KEPT'}"])
+        f"{(ended <= 1).sum()} of {len(ended)} within what was asked (promised: {KEPT:.0%}), {silent(table)} above it without a warning; median {ended.median():.2f} of "
+        f"it (promised: {NEAR:g} to {FAR:g})"])
