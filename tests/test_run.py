@@ -82,6 +82,7 @@ def test_run_without_python_is_not_reused(fake, tmp_path):
 @pytest.mark.parametrize("mode, code, words", [
     ("step", 11, "^step: no convergence at t = 1.2e-3 s"),
     ("material", 12, "^material: det F = -0.1"),
+    ("chatter", 11, "^chatter$"),
     ("plugin", 13, "plugin.*Element_QF.*make setup"),
     ("crash", 1, "killed by SIGABRT.*some assertion failed"),
     ("nan", 1, "history.csv: elastic is not finite from row 8"),
@@ -192,3 +193,42 @@ def test_history_is_read_to_the_last_digit(tmp_path):
     (tmp_path / "history.csv").write_text("t,vy\n0.1,-8\n0.2\n")
     with pytest.raises(Unreadable, match="history.csv cannot be read"):
         run.read_history(tmp_path)
+
+
+def test_another_scene_puts_the_folder_aside(fake, tmp_path):
+    """A run of another scene moves the folder that is there, with all that is in it, to DIR.1, the next one to DIR.2."""
+    out = tmp_path / "out"
+    for speed in (8, 7, 6):
+        go(out, {"speed": speed})
+        (out / "notes.txt").write_text(f"of {speed} m/s")
+    assert [(tmp_path / name / "notes.txt").read_text() for name in ("out", "out.1", "out.2")] == ["of 6 m/s", "of 8 m/s", "of 7 m/s"]
+    assert [run.read_summary(tmp_path / name)["provenance"]["asked"]["speed"] for name in ("out", "out.1", "out.2")] == [6, 8, 7]
+
+
+def test_the_same_scene_again_keeps_the_files_of_others(fake, tmp_path):
+    """--force replaces what the program wrote; what the user put there stays, in subfolders too, and no copy is left."""
+    out = tmp_path / "out"
+    go(out, {"fields": 4})
+    for name in ("notes.txt", "figures/mine.png", "fields/mine.txt", "mine/deep/x"):
+        (out / name).parent.mkdir(parents=True, exist_ok=True)
+        (out / name).write_text("mine")
+    (out / "log.txt").write_text("old")
+    go(out, {"fields": 4}, force=True)
+    assert all((out / name).read_text() == "mine" for name in ("notes.txt", "figures/mine.png", "fields/mine.txt", "mine/deep/x"))
+    assert (out / "log.txt").read_text() != "old" and [path.name for path in tmp_path.glob("out*")] == ["out"]
+
+
+def test_stage_with_files_of_others_is_refused(fake, tmp_path):
+    """DIR.part may be a folder of the user's: then it is left alone, exit code 14."""
+    (tmp_path / "out.part").mkdir()
+    (tmp_path / "out.part/thesis.tex").write_text("years of work")
+    with pytest.raises(Unreadable, match="files of others"):
+        go(tmp_path / "out", force=True)
+    assert (tmp_path / "out.part/thesis.tex").exists()
+
+
+def test_bad_input_that_only_the_script_finds_leaves_nothing(tmp_path):
+    """Neither a folder nor those above it that were made for it, nor a failed run beside an earlier result."""
+    with pytest.raises(BadInput, match="speed|end_time") as error:
+        go(tmp_path / "a/b/out", {"speed": 0})
+    assert error.value.code == 10 and not list(tmp_path.iterdir())

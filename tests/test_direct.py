@@ -1,0 +1,140 @@
+"""FreeFem++ without Python: its folder is as safe as Python's, and nothing that the user gives reaches a shell as a command."""
+
+import os
+import resource
+import signal
+import subprocess
+import time
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from orchestrate import freefem, mesh, parameters, run, scene
+
+COARSE = ("-law", "neohookean", "-nu", "0.4", "-accuracy", "0.4")
+ODD = "it's; touch pwned #$(touch pwned)`touch pwned`\"\\ *"     # a name that a shell would make something of
+
+
+def start(*flags: str, cwd: Path, **options) -> subprocess.Popen:
+    program = freefem.find()
+    return subprocess.Popen([program.command, "-nw", "-ne", "-v", "0", parameters.ROOT / "edp/disc-plane.edp", *flags], cwd=cwd, text=True,
+                            env=program.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)
+
+
+def call(*flags: str, cwd: Path, **options) -> tuple[int, str, str]:
+    process = start(*flags, cwd=cwd, **options)
+    out, error = process.communicate(timeout=60)
+    return process.returncode, out, error
+
+
+def names(folder: Path) -> set[str]:
+    return {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
+
+
+RESULTS = {"scene.toml", "history.csv", "summary.json"}
+
+
+@pytest.mark.parametrize("name", [ODD, "-out", "-", "--", "a b/c d", "é", "a\nb"])
+def test_any_name_will_do(tmp_path, name):
+    """Folders, meshes and checkpoints may be called what they want: the run works, and no command in a name is run."""
+    flags = ("-checkpoint_every", "5", "-fields", "2")
+    given = name if name != "-out" else "./-out"
+    assert call(*COARSE, *flags, "-out", given, cwd=tmp_path)[0::2] == (0, "")
+    assert RESULTS | {"fields.pvd", "fields/0000.vtu", "fields/0001.vtu"} == names(tmp_path / name)
+    mesh.write(mesh.disc(0.05, 0.02, 0.01, True), tmp_path / name / "my.msh")
+    assert call(*COARSE, "-mesh", f"{given}/my.msh", "-out", "out", cwd=tmp_path)[0::2] == (0, "")
+    code, _, error = call(*COARSE, "-restart", f"{given}/x", "-out", "out", cwd=tmp_path)
+    assert code == 14 and error.count("\n") == 1 and "no such file" in error
+    assert not list(tmp_path.rglob("pwned"))
+
+
+def test_any_name_will_do_for_python(tmp_path):
+    """The same through Python, which hands its paths to the script."""
+    result = run.run(scene.load("disc-normal"), {"accuracy": 0.4, "law": "neohookean", "nu": 0.4, "checkpoint_every": 5}, tmp_path / ODD, pictures=False)
+    assert result.summary["status"] == "ok" and not list(tmp_path.rglob("pwned"))
+
+
+def test_second_run_on_a_folder_is_refused(tmp_path):
+    """The lock is the kernel's: the second run is refused with 14 as long as the first one lives, and no longer, even if it was killed."""
+    first = start(*COARSE, "-dt", "1e-6", "-out", "out", cwd=tmp_path)
+    end = time.monotonic() + 20
+    while not (tmp_path / "out/history.part").exists() and time.monotonic() < end:
+        time.sleep(0.01)
+    code, _, error = call(*COARSE, "-out", str(tmp_path / "out/"), cwd=tmp_path)
+    assert code == 14 and error.startswith("ffimpact: out: ") and "another run" in error and error.count("\n") == 1
+    with pytest.raises(run.Busy):
+        run.run(scene.load("disc-normal"), {"accuracy": 0.4}, tmp_path / "out")
+    assert first.poll() is None
+    first.kill()
+    first.communicate()
+    assert call(*COARSE, "-out", "out", cwd=tmp_path)[0] == 0
+    assert names(tmp_path / "out") == RESULTS
+
+
+def test_run_in_a_folder_that_python_is_at_is_refused(tmp_path):
+    """Python makes the files of DIR in DIR.part: as long as that is locked, DIR is taken."""
+    (tmp_path / "out.part").mkdir()
+    lock = run._hold(tmp_path / "out.part", tmp_path / "out")
+    code, _, error = call(*COARSE, "-out", "out", cwd=tmp_path)
+    os.close(lock)
+    assert code == 14 and "another run" in error
+
+
+def test_files_of_others_are_left_alone(tmp_path):
+    """A folder that is not the program's is refused with 14, as it is through Python."""
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out/thesis.tex").write_text("years of work")
+    code, _, error = call(*COARSE, "-out", "out", cwd=tmp_path)
+    assert code == 14 and "files of others" in error and error.count("\n") == 1 and names(tmp_path) == {"out/thesis.tex"}
+
+
+def test_earlier_runs(tmp_path):
+    """Another scene, or mesh, puts the folder aside; the same one replaces what the program wrote, and what the user put there stays."""
+    assert call(*COARSE, "-fields", "4", "-out", "out", cwd=tmp_path)[0] == 0
+    for name in ("notes.txt", "fields/mine.txt", ".hidden"):
+        (tmp_path / "out" / name).write_text("mine")
+    first = (tmp_path / "out/summary.json").read_bytes()
+    code, said, _ = call(*COARSE, "-fields", "4", "-checkpoint_every", "5", "-out", "out/", cwd=tmp_path)
+    assert code == 0 and "earlier run" not in said and [path.name for path in tmp_path.iterdir()] == ["out"]
+    assert {"notes.txt", "fields/mine.txt", ".hidden"} < names(tmp_path / "out") and (tmp_path / "out/summary.json").read_bytes() != first
+    before = {name: (tmp_path / "out" / name).read_bytes() for name in names(tmp_path / "out")}
+    code, said, _ = call(*COARSE, "-speed", "7", "-out", "out", cwd=tmp_path)
+    assert code == 0 and f"is now in {tmp_path}/out.1\n" in said and names(tmp_path / "out") == RESULTS
+    assert before == {name: (tmp_path / "out.1" / name).read_bytes() for name in names(tmp_path / "out.1")}
+    mesh.write(mesh.disc(0.05, 0.02, 0.01, True), tmp_path / "my.msh")
+    assert f"{tmp_path}/out.2\n" in call(*COARSE, "-speed", "7", "-mesh", "my.msh", "-out", "out", cwd=tmp_path)[1]
+
+
+def test_failure_does_not_cost_an_earlier_result(tmp_path):
+    """A run that fails puts a finished one of the same folder aside, whole; bad input leaves it where it is."""
+    assert call(*COARSE, "-out", "out", cwd=tmp_path)[0] == 0
+    before = (tmp_path / "out/history.csv").read_bytes()
+    assert call(*COARSE, "-speed", "0", "-out", "out", cwd=tmp_path)[0] == 10
+    assert names(tmp_path) == {f"out/{name}" for name in RESULTS}
+    assert call("-accuracy", "0.4", "-speed", "60", "-out", "out", cwd=tmp_path)[0] in (11, 12)
+    assert names(tmp_path / "out") == {"scene.toml", "history.csv", "failure.json"} and (tmp_path / "out.1/history.csv").read_bytes() == before
+
+
+@pytest.mark.parametrize("size", [0, 200, 3000, 6000])
+def test_full_disk(tmp_path, size):
+    """Where files cannot grow as they have to, the exit code is 14 with one line, nothing finished is there, and an earlier result stays."""
+    assert call(*COARSE, "-out", "out", cwd=tmp_path)[0] == 0
+    before = {name: (tmp_path / name).read_bytes() for name in names(tmp_path)}
+
+    def small_files():   # as a full disk: a write fails, without the signal
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+    for flags in (("-out", "out", "-speed", "7"), ("-out", "new/out"), ("-out", "new/out", "-fields", "2")):
+        code, _, error = call(*COARSE, *flags, cwd=tmp_path, preexec_fn=small_files, restore_signals=False)
+        assert code == 14 and error.startswith("ffimpact: out: ") and error.count("\n") == 1, error
+        assert before == {name: (tmp_path / name).read_bytes() for name in names(tmp_path)} and not (tmp_path / "new").exists()
+
+
+@pytest.mark.parametrize("name, text, value", [
+    ("speed", "+8", 8), ("speed", ".5", 0.5), ("spin", "-.5", -0.5), ("fields", "2e0", 2), ("radius", "5E-2", 0.05), ("speed", "007", 7), ("speed", "+007.1234567890123", 7.1234567890123),
+    ("height", "0.000", 0), ("young", "7e06", 7e6), ("nu", "00.1234567890123", 0.1234567890123), ("spin", "-00012.3456789", -12.3456789), ("checkpoint_every", "1E3", 1000)])
+def test_numbers_are_written_as_toml(tmp_path, name, text, value):
+    """However a number is written as a flag, scene.toml has it in TOML's way, to the last digit."""
+    assert call("-accuracy", "0.4", "-law", "neohookean", "-end_time", "1e-5", f"-{name}", text, "-out", "out", cwd=tmp_path)[0] == 0
+    assert tomllib.loads((tmp_path / "out/scene.toml").read_text())[name] == value

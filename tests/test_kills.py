@@ -1,0 +1,182 @@
+"""Forty kills at random moments: nothing is orphaned or looks finished, earlier results stay, and the same command then gives the same answer."""
+
+import functools
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from orchestrate import freefem, parameters
+
+COARSE = {"law": "neohookean", "nu": "0.4", "accuracy": "0.2", "fields": "3"}
+SWEEP = """collect = ["impulse", "rebound_vy"]
+[set]
+law = "neohookean"
+nu = 0.4
+accuracy = 0.2
+[product]
+speed = [4, 8, 11]
+"""
+ROUTES = ("run", "checkpoints", "sweep", "direct", "direct-checkpoints")
+ALWAYS = 10                             # of them in every `make test`, all in `make robustness`
+
+
+def kills() -> list:
+    """Route, signal, whom it hits, after which share of the run's time, and whether a finished run of another scene is there already."""
+    draw = random.Random(11)
+    drawn = [(ROUTES[k % len(ROUTES)], draw.choice((signal.SIGKILL, signal.SIGTERM, signal.SIGINT)), draw.choice(("driver", "freefem", "group")),
+              draw.random(), draw.random() < 0.5) for k in range(40)]
+    return [pytest.param(*kill, marks=[] if k < ALWAYS else [pytest.mark.robustness], id=f"{k}-{kill[0]}-{kill[1].name}-{kill[2]}-{kill[3]:.3f}")
+            for k, kill in enumerate(drawn)]
+
+
+def command(route: str, out: Path, speed: str = "8") -> list[str]:
+    given = COARSE | {"speed": speed} | ({"checkpoint_every": "10"} if "checkpoints" in route else {})
+    if route == "sweep":
+        file = out.parent / "case.toml"
+        file.write_text(SWEEP if speed == "8" else SWEEP.replace("0.4", "0.3"))
+        return [sys.executable, "-m", "orchestrate", "sweep", str(file), "--out", str(out)]
+    if route.startswith("direct"):
+        flags = [word for name, value in given.items() for word in (f"-{name}", value)]
+        return [freefem.find().command, "-nw", "-ne", "-v", "0", "edp/disc-plane.edp", *flags, "-out", str(out)]
+    return [sys.executable, "-m", "orchestrate", "run", "disc-normal", "--quiet", "--set", *(f"{name}={value}" for name, value in given.items()), "--out", str(out)]
+
+
+def start(words: list[str]) -> subprocess.Popen:
+    def hear_interrupts():   # a shell's background job has SIGINT ignored, and hands that on
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+    return subprocess.Popen(words, cwd=parameters.ROOT, env=freefem.find().environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                            stderr=subprocess.PIPE, text=True, start_new_session=True, preexec_fn=hear_interrupts)
+
+
+def finish(words: list[str]) -> str:
+    process = start(words)
+    said, error = process.communicate(timeout=120)
+    assert process.returncode == 0, error
+    return said
+
+
+def at_work(out: Path) -> list[int]:
+    """The processes that have this folder among their words."""
+    found = []
+    for place in Path("/proc").glob("[0-9]*"):
+        try:
+            words, state = (place / "cmdline").read_bytes(), (place / "stat").read_text().rpartition(")")[2].split()[0]
+        except OSError:
+            continue
+        if str(out).encode() in words and state != "Z":
+            found.append(int(place.name))
+    return found
+
+
+def freefems(out: Path) -> list[int]:
+    return [pid for pid in at_work(out) if name_of(pid).startswith("FreeFem")]
+
+
+def name_of(pid: int) -> str:
+    try:
+        return Path(f"/proc/{pid}/comm").read_text()
+    except OSError:                     # it has just ended
+        return ""
+
+
+def answers(route: str, out: Path) -> object:
+    """What a route gives, to the last digit."""
+    if route == "sweep":
+        return pd.read_csv(out / "sweep.csv").drop(columns="seconds").to_csv()
+    return (out / "history.csv").read_text(), sorted((path.name, path.read_text()) for path in (out / "fields").iterdir())
+
+
+@functools.cache
+def straight(route: str, folder: Path) -> tuple[object, float]:
+    """The answers of a run that is not killed, and the seconds it takes."""
+    began = time.monotonic()
+    finish(command(route, folder / "straight"))
+    return answers(route, folder / "straight"), time.monotonic() - began
+
+
+@pytest.fixture(scope="module")
+def shelf(tmp_path_factory) -> Path:
+    return tmp_path_factory.mktemp("kills")
+
+
+def place(route: str, shelf: Path) -> Path:
+    (shelf / route).mkdir(exist_ok=True)
+    return shelf / route
+
+
+@functools.cache
+def another(route: str, folder: Path) -> Path:
+    """A finished run of another scene."""
+    (folder / "other").mkdir()
+    finish(command(route, folder / "other/earlier", speed="6"))
+    return folder / "other/earlier"
+
+
+def content(folder: Path) -> dict[str, bytes]:
+    """All files but those of a run without Python that is at work there or was killed."""
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*")
+            if path.is_file() and ".part" not in str(path.relative_to(folder)) and not path.name.startswith("checkpoint")}
+
+
+@pytest.mark.parametrize("route, number, whom, share, before", kills())
+def test_kill(shelf, tmp_path, route, number, whom, share, before):
+    """After the signal every process of the run is gone within seconds; a folder that looks finished is; the earlier result is whole,
+    where it was or beside it; and the same command ends well with the same answer, byte for byte."""
+    expected, seconds = straight(route, place(route, shelf))
+    out = tmp_path / "out"
+    before = before and route != "sweep"                        # another sweep in the folder of one runs its own points beside
+    if before:
+        shutil.copytree(another(route, place(route, shelf)), out)
+    earlier = content(out) if before else {}
+    words = command(route, out)
+    process = start(words)
+    time.sleep(share * seconds)
+    hit = freefems(out) if whom == "freefem" else []
+    for pid in hit or [process.pid]:
+        try:
+            (os.killpg if whom == "group" else os.kill)(pid, number)
+        except ProcessLookupError:                              # it was faster
+            pass
+    process.communicate(timeout=60)
+    end = time.monotonic() + 5
+    while at_work(out) and time.monotonic() < end:
+        time.sleep(0.02)
+    assert not at_work(out)
+    for folder in (out, tmp_path / "out.1"):
+        if route != "sweep" and (folder / "summary.json").exists():
+            assert content(folder) == earlier or answers(route, folder) == expected
+    if before:
+        assert earlier in (content(out), content(tmp_path / "out.1"))
+    for summary in (kept := {path: path.read_bytes() for path in out.glob("runs/*/summary.json")}):
+        assert (summary.parent / "history.csv").exists()
+    finish(words)
+    assert answers(route, out) == expected
+    assert all(path.read_bytes() == text for path, text in kept.items())          # what was finished was not run again
+    if before:
+        assert content(tmp_path / "out.1") == earlier
+    assert not list(tmp_path.glob("out.part")) and not list(out.rglob("*.part"))
+
+
+DELAYS = [0.6 * k / 60 for k in range(60)]
+
+
+@pytest.mark.parametrize("delay", [pytest.param(delay, marks=[] if k % 8 == 4 else [pytest.mark.robustness]) for k, delay in enumerate(DELAYS)])
+def test_sigterm_at_the_start(tmp_path, delay):
+    """SIGTERM is obeyed while modules load and FreeFem++ starts as well: exit code 143 (of the shell), nothing said, nothing left."""
+    process = start(command("run", tmp_path / "out"))
+    time.sleep(delay)
+    process.terminate()
+    _, error = process.communicate(timeout=20)
+    assert process.returncode in (143, -signal.SIGTERM) and error == ""
+    end = time.monotonic() + 5
+    while at_work(tmp_path / "out") and time.monotonic() < end:
+        time.sleep(0.02)
+    assert not at_work(tmp_path / "out") and not list(tmp_path.iterdir())
