@@ -43,8 +43,9 @@ def draw(folder: Path, warnings: list[str]) -> list[Path]:
         else:
             drawn["force"] = _force(contact)
         if snapshots:
-            drawn["shapes"] = _shapes(snapshots)
-            if len(snapshots) > 2 and not vtu.read(snapshots[0][1]).is_half:
+            half = is_half(scene)
+            drawn["shapes"] = _shapes(snapshots, half)
+            if len(snapshots) > 2 and not half:
                 drawn["flight"] = _flight(history, scene, snapshots)
         files = []
         for name, figure in drawn.items():
@@ -359,10 +360,10 @@ def _draw_pose(axes: plt.Axes, pose: Pose, colour, line, label: str | None) -> N
     axes.plot(*pose.diameter[0], color=colour, marker="o", markersize=4)
 
 
-def _shapes(series: list[tuple[float, Path]]) -> plt.Figure:
+def _shapes(series: list[tuple[float, Path]], half: bool) -> plt.Figure:
     """The body at up to SHAPES instants above the plane y = 0, coloured by the von Mises stress [MPa]."""
     picked = [series[k] for k in np.unique(np.linspace(0, len(series) - 1, SHAPES).round().astype(int))]
-    bodies = [deformed(vtu.read(path)) for _, path in picked]
+    bodies = [deformed(vtu.read(path), half) for _, path in picked]
     left, right, floor, high = view = limits(bodies)
 
     columns = min(3, len(bodies))
@@ -390,13 +391,18 @@ class Body:
     stress: np.ndarray
 
 
-def deformed(snapshot: vtu.Snapshot) -> Body:
-    """The body of a snapshot; where half of it was computed, the other half is the mirror image."""
+def is_half(scene: dict[str, Value]) -> bool:
+    """Whether only the half of the body to the right of its axis was computed."""
+    return scene["symmetry"] == "half"
+
+
+def deformed(snapshot: vtu.Snapshot, half: bool) -> Body:
+    """The body of a snapshot; where half of it was computed, the other half is the mirror image in its left end, the axis."""
     points = snapshot.points + snapshot.fields["displacement"][:, :2]
     triangles, stress = snapshot.triangles, 1e-6 * snapshot.fields["von_mises"]
-    if snapshot.is_half:
+    if half:
         triangles = np.vstack([triangles, triangles + len(points)])
-        points, stress = np.vstack([points, points * (-1, 1)]), np.concatenate([stress, stress])
+        points, stress = np.vstack([points, points * (-1, 1) + (2 * snapshot.points[:, 0].min(), 0)]), np.concatenate([stress, stress])
     return Body(points, triangles, stress)
 
 

@@ -18,7 +18,7 @@ from tqdm import tqdm
 
 from . import scene, vtu
 from .failure import BadInput, NotInstalled, Unreadable
-from .figures import BLACK, BLUE, GREY, ORANGE, STRESS, STYLE, Body, deformed, diameter, draw_body, draw_ground, limits, per_metre, title
+from .figures import BLACK, BLUE, GREY, ORANGE, STRESS, STYLE, Body, deformed, diameter, draw_body, draw_ground, is_half, limits, per_metre, title
 from .parameters import ROOT, overrides, whole
 from .run import RunResult, run, shown
 
@@ -55,7 +55,7 @@ def main(argv: list[str]) -> int:
 
 def write(film: Path, result: RunResult, frames: int, progress: bool = False) -> None:
     """Writes `frames` frames, evenly spaced from the touch to the end, of SECONDS seconds together; complete or not at all."""
-    motion = Motion(result.folder / "fields.pvd")
+    motion = Motion(result.folder / "fields.pvd", is_half(result.scene))
     with plt.rc_context(STYLE | {"figure.constrained_layout.use": False}):   # the axes stay where they are
         stage = Stage(result, motion)
         part = film.with_suffix(f".part{film.suffix}")
@@ -96,14 +96,14 @@ class Motion:
     `times` (s,) in s from the touch to the end; `bodies`, one a time; `diameters` (s, m, 2) in m, None where half a body was computed.
     """
 
-    def __init__(self, pvd: Path):
+    def __init__(self, pvd: Path, half: bool):
         series = vtu.series(pvd)
         if not series:
             raise Unreadable(f"{pvd} is missing or empty; delete its folder and run again")
         snapshots = [vtu.read(path) for _, path in series]
         self.times = np.array([t for t, _ in series])
-        self.bodies = [deformed(snapshot) for snapshot in snapshots]
-        self.diameters = None if snapshots[0].is_half else np.array([diameter(snapshot) for snapshot in snapshots])
+        self.bodies = [deformed(snapshot, half) for snapshot in snapshots]
+        self.diameters = None if half else np.array([diameter(snapshot) for snapshot in snapshots])
 
     def at(self, t: float) -> tuple[Body, np.ndarray | None]:
         """The body and its diameter (m, 2) at time t [s]."""

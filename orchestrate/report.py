@@ -84,7 +84,7 @@ def report(result: RunResult) -> str:
     """The key figures of a run as a table of text, what was skipped, and where the pictures are."""
     summary, scene = result.summary, result.scene
     script = summary["provenance"]["script"]
-    known = references(script, scene)
+    known = references(script, scene) if summary["provenance"].get("gmsh") else {}   # a mesh of the user's is another body
     place = shown(result.folder)
     lines = [f"{place}: " + ("finished earlier, same scene and code" if result.reused else "finished"),
              f"{scene['law']}, nu = {scene['nu']:g}, {scene['speed']:g} m/s, angle {scene['angle']:g} degrees, "

@@ -21,11 +21,6 @@ class Snapshot:
     triangles: np.ndarray
     fields: dict[str, np.ndarray]
 
-    @property
-    def is_half(self) -> bool:
-        """Whether only the half x >= 0 of the body was computed."""
-        return self.points[:, 0].min() >= 0
-
 
 def read(path: Path) -> Snapshot:
     """One snapshot; quadratic triangles are split into four straight ones. Unreadable where it is not such a file."""

@@ -35,5 +35,5 @@ def finished_folder(tmp_path):
     folder.mkdir()
     fake_freefem.write_history(folder)
     fake_freefem.write_fields(folder, 9)
-    fake_freefem.write_scene(folder, dict(law="svk", nu="0.45", speed="8", angle="90"))
+    fake_freefem.write_scene(folder, dict(law="svk", nu="0.45", speed="8", angle="90", symmetry="half"))
     return folder

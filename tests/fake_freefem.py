@@ -118,7 +118,7 @@ def main(arguments: list[str]) -> int:
     values = {name[1:]: text for name, text in zip(flags[::2], flags[1::2])}
     folder = Path(values.pop("out"))
     Path(values.pop("mesh")).read_text()
-    write_scene(folder, values)
+    write_scene(folder, values | {"symmetry": "half"})   # its snapshots are of half a disc
     for k in range(1, 4):
         print(f"progress {k / 4} t={k * 1e-3} steps={k * 50}", flush=True)
     if mode in ("slow", "brief"):

@@ -127,7 +127,7 @@ def test_ffmpeg_that_fails_is_one_line(fake, ffmpeg, tmp_path, capsys):
 
 def test_body_between_two_snapshots(finished_folder):
     """At a snapshot's time its body, midway between two the mean of both, beyond the ends the first and the last."""
-    motion = movie.Motion(finished_folder / "fields.pvd")
+    motion = movie.Motion(finished_folder / "fields.pvd", half=True)
     body, line = motion.at(motion.times[3:5].mean())
     assert body.points == pytest.approx((motion.bodies[3].points + motion.bodies[4].points) / 2)
     assert body.stress == pytest.approx((motion.bodies[3].stress + motion.bodies[4].stress) / 2)
@@ -141,7 +141,7 @@ def test_frames_differ_in_time_and_nothing_else(finished_folder):
     result = run.RunResult(finished_folder, {}, reused=True)
     history = result.history
     history["friction_force"] = -0.3 * history["normal_force"]
-    motion = movie.Motion(finished_folder / "fields.pvd")
+    motion = movie.Motion(finished_folder / "fields.pvd", half=True)
     motion.diameters = np.array([body.points[:5] for body in motion.bodies])   # as of a whole body
     stage = movie.Stage(result, motion)
     seen = []
