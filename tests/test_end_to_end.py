@@ -232,7 +232,7 @@ def test_both_ways_choose_the_same_sizes(tmp_path, rubs):
 
 # ---- chatter
 
-COARSE = {"speed": "1.84", "accuracy": "0.1", "degree": "1", "mesh_size": "0.025", "contact_mesh_size": "0.0079"}
+COARSE = {"speed": "1.84", "accuracy": "0.01", "degree": "1", "mesh_size": "0.025", "contact_mesh_size": "0.0079"}
 
 
 @pytest.mark.parametrize("how", ["stop", "continue"])
