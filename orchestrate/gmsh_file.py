@@ -18,7 +18,7 @@ from .places import ROOT
 
 TRIANGLES = {2: 3, 9: 6}        # gmsh's types of element that are read: their nodes, of which the first three are the corners
 LINES = {1: 2, 8: 3}            # likewise, the first two are the ends
-HELD = 3                        # the label of what is neither contact nor axis
+OTHER = 3                       # the label of what is neither contact nor axis
 LABELS = {"contact": mesh.FREE, "symmetry": mesh.AXIS}
 
 
@@ -38,21 +38,26 @@ def convert(path: Path) -> bytes:
 
 
 def read(path: Path) -> mesh.Mesh:
-    """The mesh in a gmsh file, lengths in m: triangles turned counter-clockwise, vertices that no triangle uses left out."""
+    """The mesh in a gmsh file, lengths in m."""
     with mesh.gmsh_session() as gmsh:
         try:
             gmsh.open(str(path))
         except Exception as error:   # gmsh knows no other
             raise BadInput(f"gmsh cannot read it: {error}") from None
-        tags, coordinates, _ = gmsh.model.mesh.getNodes()
-        kinds = [*gmsh.model.mesh.getElementTypes(2), *gmsh.model.mesh.getElementTypes(3)]
-        for kind in kinds:
-            if kind not in TRIANGLES:
-                raise BadInput(f"it has elements '{gmsh.model.mesh.getElementProperties(kind)[0]}' (accepted: triangles of 3 or 6 nodes)")
-        if not kinds:
-            raise BadInput("it has no triangles")
-        corners = np.vstack([gmsh.model.mesh.getElementsByType(kind)[1].reshape(-1, TRIANGLES[kind])[:, :3] for kind in kinds])
-        curves = _physical_curves(gmsh.model)
+        return taken(gmsh.model)
+
+
+def taken(model) -> mesh.Mesh:
+    """The mesh in a model of gmsh: triangles turned counter-clockwise, vertices that no triangle uses left out."""
+    tags, coordinates, _ = model.mesh.getNodes()
+    kinds = [*model.mesh.getElementTypes(2), *model.mesh.getElementTypes(3)]
+    for kind in kinds:
+        if kind not in TRIANGLES:
+            raise BadInput(f"it has elements '{model.mesh.getElementProperties(kind)[0]}' (accepted: triangles of 3 or 6 nodes)")
+    if not kinds:
+        raise BadInput("it has no triangles")
+    corners = np.vstack([model.mesh.getElementsByType(kind)[1].reshape(-1, TRIANGLES[kind])[:, :3] for kind in kinds])
+    curves = _physical_curves(model)
 
     used, triangles = np.unique(corners, return_inverse=True)
     row = np.full(int(max(tags.max(), used.max())) + 1, -1)
@@ -65,11 +70,11 @@ def read(path: Path) -> mesh.Mesh:
     points, triangles = points[:, :2], mesh.counter_clockwise(points[:, :2], triangles.reshape(-1, 3))
     edges = boundary(triangles)
     if curves is None:
-        labels = np.where(_is_outer(points, edges), mesh.FREE, HELD)
+        labels = np.where(_is_outer(points, edges), mesh.FREE, OTHER)
     else:
         number = {int(tag): k for k, tag in enumerate(used)}
         labelled = {frozenset((number.get(a, -1), number.get(b, -1))): label for a, b, label in curves}
-        labels = np.array([labelled.get(frozenset(edge), HELD) for edge in edges.tolist()], dtype=int)
+        labels = np.array([labelled.get(frozenset(edge), OTHER) for edge in edges.tolist()], dtype=int)
     return mesh.Mesh(points, triangles, edges, labels)
 
 
@@ -80,7 +85,7 @@ def _physical_curves(model) -> list[tuple[int, int, int]] | None:
     lines = []
     for _, number in groups:
         name = model.getPhysicalName(1, number).strip().lower()
-        label = LABELS.get(name, HELD) if name else number if number in LABELS.values() else HELD
+        label = LABELS.get(name, OTHER) if name else number if number in LABELS.values() else OTHER
         for entity in model.getEntitiesForPhysicalGroup(1, number):
             for kind, _, nodes in zip(*model.mesh.getElements(1, entity)):
                 if kind not in LINES:
