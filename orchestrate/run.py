@@ -469,7 +469,7 @@ def _finish(stage: Path, found: dict, provenance: dict, pictures: bool) -> None:
     summary = read_summary(stage)
     found["warnings"] = summary.get("warnings", []) + found.get("warnings", [])
     if found.get("estimated_error"):
-        summary["skipped"].remove("error estimate")
+        summary["skipped"] = [name for name in summary["skipped"] if name != "error estimate"]
     summary |= {"estimated_error": None} | found | {"provenance": provenance}
     (stage / "summary.json").unlink()
     (stage / "checkpoint.json").unlink()

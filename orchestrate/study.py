@@ -1,5 +1,6 @@
 """Studies: many runs of one scene, one FreeFem++ a core at most; whatever a run comes to becomes a row of a table."""
 
+import hashlib
 import json
 import multiprocessing
 import os
@@ -22,6 +23,7 @@ CORES = len(os.sched_getaffinity(0))
 TOO_LONG = 124              # exit code of a run that its time limit ended, as of timeout(1)
 STOPS = (signal.SIGTERM, signal.SIGHUP, signal.SIGINT)
 tqdm.monitor_interval = 0   # no thread beside us: we fork
+LONGEST = 200               # characters of a folder's name
 BULK, CONTACT = 8e-3, 2.5e-3   # m: the sizes of mesh factor 1 of the studies on the disc of radius 0.05 m
 Point = dict[str, Value]    # the parameters that tell this run from the others of the study
 
@@ -53,8 +55,11 @@ def study(points: list[Point], folder: Path, base: Point, limit: float, name: st
 
 
 def place(folder: Path, point: Point) -> Path:
-    """The result folder of a point of the study in `folder`."""
-    return folder / "runs" / (",".join(f"{name}={value}" for name, value in point.items()) or "run")
+    """The result folder of a point of the study in `folder`, named after its parameters; where that is too long for a name by its hash."""
+    name = ",".join(f"{name}={value}" for name, value in point.items()) or "run"
+    if len(name) > LONGEST:
+        name = f"{name[:LONGEST - 20]},{hashlib.sha256(name.encode()).hexdigest()[:16]}"
+    return folder / "runs" / name
 
 
 def _outcomes(tasks: dict[Path, scene.Scene], limit: float, cores: int, estimate: bool) -> Iterator[tuple[Path, dict]]:

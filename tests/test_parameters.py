@@ -21,7 +21,7 @@ def test_every_row_of_the_table_is_read():
 def test_known_rows():
     """Values of the table arrive with their types."""
     table = parameters.table()
-    assert (table["young"].default, table["young"].unit, table["young"].low) == (7e6, "Pa", 1.0)
+    assert (table["young"].default, table["young"].unit, table["young"].low) == (7e6, "Pa", 1e-6)
     assert table["law"].words[:2] == ("svk", "neohookean")
     assert table["fields"].kind == "int" and type(table["fields"].default) is int
     assert table["mesh"].kind == "path" and "mesh" not in parameters.names()

@@ -12,7 +12,7 @@ from orchestrate.failure import BadInput, Failure, NotInstalled, Unreadable
 
 
 def go(out: Path, overrides: dict | None = None, **options) -> run.RunResult:
-    return run.run(scene.load("disc-normal"), {"fields": 0} | (overrides or {}), out, **{"pictures": False} | options)
+    return run.run(scene.load("disc-normal"), {"fields": 0} | (overrides or {}), out, **{"pictures": False, "estimate": False} | options)
 
 
 def test_finished_run_is_complete(fake, tmp_path):
@@ -20,7 +20,7 @@ def test_finished_run_is_complete(fake, tmp_path):
     result = go(tmp_path / "out", {"fields": 2}, pictures=True)
     assert {"scene.toml", "history.csv", "summary.json", "log.txt", "mesh.msh", "fields.pvd", "fields", "figures"} == {
         p.name for p in result.folder.iterdir()}
-    assert set(result.summary["provenance"]) == {"script", "asked", "git", "code", "freefem", "gmsh", "mesh"}
+    assert set(result.summary["provenance"]) == {"script", "asked", "estimate", "git", "code", "freefem", "gmsh", "mesh"}
     assert result.summary["status"] == "ok" and not result.reused
     assert result.history["t"].shape == (200,) and result.scene["speed"] == 8.0
     assert not list(tmp_path.glob("out.*"))
