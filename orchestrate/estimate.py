@@ -23,6 +23,7 @@ SIZES = ("mesh_size", "contact_mesh_size", "dt")
 LARGEST = 0.4               # accuracy that the scripts take
 SHARE = 0.7
 LOOSER = 2
+NO_ANSWER = (11, 12)        # exit codes of a run that the step or the material ended
 # What the answers of a pair usually differ by, beside each other (calibrated over forty scenes); the first six are promised.
 USUAL = {"impulse": 0.06, "rebound": 0.12, "rebound_spin": 0.08, "energy": 0.16, "friction_work": 0.04, "thresholded_contact_time": 0.4,
          "contact_time": 0.8, "peak_force": 1.2}
@@ -46,6 +47,8 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
     try:
         solve(other(values, used, COARSER, own_mesh), coarser)
     except Failure as failure:
+        if failure.code not in NO_ANSWER:
+            raise
         sentences = [f"the error is not estimated: the run with {COARSER:.1f} times larger elements and steps ended with: {failure}"]
     while not sentences:
         coarse = read(coarser)[0]
@@ -59,6 +62,8 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
         try:
             solve(other(values, used, 1 / COARSER, own_mesh) | {"fields": values["fields"]}, finer)
         except Failure as failure:
+            if failure.code not in NO_ANSWER:
+                raise
             sentences.append(f"a run with {COARSER:.1f} times smaller elements and steps ended with: {failure}")
             break
         _swap(stage, coarser, finer)
