@@ -31,7 +31,7 @@ import numpy as np
 
 from . import estimate as estimates, freefem, mesh
 from .describe import describe
-from .failure import BadInput, Busy, Failure, Unreadable
+from .failure import BadInput, Busy, Failure, TooLong, Unreadable
 from .parameters import ROOT, Value, decisive
 from .scene import Scene
 
@@ -103,7 +103,7 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | Non
         except Failure as failure:
             if _checkpoints(stage):   # a script that comes to its end, good or bad, removes it
                 failure.folder = stage
-            elif failure.code not in (BadInput("").code, Unreadable("").code):   # these leave nothing behind
+            elif not isinstance(failure, TooLong) and failure.code not in (BadInput("").code, Unreadable("").code):   # these leave nothing behind
                 failure.folder = _failed(folder) if finished else folder
                 _keep_failed(stage, failure, scene, provenance | asked_for)
                 _say_where(stage, failure.folder)
