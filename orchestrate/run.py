@@ -40,7 +40,7 @@ OWN = ("scene.toml", "history.csv", "summary.json", "failure.json", "log.txt", "
        "figures/energies.png", "figures/velocity.png", "figures/force.png", "figures/rolling.png", "figures/shapes.png", "figures/flight.png",
        "checkpoint", "checkpoint.json", "checkpoint.part", "checkpoint.state", "scene.part", "history.part", "history.cut", "summary.part",
        "summary.json.part", "fields.pvd.part", "fields.part/[0-9]*.vtu")
-OURS = {"scene.toml", "failure.json", "scene.part", "checkpoint.json"}   # a folder with one of these is the program's
+OURS = {"scene.toml", "failure.json", "scene.part", "history.part", "checkpoint.json"}   # a folder with one of these is the program's
 FAILURES = {10: "bad input", 11: "step failed", 12: "material broke down", 13: "not installed", 14: "unreadable"}
 
 

@@ -63,7 +63,7 @@ def test_time_limit_kills_and_reports(fake, tmp_path):
 def test_lost_process_is_a_row(fake, tmp_path, monkeypatch):
     """A process that dies (as when memory runs out) costs its own row only."""
     work = study._outcome
-    monkeypatch.setattr(study, "_outcome", lambda folder, wanted: os._exit(9) if wanted.values["speed"] == 4 else work(folder, wanted))
+    monkeypatch.setattr(study, "_outcome", lambda folder, wanted, *more: os._exit(9) if wanted.values["speed"] == 4 else work(folder, wanted, *more))
     rows = go(tmp_path)
     assert rows.exit.tolist() == [1, 1, 0, 0] and rows.message[0] == "its process ended with exit code 9"
 
