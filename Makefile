@@ -5,7 +5,7 @@ READY := .venv/.ready
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup disc-normal disc-oblique disc-rolling friction-laws oblique contact-time-svk law-comparison contact-time-neohookean calibrate stick-slip verify paper movie test stress bench bench-quick textbook skipping costs promise refine refine-oblique clean
+.PHONY: help setup disc-normal disc-oblique disc-rolling friction-laws oblique contact-time-svk law-comparison contact-time-neohookean calibrate stick-slip verify paper movie test robustness stress bench bench-quick textbook skipping costs promise refine refine-oblique clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
@@ -52,6 +52,9 @@ movie: $(READY) ## a film of a scene: make movie CASE=disc-oblique
 
 test: $(READY) ## run all tests
 	@$(PYTHON) -m pytest -q tests $(ARGS)
+
+robustness: $(READY) ## minutes of malformed input and kills: nothing is silently wrong, lost or left behind
+	@$(PYTHON) -m pytest -q -m "robustness or not robustness" tests/test_malformed.py tests/test_direct.py tests/test_kills.py $(ARGS)
 
 stress: $(READY) ## hard parameter sets: every combination of some, and hundreds drawn from all; which hold, which fail and why
 	@$(PYTHON) -m orchestrate stress $(ARGS)

@@ -17,6 +17,13 @@ class Failure(Exception):
         self.code = code
 
 
+class TooLong(Failure):
+    """A run that its time limit ended: interrupted, not failed. The code is that of timeout(1)."""
+
+    def __init__(self, message: str):
+        super().__init__(message, 124)
+
+
 class BadInput(Failure):
     """A parameter, scene file or mesh that cannot be used."""
 

@@ -31,7 +31,7 @@ import numpy as np
 
 from . import estimate as estimates, freefem, mesh
 from .describe import describe
-from .failure import BadInput, Busy, Failure, Unreadable
+from .failure import BadInput, Busy, Failure, TooLong, Unreadable
 from .parameters import ROOT, Value, decisive
 from .scene import Scene
 
@@ -40,7 +40,7 @@ OWN = ("scene.toml", "history.csv", "summary.json", "failure.json", "log.txt", "
        "figures/energies.png", "figures/velocity.png", "figures/force.png", "figures/rolling.png", "figures/shapes.png", "figures/flight.png",
        "checkpoint", "checkpoint.json", "checkpoint.part", "checkpoint.state", "scene.part", "history.part", "history.cut", "summary.part",
        "summary.json.part", "fields.pvd.part", "fields.part/[0-9]*.vtu")
-OURS = {"scene.toml", "failure.json", "scene.part", "checkpoint.json"}   # a folder with one of these is the program's
+OURS = {"scene.toml", "failure.json", "scene.part", "history.part", "checkpoint.json"}   # a folder with one of these is the program's
 FAILURES = {10: "bad input", 11: "step failed", 12: "material broke down", 13: "not installed", 14: "unreadable"}
 
 
@@ -103,7 +103,7 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | Non
         except Failure as failure:
             if _checkpoints(stage):   # a script that comes to its end, good or bad, removes it
                 failure.folder = stage
-            elif failure.code not in (BadInput("").code, Unreadable("").code):   # these leave nothing behind
+            elif not isinstance(failure, TooLong) and failure.code not in (BadInput("").code, Unreadable("").code):   # these leave nothing behind
                 failure.folder = _failed(folder) if finished else folder
                 _keep_failed(stage, failure, scene, provenance | asked_for)
                 _say_where(stage, failure.folder)

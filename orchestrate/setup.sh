@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 say() { echo "setup: $*" >&2; }
-stop() { say "$*"; exit 1; }
+stop() { say "$*"; exit 13; }   # of the run contract: something is missing
 PATH=$PATH:/sbin:/usr/sbin
 libraries=$(ldconfig -p)
 has_library() { [[ $libraries == *"$1"* ]]; }
@@ -61,10 +61,15 @@ fi
 
 # Debian's FreeFem++ looks for its plugins in a folder that does not exist.
 if ! probe; then
-  line='loadpath += "/usr/lib/freefem++"'
-  grep -qsF "$line" ~/.freefem++.pref || echo "$line" >> ~/.freefem++.pref
-  probe || stop "FreeFem++ does not run orchestrate/probe.edp: ${answer//$'\n'/ | }"
-  say "FreeFem++ did not find its plugins: added  $line  to ~/.freefem++.pref"
+  plugins=/usr/lib/freefem++
+  FF_LOADPATH=$plugins probe || stop "FreeFem++ does not run orchestrate/probe.edp: ${answer//$'\n'/ | }"
+  line="loadpath += \"$plugins\""
+  file=${HOME:-}/.freefem++.pref
+  if [ -n "${HOME:-}" ] && { grep -qsF "$line" "$file" || echo "$line" >> "$file"; } 2>/dev/null && probe; then
+    say "FreeFem++ did not find its plugins: added  $line  to ~/.freefem++.pref"
+  else   # Python tells it itself
+    say "FreeFem++ does not find its plugins, and there is no HOME to say so in ('${HOME:-}'): for runs without Python set FF_LOADPATH=$plugins"
+  fi
 fi
 
 [ -x .venv/bin/python ] || "$(find_python)" -m venv .venv || stop "no python >= 3.11 with venv found; apt-get install python3 python3-venv"

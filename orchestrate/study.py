@@ -16,11 +16,11 @@ import pandas as pd
 from tqdm import tqdm
 
 from . import estimate as estimates, freefem, run, scene, stopping
-from .failure import Busy, Failure, Unreadable
+from .failure import Busy, Failure, TooLong, Unreadable
 from .parameters import Value, decisive
 
 CORES = len(os.sched_getaffinity(0))
-TOO_LONG = 124              # exit code of a run that its time limit ended, as of timeout(1)
+TOO_LONG = TooLong("").code   # of a run that its time limit ended
 STOPS = (signal.SIGTERM, signal.SIGHUP, signal.SIGINT)
 tqdm.monitor_interval = 0   # no thread beside us: we fork
 LONGEST = 200               # characters of a folder's name
@@ -99,7 +99,7 @@ def _outcomes(tasks: dict[Path, scene.Scene], limit: float, cores: int, estimate
 def _work(sender: Connection, parent: int, limit: float, folder: Path, wanted: scene.Scene, estimate: bool) -> None:
     """One point in a process of its own."""
     def too_long(number):
-        raise Failure(f"no end after {limit:g} s: killed", TOO_LONG)
+        raise TooLong(f"no end after {limit:g} s: killed")
     signal.signal(signal.SIGINT, signal.SIG_IGN)         # Ctrl-C is for the parent, who then ends us
     stopping.on(signal.SIGTERM, stopping.leave)          # run() tidies up on the way out
     stopping.on(signal.SIGALRM, too_long)                # likewise

@@ -131,6 +131,26 @@ def test_full_disk(tmp_path, size):
         assert before == {name: (tmp_path / name).read_bytes() for name in names(tmp_path)} and not (tmp_path / "new").exists()
 
 
+@pytest.mark.parametrize("files", [2, 3, 4, 5, 6, 8, 10])
+def test_full_disk_of_its_own(tmp_path, files):
+    """On a disk that takes so many files and no more, whichever of them is the first that does not fit: exit code 14 with one line, and
+    with more room the run goes on from its last checkpoint, or from the start."""
+    program, disk = freefem.find(), tmp_path / "disk"
+    disk.mkdir()
+    words = [program.command, "-nw", "-ne", "-v", "0", str(parameters.ROOT / "edp/disc-plane.edp"), *COARSE, "-fields", "4", "-checkpoint_every", "10", "-out", "disk/out"]
+    script = (f"mount -t tmpfs -o nr_inodes={files} none disk || exit 77; \"$@\" > said 2> error; echo $? > code; ls -R disk > left\n"
+              "mount -o remount,nr_inodes=100 disk && rm -f said\n"
+              "if [ -e disk/out/checkpoint ]; then \"$@\" -restart disk/out/checkpoint; else \"$@\"; fi > said || exit 1; ls disk/out > finished")
+    process = subprocess.run(["unshare", "-rm", "sh", "-c", script, "sh", *words], cwd=tmp_path, env=program.environment, capture_output=True, text=True, timeout=60)
+    if process.returncode == 77 or "unshare" in process.stderr:
+        pytest.skip("no disk of one's own here")
+    assert process.returncode == 0, process.stderr
+    error = (tmp_path / "error").read_text()
+    assert (tmp_path / "code").read_text() == "14\n" and error.startswith("ffimpact: ") and error.count("\n") == 1, error
+    assert "summary.json" not in (tmp_path / "left").read_text()
+    assert set((tmp_path / "finished").read_text().split()) == RESULTS | {"fields", "fields.pvd"}
+
+
 @pytest.mark.parametrize("name, text, value", [
     ("speed", "+8", 8), ("speed", ".5", 0.5), ("spin", "-.5", -0.5), ("fields", "2e0", 2), ("radius", "5E-2", 0.05), ("speed", "007", 7), ("speed", "+007.1234567890123", 7.1234567890123),
     ("height", "0.000", 0), ("young", "7e06", 7e6), ("nu", "00.1234567890123", 0.1234567890123), ("spin", "-00012.3456789", -12.3456789), ("checkpoint_every", "1E3", 1000)])

@@ -20,7 +20,7 @@ def test_finished_run_is_complete(fake, tmp_path):
     result = go(tmp_path / "out", {"fields": 2}, pictures=True)
     assert {"scene.toml", "history.csv", "summary.json", "log.txt", "mesh.msh", "fields.pvd", "fields", "figures"} == {
         p.name for p in result.folder.iterdir()}
-    assert set(result.summary["provenance"]) == {"script", "asked", "estimate", "git", "code", "freefem", "gmsh", "mesh"}
+    assert set(result.summary["provenance"]) == {"script", "asked", "git", "code", "freefem", "gmsh", "mesh", "estimate"}
     assert result.summary["status"] == "ok" and not result.reused
     assert result.history["t"].shape == (200,) and result.scene["speed"] == 8.0
     assert not list(tmp_path.glob("out.*"))
@@ -229,6 +229,6 @@ def test_stage_with_files_of_others_is_refused(fake, tmp_path):
 
 def test_bad_input_that_only_the_script_finds_leaves_nothing(tmp_path):
     """Neither a folder nor those above it that were made for it, nor a failed run beside an earlier result."""
-    with pytest.raises(BadInput, match="speed|end_time") as error:
+    with pytest.raises(Failure, match="speed|end_time") as error:
         go(tmp_path / "a/b/out", {"speed": 0})
     assert error.value.code == 10 and not list(tmp_path.iterdir())

@@ -39,7 +39,7 @@ def test_failing_points_are_rows(fake, tmp_path, mode, code, words):
 
 
 @pytest.mark.parametrize("sizes", [{"mesh_size": 0.02, "contact_mesh_size": 0.01}, {"accuracy": 0.04}], ids=["sizes", "accuracy"])
-@pytest.mark.parametrize("mode, again", [("ok", 0), ("step", 0), ("material", 0), ("crash", 4)])
+@pytest.mark.parametrize("mode, again", [("ok", 0), ("step", 0), ("material", 0), ("chatter", 0), ("crash", 4)])
 def test_what_is_done_is_not_done_again(fake, tmp_path, monkeypatch, mode, again, sizes):
     """Finished runs and failures of the same code are reused, crashes are not; with other code all is run again."""
     fake(mode)
@@ -63,7 +63,7 @@ def test_time_limit_kills_and_reports(fake, tmp_path):
 def test_lost_process_is_a_row(fake, tmp_path, monkeypatch):
     """A process that dies (as when memory runs out) costs its own row only."""
     work = study._outcome
-    monkeypatch.setattr(study, "_outcome", lambda folder, wanted, estimate: os._exit(9) if wanted.values["speed"] == 4 else work(folder, wanted, estimate))
+    monkeypatch.setattr(study, "_outcome", lambda folder, wanted, *more: os._exit(9) if wanted.values["speed"] == 4 else work(folder, wanted, *more))
     rows = go(tmp_path)
     assert rows.exit.tolist() == [1, 1, 0, 0] and rows.message[0] == "its process ended with exit code 9"
 
