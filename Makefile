@@ -5,7 +5,7 @@ READY := .venv/.ready
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup disc-normal disc-oblique disc-rolling friction-laws oblique contact-time-svk law-comparison contact-time-neohookean calibrate stick-slip verify paper movie test robustness stress bench bench-quick textbook skipping costs promise refine refine-oblique clean
+.PHONY: help setup disc-normal disc-oblique disc-rolling friction-laws oblique contact-time-svk law-comparison contact-time-neohookean calibrate stick-slip verify paper movie test robustness stress bench bench-quick textbook skipping costs promise scaling materials refine refine-oblique clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
@@ -53,14 +53,16 @@ movie: $(READY) ## a film of a scene: make movie CASE=disc-oblique
 test: $(READY) ## run all tests
 	@$(PYTHON) -m pytest -q tests $(ARGS)
 
-robustness: $(READY) ## minutes of malformed input and kills: nothing is silently wrong, lost or left behind
-	@$(PYTHON) -m pytest -q -m "robustness or not robustness" tests/test_malformed.py tests/test_direct.py tests/test_kills.py $(ARGS)
+robustness: $(READY) ## malformed input, kills, and hard runs drawn at random: nothing is silently wrong, lost or left behind
+	@$(PYTHON) -m pytest -q -m "robustness or not robustness" tests/test_malformed.py tests/test_direct.py tests/test_kills.py
+	@$(PYTHON) -m orchestrate promise --hard --scenes 200 --seed 200 --out results/robustness --page docs/robustness.md $(ARGS)
 
 stress: $(READY) ## hard parameter sets: every combination of some, and hundreds drawn from all; which hold, which fail and why
 	@$(PYTHON) -m orchestrate stress $(ARGS)
 	@$(PYTHON) -m orchestrate stress-map
 
-bench textbook skipping costs promise refine: $(READY)
+promise scaling materials: override ARGS += --page docs/$@.md
+bench textbook skipping costs promise scaling materials refine: $(READY)
 	@$(PYTHON) -m orchestrate $@ $(ARGS)
 bench: ## run time against error: meshes, steps, integrators, and other programs where installed
 bench-quick: $(READY) ## the same for one case, coarse
@@ -68,7 +70,9 @@ bench-quick: $(READY) ## the same for one case, coarse
 textbook: ## seconds a step beside a plain textbook script
 skipping: ## what each saving saves, and that it does not change the answer
 costs: ## where the time goes, its floor, and how it grows with the mesh
-promise: ## whether accuracy means what it says, over twenty scenes
+promise: ## whether accuracy means what it says, over forty scenes drawn at random
+scaling: ## one impact in many units and materials has one dimensionless answer
+materials: ## twelve materials at three speeds, against a stiffer contact on a finer mesh
 refine: ## refine mesh and step, report the observed convergence
 refine-oblique: $(READY) ## the same for the oblique disc, with the slip velocity down to 0.01 m/s
 	@$(PYTHON) -m orchestrate refine disc-oblique $(ARGS)

@@ -20,10 +20,13 @@ def main(argv: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="python -m orchestrate materials", description=__doc__)
     parser.add_argument("--materials", metavar="N", type=int, default=len(draws.MATERIALS), help="the first N of them")
     parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/materials", help="the result folder")
+    parser.add_argument("--page", metavar="FILE", type=Path, help="also write what is printed as a page")
     options = parser.parse_args(argv)
     table = compare(list(draws.MATERIALS)[:max(1, options.materials)], options.out.resolve())
     study.save(table, options.out / "materials.csv")
-    print(report(table) + f"\n{shown(options.out.resolve())}/materials.csv")
+    text = report(table)
+    print(f"{text}\n{shown(options.out.resolve())}/materials.csv")
+    study.page(options.page, "Twelve materials at three speeds", "make materials", text)
     return 0 if table.holds.all() else 1
 
 

@@ -24,12 +24,15 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--seed", metavar="N", type=whole, default=SEED, help=f"other scenes (default: {SEED})")
     parser.add_argument("--hard", action="store_true", help="also gravity, other integrators, linear elements ...: nothing above what was asked without a warning")
     parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/promise", help="the result folder")
+    parser.add_argument("--page", metavar="FILE", type=Path, help="also write what is printed as a page")
     options = parser.parse_args(argv)
     points = draws.draw(options.seed, max(1, options.scenes), options.hard)
     table = compare(points, options.out.resolve())
     study.save(table, options.out / "promise.csv")
     good = silent(table) == 0 if options.hard else kept(table)
-    print(report(table) + f"; {'the requirement' if options.hard else 'the promise'} {'is kept' if good else 'IS NOT KEPT'}\n{shown(options.out.resolve())}/promise.csv")
+    text = report(table) + f"; {'the requirement' if options.hard else 'the promise'} {'is kept' if good else 'IS NOT KEPT'}"
+    print(f"{text}\n{shown(options.out.resolve())}/promise.csv")
+    study.page(options.page, "Whether accuracy means what it says", "make promise", text)
     return 0 if good else 1
 
 

@@ -26,10 +26,13 @@ def main(argv: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="python -m orchestrate scaling", description=__doc__)
     parser.add_argument("--accuracy", type=float, default=defaults()["accuracy"], help="of the runs (default: %(default)g)")
     parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/scaling", help="the result folder")
+    parser.add_argument("--page", metavar="FILE", type=Path, help="also write what is printed as a page")
     options = parser.parse_args(argv)
     table = compare(options.out.resolve(), options.accuracy)
     study.save(table, options.out / "scaling.csv")
-    print(report(table) + f"\n{shown(options.out.resolve())}/scaling.csv")
+    text = report(table)
+    print(f"{text}\n{shown(options.out.resolve())}/scaling.csv")
+    study.page(options.page, "One impact in many units and materials", "make scaling", text)
     return 0 if table.holds.all() else 1
 
 

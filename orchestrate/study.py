@@ -188,6 +188,13 @@ def save(frame: pd.DataFrame, path: Path) -> None:
         frame.to_csv(part, index=False)
 
 
+def page(path: Path | None, title: str, command: str, text: str) -> None:
+    """Writes a report as a page of docs/, where a path is given; it says which command wrote it."""
+    if path:
+        with complete(path) as part:
+            part.write_text(f"# {title}\nWritten by `{command}`.\n\n{text}\n")
+
+
 @contextmanager
 def complete(path: Path) -> Iterator[Path]:
     """A name to write to, which takes the name `path` in the end: a reader or a second writer never sees half a file."""
