@@ -116,8 +116,8 @@ def sized(factor: float, **given) -> study.Point:
 def references(case: Case, quick: bool) -> list[study.Point]:
     """The two finest runs: by accuracy, and by mesh and step."""
     if quick:
-        return [{"accuracy": 0.005}, sized(0.7, dt=2e-5)]
-    return [{"accuracy": 0.48 * case.finest * case.finer}, sized(float(f"{0.4 * (case.finest / 0.00125) ** 0.5:.3g}"), dt=6e-6)]
+        return [{"accuracy": 0.0006}, sized(0.7, dt=2e-5)]
+    return [{"accuracy": 0.12 * case.finest * case.finer}, sized(float(f"{0.4 * (case.finest / 0.00125) ** 0.5:.3g}"), dt=6e-6)]
 
 
 # ---- the measurement

@@ -50,7 +50,7 @@ def series(scene: str, quick: bool) -> dict[str, Series]:
                        {f: sized[f] | {"dt": small} for f in sized if f >= finest and (f != 0.35 or not normal)}),
         "step": Series(f"fixed dt [s], mesh factor {fine:g}", "dt", {dt: sized[fine] | {"dt": dt} for dt in steps}),
         "accuracy": Series("accuracy, which sets mesh and adaptive step", "accuracy",
-                           {a: {"accuracy": a} for a in ((2e-2, 5e-3) if quick else (2e-2, 1e-2, 5e-3, 2.5e-3, 1e-3)[slice(None if normal else 4)])}),
+                           {a: {"accuracy": a} for a in ((2e-2, 5e-3) if quick else (2e-2, 5e-3, 1.25e-3, 6e-4, 3e-4)[slice(None if normal else 4)])}),
     }
     if not quick:
         used = describe(scenes.load(scene).values)["used"]
@@ -60,7 +60,7 @@ def series(scene: str, quick: bool) -> dict[str, Series]:
         if normal:
             found["scatter-neohookean"] = Series("the same with the neo-Hookean law", "factor",
                                                  {f: sizes | {"law": "neohookean"} for f, sizes in around.items()})
-    coarse = {"accuracy": 4e-2}                      # of the series that show what a parameter does
+    coarse = {"accuracy": 1.25e-3}                      # of the series that show what a parameter does
     if normal:
         found["penalty"] = Series("penalty k [Pa/m]: a parameter of the model, its influence is no error", "penalty",
                                   {k: {"penalty": k} for k in ((1e9, 1e10) if quick else (1e9, 1e10, 1e11, 1e12))})
@@ -72,7 +72,7 @@ def series(scene: str, quick: bool) -> dict[str, Series]:
         found["slip-smooth"] = Series("slip velocity [m/s] with the smooth transition", "slip_velocity", {
             e: coarse | {"slip_velocity": e, "friction_transition": "smooth"} for e in found["slip"].points})
         found["frictionless"] = Series("without friction on the mesh and with the steps of the series before, for the iterations", "friction_static", {
-            0.0: sized[1] | {"accuracy": coarse["accuracy"] / 4, "friction_static": 0.0, "friction_dynamic": 0.0}})
+            0.0: sized[1] | coarse | {"friction_static": 0.0, "friction_dynamic": 0.0}})
     return found
 
 

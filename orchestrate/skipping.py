@@ -29,7 +29,7 @@ SAVINGS = {                            # what is left out, and what the run does
 def main(argv: list[str]) -> int:
     """Prints the table and writes skipping.csv; 1 where an answer moves by more than the error of the run itself."""
     parser = argparse.ArgumentParser(prog="python -m orchestrate skipping", description=__doc__)
-    parser.add_argument("--accuracy", metavar="A", type=float, default=5e-3, help="of all runs (default: 5e-3)")
+    parser.add_argument("--accuracy", metavar="A", type=float, default=1e-3, help="of all runs (default: 1e-3)")
     parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/skipping", help="the result folder")
     options = parser.parse_args(argv)
     out = options.out.resolve()

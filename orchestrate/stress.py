@@ -18,7 +18,7 @@ from .run import shown
 
 AXES = {"law": ("svk", "neohookean"), "nu": (0.0, 0.3, 0.45, 0.49), "speed": (0.5, 4.0, 10.0), "penalty": (1e9, 1e10, 1e12),
         "exponent": (1.0, 1.5, 2.0), "dt": (0.0, 2e-5, 1e-4)}   # dt = 0: adaptive
-BASE = {"mesh_size": 0.0125, "contact_mesh_size": 0.005, "fields": 0}
+BASE = {"mesh_size": 0.0125, "contact_mesh_size": 0.005, "accuracy": 1.25e-3, "fields": 0}   # the accuracy: of the adaptive step
 CLOSED = 1e-8               # largest energy drift of a finished run
 LIMIT = 120.0               # seconds a run may take
 READ = ("energy_drift", "max_penetration", "wall_seconds", "newton_iterations", "steps")   # of the summaries

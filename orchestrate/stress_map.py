@@ -53,14 +53,14 @@ def sample(sets: int) -> list[study.Point]:
     points = []
     for _ in range(sets):
         point = {"law": pick("svk", "neohookean"), "nu": pick(0.0, 0.2, 0.3, 0.4, 0.45, 0.48, 0.49, 0.499), "speed": spread(0.5, 20),
-                 "penalty": spread(1e8, 1e13), "exponent": pick(1.0, 1.5, 2.0), "accuracy": pick(0.1, 0.04, 0.02), "degree": pick(1, 2, 2)}
+                 "penalty": spread(1e8, 1e13), "exponent": pick(1.0, 1.5, 2.0), "accuracy": pick(0.0125, 0.005, 0.0025), "degree": pick(1, 2, 2)}
         adaptive, dt = random.random() < 0.5, spread(5e-6, 1e-4)
         rubs, dynamic, more, epsilon = random.random() < 0.5, round(random.uniform(0.05, 1), 2), round(random.uniform(0, 0.4), 2), spread(1e-2, 1)
         angle, law = pick(90.0, 75.0, 60.0, 45.0, 30.0), pick("linear", "linear", "linear-printed", "sqrt", "tanh")
         point["dt"] = 0.0 if adaptive else dt
         if rubs:
             point |= {"angle": angle, "friction_static": round(dynamic + more, 2), "friction_dynamic": dynamic, "slip_velocity": epsilon,
-                      "regularization": law, "accuracy": 0.1}
+                      "regularization": law, "accuracy": 0.003}
         points.append(point)
     return points
 
