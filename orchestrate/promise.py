@@ -7,7 +7,7 @@ import pandas as pd
 
 from . import draws, estimate, study
 from .parameters import ROOT, defaults, whole
-from .run import read_scene, shown
+from .run import read_answers, read_scene, shown
 
 SEED, COUNT = 40, 40        # other scenes than those of the calibration
 FINER = 3                   # elements and steps of the reference are so many times smaller
@@ -48,7 +48,8 @@ def compare(points: list[study.Point], out: Path) -> pd.DataFrame:
         row = {"scene": ", ".join(map(str, point.values())), "seconds": run.get("cpu_seconds"), "finer seconds": reference.get("cpu_seconds"),
                "warnings": run.get("warnings", ""), "message": run.message or reference.message}
         if run.exit == reference.exit == 0:
-            apart = estimate.difference(run, reference, *estimate.scales(study.place(out, point)))
+            _, used, speed = read_answers(study.place(out, point))
+            apart = estimate.difference(run, reference, speed, used["radius"])
             row |= {name: apart[name] / asked for name in estimate.PROMISED}
             row["error"] = max(apart[name] for name in estimate.PROMISED) / asked
             row["estimated"] = run.get("estimated_error", float("nan")) / asked
