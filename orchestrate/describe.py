@@ -10,8 +10,9 @@ from .places import ROOT
 
 
 def describe(values: dict | None = None) -> dict:
-    """The answer of edp/describe.edp to the parameters in `values`: scripts, parameters (rows of the table), and of the scene
-    `used` (every parameter as used, SI units), half (is half the body enough?), touch_arc [rad], accuracy_made.
+    """The answer of edp/describe.edp to the parameters in `values`: scripts, parameters (rows of the table), columns (of
+    history.csv), summary (the numbers of summary.json), and of the scene `used` (every parameter as used, SI units), half (is
+    half the body enough?), touch_arc [rad], accuracy_made.
 
     BadInput where the script refuses the values; NotInstalled without FreeFem++.
     """

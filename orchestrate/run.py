@@ -14,7 +14,6 @@ import itertools
 import json
 import math
 import os
-import re
 import shutil
 import signal
 import subprocess
@@ -166,11 +165,6 @@ def read_answers(folder: Path) -> tuple[dict, dict[str, Value], float]:
     """Of a finished run the summary, the scene as used, and the largest speed of the centre of mass [m/s], which scales velocities."""
     history = read_history(folder)
     return read_summary(folder), read_scene(folder), float(np.hypot(history["vx"], history["vy"]).max())
-
-
-def summary_numbers() -> list[str]:
-    """The names of the numbers in summary.json, from the script that writes them."""
-    return re.findall(r'^  (?:entry|perhaps)\("(\w+)"', (ROOT / "edp/core/march.idp").read_text(), re.MULTILINE)
 
 
 def read_summary(folder: Path) -> dict:

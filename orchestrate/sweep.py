@@ -32,6 +32,7 @@ import numpy as np
 import pandas as pd
 
 from . import parameters, run, scene, study, sweep_figures
+from .describe import describe
 from .failure import BadInput, Busy, Failure, Unreadable
 from .parameters import ROOT, Value
 from .run import shown
@@ -176,7 +177,7 @@ def _sweep(path: Path, given: dict, text: str) -> Sweep:
     if _is(name, str, "scene", "a name") not in scene.built_in():
         name = os.path.join(path.parent.resolve(), name)
     _finer(refine, scene.load(name).values | base, points)
-    known = [f"{each}_end" if each in varied else each for each in run.summary_numbers()]
+    known = [f"{each}_end" if each in varied else each for each in describe()["summary"]]
     wanted = _is(given.get("collect", known), list, "collect", "a list of names")
     for each in wanted:
         if each not in known or wanted.count(each) > 1:

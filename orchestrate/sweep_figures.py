@@ -9,7 +9,6 @@ that are collected. The x of lines is logarithmic where its values span a decade
 """
 
 import itertools
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,14 +19,13 @@ import pandas as pd
 from matplotlib.ticker import LogLocator, NullLocator
 
 from . import parameters, report, study
+from .describe import describe
 from .failure import BadInput
 from .figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE
 from .run import read_history
 
 KINDS = {"lines": ("x", "y", "by"), "map": ("x", "y", "colour", "by", "level", "band"), "histories": ("y", "panel", "by")}
 WORDS = {"nu": "ν", "penalty": "k"}
-_HEADER = re.search(r'"(t,dt,.*?)" << endl;', (parameters.ROOT / "edp/core/record.idp").read_text(), re.S)[1]
-HISTORY_COLUMNS = re.findall(r"\w+", _HEADER)   # of history.csv, as the script writes them
 COLOURS, MARKERS = (BLUE, ORANGE, GREEN, PURPLE, GREY), "osd^v"
 
 
@@ -50,12 +48,13 @@ def check(given: dict, points: list[dict], collected: list[str]) -> dict:
     for key in ("by", "panel"):
         if figure[key] is not None:
             _name(key, figure[key], varied)
+    accepted = describe()["columns"] if kind == "histories" else collected
     for key in results:
         names = figure.get(key) if key == "y" else [figure.get(key)]
         if not isinstance(names, list) or not names:
-            raise BadInput(f"figure: {key} is missing (accepted: one or several of {', '.join(collected if kind == 'lines' else HISTORY_COLUMNS)})")
+            raise BadInput(f"figure: {key} is missing (accepted: one or several of {', '.join(accepted)})")
         for name in names:
-            _name(key, name, HISTORY_COLUMNS if kind == "histories" else collected)
+            _name(key, name, accepted)
     used = [figure[key] for key in (*axes, "by", "panel") if figure[key] is not None]
     if len(set(used)) < len(used) or len({tuple(point[name] for name in used) for point in points}) < len(points):
         raise BadInput(f"figure: {', '.join(used) or 'nothing'} does not tell the points apart (accepted: different names for "

@@ -27,7 +27,7 @@ SCENES = {   # flags of edp/disc-plane.edp, steps between checkpoints, rows of h
     "central-difference": (COARSE | dict(accuracy=0.2, angle=60, friction_static=0.5, friction_dynamic=0.4, slip_velocity=0.5,
                                          end_time=3e-4, integrator="central-difference"), 10, 200),
 }
-EFFORT = ("wall_seconds", "cpu_seconds", "peak_memory", "phase_seconds", "resumed_at", "provenance")
+EFFORT = ("wall_seconds", "cpu_seconds", "estimate_cpu_seconds", "peak_memory", "phase_seconds", "resumed_at", "provenance")
 
 
 def direct(flags: dict, out: Path) -> subprocess.Popen:
@@ -242,7 +242,7 @@ def test_checkpoint_of_nobody_knows_what(out):
 def test_restart_without_python(out, tmp_path, changed, words):
     """FreeFem++ itself refuses a checkpoint of another scene or mesh, none at all, or one without its history: exit code 14."""
     stage = out.with_name("out.part")
-    used = json.loads((stage / "checkpoint.json").read_text())
+    used = json.loads((stage / "checkpoint.json").read_text())["asked"]
     flags = {name: used[name] for name in parameters.names() if name in used}
     flags |= {"mesh": stage / "mesh.msh", "restart": stage / "checkpoint"} | changed
     flags = {name: value for name, value in flags.items() if value is not None}

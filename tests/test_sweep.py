@@ -16,6 +16,7 @@ import pytest
 
 from orchestrate import parameters, run, study, sweep, sweep_figures
 from orchestrate.__main__ import main
+from orchestrate.describe import describe
 from orchestrate.failure import BadInput
 from orchestrate.figures import plt
 from test_cli import call, is_alive, start, wait_for
@@ -47,7 +48,7 @@ def test_points_are_products_of_axes_and_zips(tmp_path):
         (v, n, law) for v in (1.0, 10.0, 100.0) for n, law in ((0.3, "svk"), (0.4, "neohookean"))]
     assert wanted.axes == ["speed", "nu", "law"] and wanted.scene == "disc-oblique" and wanted.base == {"fields": 0}
     assert wanted.runs == wanted.points + [point | {"accuracy": 0.001} for point in wanted.points]
-    assert wanted.collect == run.summary_numbers() and "contact_time" in wanted.collect
+    assert wanted.collect == describe()["summary"] and "contact_time" in wanted.collect
 
 
 @pytest.mark.parametrize("text, words", [
