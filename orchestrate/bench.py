@@ -15,7 +15,7 @@ from . import mesh, peers, scene, study, textbook
 from .describe import describe
 from .figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE
 from .parameters import ROOT
-from .run import read_history, shown
+from .run import read_history, result_folder, shown
 from .sweep_figures import distance
 
 LEVELS = (5.0, 1.0, 0.1)    # % of error
@@ -62,7 +62,7 @@ def main(argv: list[str]) -> int:
     for name in options.cases:
         if name not in CASES:
             parser.error(f"'{name}' is not known (accepted: {', '.join(CASES)})")
-    out, tables, pages = options.out.resolve(), [], []
+    out, tables, pages = result_folder(options.out), [], []
     cases = options.cases[:1] if options.quick else options.cases
     for name in cases:
         rows, bars = measure(name, out, options.quick)

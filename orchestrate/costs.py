@@ -16,7 +16,7 @@ from . import run, scene, study
 from .failure import Failure
 from .figures import BLUE, GREY, ORANGE, STYLE
 from .parameters import ROOT
-from .run import shown
+from .run import result_folder, shown
 
 PHASES = ("assembly", "factor", "solve", "contact", "output", "audit", "setup", "other")
 LIMIT = 900.0                                   # seconds a run may take
@@ -36,7 +36,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--quick", action="store_true", help="small meshes only")
     parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/costs", help="the result folder")
     options = parser.parse_args(argv)
-    out = options.out.resolve()
+    out = result_folder(options.out)
     rate = bandwidth()
     profiles = profile(out, rate, options.quick)
     study.save(profiles, out / "profile.csv")

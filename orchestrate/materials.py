@@ -7,7 +7,7 @@ import pandas as pd
 
 from . import draws, estimate, study
 from .parameters import ROOT
-from .run import read_scene, shown
+from .run import read_scene, result_folder, shown
 
 SPEEDS = (0.001, 0.01, 0.1)         # over sqrt(E/density)
 STIFFER, FINER = 10, 2
@@ -22,10 +22,10 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/materials", help="the result folder")
     parser.add_argument("--page", metavar="FILE", type=Path, help="also write what is printed as a page")
     options = parser.parse_args(argv)
-    table = compare(list(draws.MATERIALS)[:max(1, options.materials)], options.out.resolve())
+    table = compare(list(draws.MATERIALS)[:max(1, options.materials)], result_folder(options.out))
     study.save(table, options.out / "materials.csv")
     text = report(table)
-    print(f"{text}\n{shown(options.out.resolve())}/materials.csv")
+    print(f"{text}\n{shown(result_folder(options.out))}/materials.csv")
     study.page(options.page, "Twelve materials at three speeds", "make materials", text)
     return 0 if table.holds.all() else 1
 

@@ -20,7 +20,7 @@ import pandas as pd
 from . import parameters, run, scene, stick_slip, study, sweep, sweep_figures, verify
 from .failure import Failure, Unreadable
 from .parameters import ROOT, Value
-from .run import shown
+from .run import result_folder, shown
 
 AGREES, DIFFERS, PARTLY, OPEN = "agrees", "does not agree", "partly", "not yet in this program"
 COLOURS = {AGREES: "#009e73", DIFFERS: "#d55e00", PARTLY: "#b8860b", OPEN: "#777777"}
@@ -45,7 +45,7 @@ def main(argv: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="python -m orchestrate paper", description=__doc__)
     parser.add_argument("--results", metavar="DIR", type=Path, default=ROOT / "results", help="where the cases are (default: results)")
     options = parser.parse_args(argv)
-    results = Results(options.results.resolve())
+    results = Results(result_folder(options.results))
     results.require()
     findings = [(item, text, find(results)) for item, text, find in STATEMENTS]
     target = results.folder / "paper/report.html"

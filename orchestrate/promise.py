@@ -7,7 +7,7 @@ import pandas as pd
 
 from . import draws, estimate, study
 from .parameters import ROOT, defaults, whole
-from .run import read_answers, read_scene, shown
+from .run import read_answers, read_scene, result_folder, shown
 
 SEED, COUNT = 40, 40        # other scenes than those of the calibration
 FINER = 3                   # elements and steps of the reference are so many times smaller
@@ -27,11 +27,11 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--page", metavar="FILE", type=Path, help="also write what is printed as a page")
     options = parser.parse_args(argv)
     points = draws.draw(options.seed, max(1, options.scenes), options.hard)
-    table = compare(points, options.out.resolve())
+    table = compare(points, result_folder(options.out))
     study.save(table, options.out / "promise.csv")
     good = silent(table) == 0 if options.hard else kept(table)
     text = report(table) + f"; {'the requirement' if options.hard else 'the promise'} {'is kept' if good else 'IS NOT KEPT'}"
-    print(f"{text}\n{shown(options.out.resolve())}/promise.csv")
+    print(f"{text}\n{shown(result_folder(options.out))}/promise.csv")
     study.page(options.page, "Whether accuracy means what it says", "make promise", text)
     return 0 if good else 1
 

@@ -15,7 +15,7 @@ from .describe import describe
 from .failure import Failure
 from .figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE
 from .parameters import ROOT, defaults
-from .run import shown
+from .run import result_folder, shown
 
 ANSWERS = {                 # by scene; all but the last are promised to ASKED
     "disc-normal": ("contact_time", "impulse", "rebound_vy", "peak_force"),
@@ -83,7 +83,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--quick", action="store_true", help="few and coarse runs: a look at the tables, not at convergence")
     parser.add_argument("--out", metavar="DIR", type=Path, help="the result folder (default: results/refine/SCENE)")
     options = parser.parse_args(argv)
-    out, wanted = (options.out or ROOT / "results/refine" / options.scene).resolve(), series(options.scene, options.quick)
+    out, wanted = result_folder(options.out or ROOT / "results/refine" / options.scene), series(options.scene, options.quick)
     answers = ANSWERS[options.scene]
     tables = run_all(options.scene, wanted, out)
     best, error = converged(tables, answers)

@@ -7,7 +7,7 @@ import pandas as pd
 
 from . import draws, estimate, study
 from .parameters import ROOT, defaults
-from .run import read_scene, shown
+from .run import read_scene, result_folder, shown
 
 CASES = {"normal": {"law": "svk", "nu": 0.45}, "oblique": {"law": "neohookean", "nu": 0.45, "angle": 60.0, "friction_static": 0.7, "friction_dynamic": 0.5}}
 SPEED = {"normal": 8.0, "oblique": 12.0}            # m/s of the paper's disc
@@ -28,10 +28,10 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/scaling", help="the result folder")
     parser.add_argument("--page", metavar="FILE", type=Path, help="also write what is printed as a page")
     options = parser.parse_args(argv)
-    table = compare(options.out.resolve(), options.accuracy)
+    table = compare(result_folder(options.out), options.accuracy)
     study.save(table, options.out / "scaling.csv")
     text = report(table)
-    print(f"{text}\n{shown(options.out.resolve())}/scaling.csv")
+    print(f"{text}\n{shown(result_folder(options.out))}/scaling.csv")
     study.page(options.page, "One impact in many units and materials", "make scaling", text)
     return 0 if table.holds.all() else 1
 

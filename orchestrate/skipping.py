@@ -8,7 +8,7 @@ import pandas as pd
 from . import study
 from .failure import Failure
 from .parameters import ROOT
-from .run import read_history, shown
+from .run import read_history, result_folder, shown
 
 BASE = {"height": 0.05, "fields": 0}   # a drop from 5 cm above the plane, so that there is a flight
 LIMIT = 600.0                          # seconds a run may take
@@ -32,7 +32,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--accuracy", metavar="A", type=float, default=1e-3, help="of all runs (default: 1e-3)")
     parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/skipping", help="the result folder")
     options = parser.parse_args(argv)
-    out = options.out.resolve()
+    out = result_folder(options.out)
     rows = measure(out, options.accuracy)
     study.save(rows, out / "skipping.csv")
     print(f"disc-normal from {100 * BASE['height']:g} cm above the plane, accuracy {options.accuracy:g}; processor time, the fastest of {RUNS}, "

@@ -15,7 +15,7 @@ from . import study
 from .failure import Unreadable
 from .figures import BLACK, LAWS, STYLE
 from .parameters import ROOT
-from .run import read_history, shown
+from .run import read_history, result_folder, shown
 
 AXES = {"slip_velocity": (0.03, 0.3, 1.0, 3.0), "penalty": (1e8, 1e9, 1e10), "nu": (0.3, 0.4, 0.45), "angle": (60.0, 30.0)}
 LAW = {"svk": {"degree": 1, "mesh_size": 0.01, "contact_mesh_size": 0.005, "breakdown": "continue", "accuracy": 0.0025},   # as the paper ran it
@@ -33,7 +33,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--quick", action="store_true", help="a corner of the grid")
     parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/stick-slip", help="the result folder")
     options = parser.parse_args(argv)
-    out = options.out.resolve()
+    out = result_folder(options.out)
     axes = {name: values[-2:] for name, values in AXES.items()} if options.quick else AXES
     points = grid(axes)
     rows = study.study(points, out, BASE, LIMIT, SCENE)

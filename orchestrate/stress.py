@@ -14,7 +14,7 @@ from matplotlib.colors import LogNorm
 from . import study
 from .figures import LAWS, STYLE
 from .parameters import ROOT, whole
-from .run import shown
+from .run import result_folder, shown
 
 AXES = {"law": ("svk", "neohookean"), "nu": (0.0, 0.3, 0.45, 0.49), "speed": (0.5, 4.0, 10.0), "penalty": (1e9, 1e10, 1e12),
         "exponent": (1.0, 1.5, 2.0), "dt": (0.0, 2e-5, 1e-4)}   # dt = 0: adaptive
@@ -36,13 +36,13 @@ def main(argv: list[str]) -> int:
     points = [dict(zip(AXES, values)) for values in itertools.product(*AXES.values())]
     if options.quick is not None:
         points = random.Random(0).sample(points, min(max(options.quick, 1), len(points)))
-    rows = study.study(points, options.out.resolve(), BASE, LIMIT)
+    rows = study.study(points, result_folder(options.out), BASE, LIMIT)
     rows = rows.reindex(columns=rows.columns.union(READ, sort=False))   # also where every run crashed
     rows["outcome"] = rows.apply(outcome, axis=1)
     study.save(rows, options.out / "stress.csv")
     draw(rows, options.out / "stress.png")
     print(report(rows))
-    print(f"\n{shown(options.out.resolve())}/stress.{{csv,png}}")
+    print(f"\n{shown(result_folder(options.out))}/stress.{{csv,png}}")
     return 0 if holds(rows).all() else 1
 
 

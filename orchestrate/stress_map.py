@@ -10,7 +10,7 @@ import pandas as pd
 from . import stress, study
 from .figures import BLUE, ORANGE, PURPLE, STYLE
 from .parameters import ROOT, whole
-from .run import shown
+from .run import result_folder, shown
 
 SEED, SETS = 2024, 300
 LIMIT = 300.0               # seconds a run may take
@@ -30,7 +30,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--sets", metavar="N", type=whole, default=SETS, help=f"the first N of them (default: {SETS})")
     parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/stress-map", help="the result folder")
     options = parser.parse_args(argv)
-    out = options.out.resolve()
+    out = result_folder(options.out)
     points = sample(max(1, options.sets))
     rows = study.study(points, out, {"fields": 0}, LIMIT)
     rows = rows.reindex(columns=rows.columns.union([*stress.READ, "contact_intervals", "min_jacobian", "ellipticity_lost_time"], sort=False))

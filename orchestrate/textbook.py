@@ -10,7 +10,7 @@ import pandas as pd
 from . import freefem, mesh, run, scene, study
 from .failure import Failure
 from .parameters import ROOT, whole
-from .run import shown
+from .run import result_folder, shown
 
 DT = 2e-5                   # s
 OURS = 3                    # runs of the program at least: they are short, and a busy neighbour shows
@@ -39,7 +39,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--quick", action="store_true", help="a tiny case: a look at the table, not at the ratio")
     parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/textbook", help="the result folder")
     options = parser.parse_args(argv)
-    out = options.out.resolve()
+    out = result_folder(options.out)
     runs = max(1, options.runs)
     rows = pd.DataFrame([compare(case, out, runs) for case in (QUICK if options.quick else CASES[:1] if options.small else CASES)])
     study.save(rows, out / "textbook.csv")

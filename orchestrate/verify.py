@@ -25,7 +25,7 @@ from .figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE
 from .measure import disc, measure
 from .parameters import ROOT
 from .report import REFERENCE
-from .run import shown
+from .run import result_folder, shown
 
 COLUMNS = ["case", "what", "size", "value", "expected", "error", "tolerance"]   # of verify.csv; a row with a tolerance is judged
 CONVERGES = "order of the largest error"   # asked for above 0, between the coarsest and the finest size
@@ -286,7 +286,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/verify", help="the result folder")
     parser.add_argument("--force", action="store_true", help="run again what the same code has left")
     options = parser.parse_args(argv)
-    out = options.out.resolve()
+    out = result_folder(options.out)
     reused = there(out) and not options.force
     frame = pd.read_csv(out / "verify.csv", keep_default_na=False, na_values=[""]) if reused else run_all(out)
     passed = bool(judged(frame)["pass"].all())

@@ -1,6 +1,7 @@
 """The command line: exit codes, one-line errors, interruption, and that `make` lists its targets."""
 
 import errno
+import importlib
 import os
 import pty
 import re
@@ -15,6 +16,7 @@ import pytest
 
 from orchestrate import parameters, run
 from orchestrate.__main__ import main
+from orchestrate.failure import Unreadable
 
 ROOT = parameters.ROOT
 
@@ -167,3 +169,14 @@ def test_a_full_disk_is_one_line(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(signal, "signal", lambda *_: None)        # pytest keeps its handlers
     code, error = main(["run", "disc-normal", "--out", str(tmp_path / "out")]), capsys.readouterr().err
     assert code == 14 and error.count("\n") == 1 and "No space left on device" in error and "--out" in error
+
+
+@pytest.mark.parametrize("command", ["promise", "scaling", "materials", "bench", "costs", "skipping", "stress", "stress-map", "textbook", "verify", "refine",
+                                     "stick-slip"])
+def test_a_loop_of_links_is_no_folder(tmp_path, command):
+    """A result folder behind a loop of links is exit code 14 in one line, for every study."""
+    (tmp_path / "loop").symlink_to(tmp_path / "pool")
+    (tmp_path / "pool").symlink_to(tmp_path / "loop")
+    with pytest.raises(Unreadable, match="cannot be made") as error:
+        importlib.import_module(f"orchestrate.{command.replace('-', '_')}").main(["--out", str(tmp_path / "loop/out")])
+    assert error.value.code == 14
