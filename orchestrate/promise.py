@@ -49,7 +49,7 @@ def compare(points: list[study.Point], out: Path) -> pd.DataFrame:
                "warnings": run.get("warnings", ""), "message": run.message or reference.message}
         if run.exit == reference.exit == 0:
             _, used, speed = read_answers(study.place(out, point))
-            apart = estimate.difference(run, reference, speed, used["radius"])
+            apart = estimate.difference(reference, run, speed, used["radius"])
             row |= {name: apart[name] / asked for name in estimate.PROMISED}
             row["error"] = max(apart[name] for name in estimate.PROMISED) / asked
             row["estimated"] = run.get("estimated_error", float("nan")) / asked

@@ -66,7 +66,7 @@ def compare(out: Path, accuracy: float) -> pd.DataFrame:
             raise study.Failure(f"scaling: {runs.message[runs.exit != 0].iloc[0]}", int(runs.exit.max()))
         answers = [dimensionless(run, read_scene(study.place(out / case, point))) for (_, run), point in zip(runs.iterrows(), worlds.values())]
         speed = SPEED[case] / draws.bar_speed(PAPER["young"], PAPER["density"])
-        apart = [estimate.difference(answer, answers[0], speed, 1.0) for answer in answers]
+        apart = [estimate.difference(answers[0], answer, speed, 1.0) for answer in answers]
         scatter = max(apart[-1][name] for name in ANSWERS), max(apart[-2][name] for name in ANSWERS)
         for name, found, (_, run) in zip(worlds, apart, runs.iterrows()):
             worst = max(found[answer] for answer in ANSWERS)

@@ -17,6 +17,7 @@ def fake(tmp_path, monkeypatch):
     program.write_text(f'#!/bin/sh\nexec {sys.executable} {HERE / "fake_freefem.py"} "$@"\n')
     program.chmod(0o755)
     monkeypatch.setenv("FREEFEM", str(program))
+    monkeypatch.setenv("FAKE_REAL", fake_freefem.REAL)
     monkeypatch.setenv("FAKE_COUNT", str(count))
 
     def choose(mode: str) -> None:

@@ -15,6 +15,7 @@ from pathlib import Path
 
 COLUMNS = ("t dt normal_force friction_force kinetic elastic contact friction_work external_work balance momentum_x momentum_y "
            "angular_momentum vx vy spin max_penetration contact_size sliding_fraction min_jacobian min_stretch newton_iterations min_ellipticity")
+REAL = os.environ.get("FAKE_REAL") or shutil.which("FreeFem++")   # what scenes are made of is no physics: it says that
 ENERGY, MASS, SPEED, CONTACT = 432.8, 13.525, 8.0, 4.67e-3
 
 
@@ -82,11 +83,12 @@ def _write_vtu(path: Path, points, cells, displacement, stress) -> None:
         + "</PointData>\n</Piece></UnstructuredGrid></VTKFile>\n")
 
 
-def write_scene(folder: Path, flags: list[str]) -> None:
+def write_scene(folder: Path, values: dict[str, str]) -> None:
     """scene.toml as the scripts write it, every parameter as used; the snapshots are of half a disc."""
-    answer = subprocess.run([shutil.which("FreeFem++"), "-nw", "-ne", "-v", "0", "edp/describe.edp", *flags], capture_output=True, text=True)
+    flags = [word for name, text in values.items() for word in (f"-{name}", text)]
+    answer = subprocess.run([REAL, "-nw", "-ne", "-v", "0", "edp/describe.edp", *flags], capture_output=True, text=True)
     used = json.loads(answer.stdout)["used"] | {"symmetry": "half"}
-    (folder / "scene.toml").write_text("".join(f"{name} = {json.dumps(value)}\n" for name, value in used.items()))
+    (folder / "scene.toml").write_text('script = "disc-plane"\n' + "".join(f"{name} = {json.dumps(value)}\n" for name, value in used.items()))
 
 
 def summary(status: str = "ok", message: str = "") -> dict:
@@ -106,8 +108,7 @@ def main(arguments: list[str]) -> int:
         print("Load error: Element_QF" if mode == "noplugin" else "version 4.6" if mode == "old" else "version 4.9")
         return 2 if mode == "noplugin" else 0
     if any(word.endswith("describe.edp") for word in arguments):
-        real = shutil.which("FreeFem++")             # what scenes are made of is no physics
-        os.execv(real, [real, *arguments])
+        os.execv(REAL, [REAL, *arguments])
     if count := os.environ.get("FAKE_COUNT"):
         with open(count, "a") as file:
             print(os.getpid(), file=file)
@@ -116,7 +117,7 @@ def main(arguments: list[str]) -> int:
     values = {name[1:]: text for name, text in zip(flags[::2], flags[1::2])}
     folder = Path(values.pop("out"))
     Path(values.pop("mesh")).read_text()
-    write_scene(folder, [word for name, text in values.items() for word in (f"-{name}", text)])
+    write_scene(folder, values)
     for k in range(1, 4):
         print(f"progress {k / 4} t={k * 1e-3} steps={k * 50}", flush=True)
     if mode in ("slow", "brief"):

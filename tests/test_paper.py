@@ -107,7 +107,7 @@ def test_maxima_must_stand_out():
 
 def test_page_holds_everything_itself(tmp_path):
     """Pictures inside, no link to other places, every statement with its verdict, parameters and provenance of its runs."""
-    fake_freefem.write_scene(tmp_path, dict(script="disc-plane", law="svk", nu="0.45", speed="7"))
+    fake_freefem.write_scene(tmp_path, dict(law="svk", nu="0.45", speed="7"))
     (tmp_path / "summary.json").write_text(json.dumps({"provenance": dict(git="abc", code="def", freefem="4.9", gmsh="4", mesh="0123")}))
     (tmp_path / "a.png").write_bytes(b"\x89PNG picture")
     text = paper.page([("Figure 1", "a < b", paper.Finding(AGREES, "2 & 3", [tmp_path / "a.png"], [tmp_path])),
@@ -150,5 +150,5 @@ def test_values_are_listed_as_numbers(tmp_path):
     """The range of what was varied goes from the smallest to the largest number."""
     for k, speed in enumerate((0.5, 9.9, 12.1, 1, 2, 3, 4, 5, 6)):
         (tmp_path / str(k)).mkdir()
-        fake_freefem.write_scene(tmp_path / str(k), dict(script="disc-plane", speed=str(speed)))
+        fake_freefem.write_scene(tmp_path / str(k), dict(speed=str(speed)))
     assert "speed: 9 values from 0.5 to 12.1" in paper._provenance(sorted(tmp_path.iterdir()))

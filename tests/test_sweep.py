@@ -217,7 +217,7 @@ def test_another_sweep_does_not_come_in_between(fake, tmp_path, monkeypatch, cap
 
 def test_error_bars_are_what_refining_changes(tmp_path):
     """With [refine] the number is that of the refined run, its error the difference to the plain one."""
-    text = "collect = ['impulse', 'dofs']\n[set]\ndegree = 1\nend_time = 1e-3\naccuracy = 0.1\n[product]\nspeed = [4, 8]\n[refine]\naccuracy = 0.04\n"
+    text = "collect = ['impulse', 'dofs']\n[set]\ndegree = 1\nend_time = 1e-3\naccuracy = 0.02\n[product]\nspeed = [4, 8]\n[refine]\naccuracy = 0.005\n"
     wanted = sweep.load(str(write(tmp_path, text)))
     rows = sweep.collect(wanted, tmp_path / "out")
     plain, fine = (study.study([point | extra for point in wanted.points], tmp_path / "out", wanted.base, 60.0) for extra in ({}, wanted.refine))

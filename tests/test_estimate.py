@@ -1,0 +1,162 @@
+"""The error that a run estimates of itself: differences of a pair, estimates from them, and finer runs until they are small enough."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from orchestrate import estimate, parameters
+from orchestrate.failure import Failure
+
+ANSWERS = {"impulse": 2.0, "rebound_vx": 1.0, "rebound_vy": 3.0, "spin": -8.0, "energy_initial": 5.0, "energy_final": 4.5, "vibration_energy": 1.0,
+           "friction_work": 0.5, "thresholded_contact_time": 3.9e-3, "contact_time": 4e-3, "peak_force": 7e4}
+START = {"mesh_size": 0.016, "contact_mesh_size": 0.003, "dt": 0.0}    # of the first run of the fake disc
+
+
+# ---- what two runs differ by
+
+@pytest.mark.parametrize("change, found", [
+    ({"impulse": 2.1}, {"impulse": 0.05}), ({"rebound_vx": 1.3, "rebound_vy": 2.6}, {"rebound": 0.05}), ({"spin": -10.0}, {"rebound_spin": 0.1}),
+    ({"energy_final": 4.25}, {"energy": 0.05}), ({"vibration_energy": 1.5}, {"energy": 0.1}),
+    ({"friction_work": 0.75}, {"friction_work": 0.05, estimate.OF_ITSELF: 0.5}), ({"contact_time": 5e-3}, {"contact_time": 0.25}),
+    ({"thresholded_contact_time": 3.51e-3}, {"thresholded_contact_time": 0.1}), ({"peak_force": 7.7e4}, {"peak_force": 0.1}), ({}, {})])
+def test_each_answer_differs_over_its_scale(change, found):
+    """Velocities over 10 m/s, spin times a radius of 0.5 m over that, energies over that at the start, the rest over itself; nothing else moves."""
+    apart = estimate.difference(ANSWERS, ANSWERS | change, 10.0, 0.5)
+    assert apart == pytest.approx(dict.fromkeys(apart, 0.0) | found) and set(found) <= set(apart)
+
+
+def test_answers_that_are_not_there_do_not_differ():
+    """A flight has neither contact times nor a force; a table has nan for them."""
+    flight = ANSWERS | {"contact_time": None, "thresholded_contact_time": float("nan"), "peak_force": 0.0, "impulse": 0.0}
+    assert not any(estimate.difference(flight, flight, 10.0, 0.5).values())
+
+
+# ---- estimates
+
+def usual(times: float) -> dict[str, float]:
+    return {name: times * value for name, value in estimate.USUAL.items()} | {estimate.OF_ITSELF: times}
+
+
+def test_an_estimate_is_no_less_than_the_difference_nor_fooled_by_chance():
+    """What is small by chance is taken for a share of what is usual beside the others; what does not differ at all has no error."""
+    by_chance = usual(1.0) | {"rebound": 1e-9}
+    found = estimate.errors(by_chance)
+    assert all(found[name] >= value for name, value in by_chance.items())
+    assert found["rebound"] == pytest.approx(estimate.SHARE * 5 / 6 * estimate.USUAL["rebound"], rel=1e-6) and found["impulse"] == usual(1.0)["impulse"]
+    assert estimate.errors(dict.fromkeys(by_chance, 0.0)) == dict.fromkeys(found, 0.0)
+    doubled = estimate.errors({name: 2 * value for name, value in by_chance.items()})
+    assert doubled == pytest.approx({name: 2 * value for name, value in found.items()})
+
+
+def test_friction_work_of_itself_is_raised_as_friction_work_is():
+    """Both are one difference over two scales."""
+    found = estimate.errors(usual(1.0) | {"friction_work": 1e-4, estimate.OF_ITSELF: 3e-4})
+    assert found[estimate.OF_ITSELF] == pytest.approx(3 * found["friction_work"]) and found["friction_work"] > 1e-4
+
+
+@pytest.mark.parametrize("name, times, also, named", [
+    ("impulse", 1.1, "promised", True), ("impulse", 0.9, "promised", False), ("thresholded_contact_time", 1.1, "promised", True),
+    ("peak_force", 1.9, "promised", False), ("peak_force", 2.1, "promised", True), ("peak_force", 1.1, "peak_force", True),
+    ("contact_time", 2.1, "peak_force", True), (estimate.OF_ITSELF, 9.0, "promised", False), (estimate.OF_ITSELF, 1.1, "friction_work", True)])
+def test_answers_above_what_is_asked_are_named(name, times, also, named):
+    """One sentence with name and per cent: promised answers and the one asked for above the accuracy, others above twice that."""
+    estimated = dict.fromkeys([*estimate.USUAL, estimate.OF_ITSELF], 0.0) | {name: times * 0.01}
+    sentences = estimate.excess(estimated, 0.01, also)
+    assert len(sentences) == named and all(f"{name.replace('_', ' ')} {times:.2g} %" in sentence and "the 1 % that" in sentence for sentence in sentences)
+
+
+# ---- the runs
+
+class Disc:
+    """A disc whose impulse is off by `error` at the sizes START, quadratic in them. It fails with `code` at the factors `fails` of them."""
+
+    def __init__(self, stage: Path, error: float, fails=(), code: int = 11, lost: float | None = None, **given):
+        self.error, self.fails, self.code, self.lost, self.asked = error, fails, code, lost, []
+        self.values = parameters.defaults() | {"fields": 5, "accuracy": 0.01} | given
+        self.stage = stage
+        self.solve(self.values, stage)
+        (stage / "checkpoint.json").write_text("what the run was asked for")
+
+    def solve(self, values: dict, folder: Path) -> None:
+        self.asked.append(values)
+        used = values | {name: values[name] or START[name] for name in START} | {"penalty": 1e10, "slip_velocity": 0.1, "friction_dynamic": 0.0}
+        factor = (values["accuracy"] / self.values["accuracy"])**0.5      # on a mesh file the step alone
+        if any(factor == pytest.approx(each) for each in self.fails):
+            raise Failure(f"no step at {factor:.2f}", self.code)
+        folder.mkdir(exist_ok=True)
+        summary = ANSWERS | {"impulse": 2 * (1 + self.error * factor**2), "cpu_seconds": 1.0, "ellipticity_lost_time": self.lost}
+        (folder / "result.json").write_text(json.dumps([summary, used, 10.0]))
+        (folder / f"of {factor:.2f}").touch()
+
+    def settle(self, own_mesh: bool = True) -> dict:
+        return estimate.settle(self.stage, self.values, own_mesh, self.solve, lambda folder: json.loads((folder / "result.json").read_text()))
+
+    def factors(self) -> list[float]:
+        """Sizes of the runs, over START."""
+        return [(values["mesh_size"] or START["mesh_size"]) / START["mesh_size"] for values in self.asked]
+
+
+ROOT2 = estimate.COARSER
+
+
+def test_an_estimate_below_the_accuracy_is_one_coarser_run(tmp_path):
+    """Elements and steps are 1.4 times as large, the error double, so that the difference is the error; nothing else stays in the folder."""
+    disc = Disc(tmp_path, 0.006)
+    found = disc.settle()
+    assert disc.factors() == pytest.approx([1, ROOT2]) and disc.asked[1]["fields"] == 0
+    assert found["estimated_error"]["impulse"] == pytest.approx(0.006, rel=0.02) and found["refinements"] == 0 and found["warnings"] == []
+    assert found["estimate_cpu_seconds"] == 1 and {path.name for path in tmp_path.iterdir()} == {"result.json", "of 1.00", "checkpoint.json"}
+
+
+def test_finer_runs_follow_until_it_is(tmp_path):
+    """3 % halves twice; the finest run takes the folder, with its fields, each former one is the coarser of the next pair."""
+    disc = Disc(tmp_path, 0.03)
+    found = disc.settle()
+    assert disc.factors() == pytest.approx([1, ROOT2, 1 / ROOT2, 1 / 2])
+    assert [values["fields"] for values in disc.asked] == [5, 0, 5, 5]
+    assert found["estimated_error"]["impulse"] == pytest.approx(0.0075, rel=0.02) and found["refinements"] == 2 and found["warnings"] == []
+    assert found["estimate_cpu_seconds"] == 3
+    assert {path.name for path in tmp_path.iterdir()} == {"result.json", "of 0.50", "checkpoint.json"}
+    assert (tmp_path / "checkpoint.json").read_text() == "what the run was asked for"
+
+
+@pytest.mark.parametrize("given", [{"mesh_size": 0.016}, {"contact_mesh_size": 0.003}, {"dt": 1e-5}, {"mesh": "own"}, {"lost": 1e-3}, {"error": 3.0}])
+def test_what_stays_above_is_said(tmp_path, given):
+    """Sizes or steps that are given, a mesh file, a material that lost its ellipticity are not refined; nothing is more than three times."""
+    own_mesh = not given.pop("mesh", None)
+    disc = Disc(tmp_path, given.pop("error", 0.03), **given)
+    found = disc.settle(own_mesh)
+    assert found["refinements"] == (estimate.MOST if disc.error > 1 else 0) == len(disc.asked) - 2
+    assert len(found["warnings"]) == 1 and "above the 1 % that are asked for: impulse" in found["warnings"][0]
+    assert found["estimated_error"]["impulse"] > 0.01
+
+
+@pytest.mark.parametrize("code", [11, 12])
+def test_a_coarser_run_that_fails_is_no_estimate(tmp_path, code):
+    """The run stays, its error is not known, and a sentence says why; other failures are failures of the run."""
+    found = Disc(tmp_path / "a", 0.03, fails=[ROOT2], code=code).settle()
+    assert found["estimated_error"] is None and found["refinements"] == 0 and "no step at 1.41" in found["warnings"][0]
+    with pytest.raises(Failure, match="no step"):
+        Disc(tmp_path / "b", 0.03, fails=[ROOT2], code=14).settle()
+
+
+def test_a_finer_run_that_fails_leaves_the_run(tmp_path):
+    """What is known stays, with its estimate; the sentences say that it is above what was asked, and what became of the finer one."""
+    found = Disc(tmp_path, 0.03, fails=[1 / 2]).settle()
+    assert found["refinements"] == 1 and found["estimated_error"]["impulse"] == pytest.approx(0.015, rel=0.02)
+    assert len(found["warnings"]) == 2 and "impulse 1.5 %" in found["warnings"][0] and "no step at 0.50" in found["warnings"][1]
+    assert {path.name for path in tmp_path.iterdir()} == {"result.json", "of 0.71", "checkpoint.json"}
+
+
+def test_another_run_is_the_same_body_on_the_same_plane():
+    """Sizes and steps change, and the accuracy with their square; what the contact is made of stays as it was used. On a mesh file only
+    the step changes; no element is larger than the radius."""
+    values = parameters.defaults() | {"dt": 1e-5}
+    used = values | {"mesh_size": 0.04, "contact_mesh_size": 0.003, "penalty": 1e10, "slip_velocity": 0.1, "friction_dynamic": 0.3}
+    twice = estimate.other(values, used, 2.0)
+    assert twice == values | {"mesh_size": 0.05, "contact_mesh_size": 0.006, "dt": 2e-5, "accuracy": 4 * values["accuracy"], "penalty": 1e10,
+                              "slip_velocity": 0.1, "friction_dynamic": 0.3, "fields": 0}
+    assert estimate.other(values, used, 2.0, own_mesh=False) == twice | {"mesh_size": 0, "contact_mesh_size": 0}
+    assert estimate.other(values | {"dt": 0.0}, used | {"dt": 0.0}, 2.0)["dt"] == 0
+    assert estimate.other(values, used, 100.0)["accuracy"] == estimate.LARGEST
