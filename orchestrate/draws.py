@@ -25,6 +25,16 @@ def draw(seed: int, count: int, hard: bool = False) -> list[Point]:
     return [_scene(chance, hard) for _ in range(count)]
 
 
+def words(point: Point) -> str:
+    """A scene as a line of a table reads it best: law, material, speed over c, what is special."""
+    named = {value[:2]: name for name, value in MATERIALS.items()}
+    told = {"law", "young", "density", "nu", "speed", "friction_static", "friction_dynamic"}
+    parts = [point["law"], named[point["young"], point["density"]], f"v/c {point['speed'] / bar_speed(point['young'], point['density']):.2g}"]
+    if "friction_static" in point:
+        parts.append(f"friction {point['friction_static']:g}, {point['friction_dynamic']:g}")
+    return ", ".join(parts + [f"{name} {value:g}" if isinstance(value, float) else f"{name} {value}" for name, value in point.items() if name not in told])
+
+
 def _scene(chance: random.Random, hard: bool) -> Point:
     young, density, nu = chance.choice(list(MATERIALS.values()))
     law = chance.choice(list(FASTEST))
