@@ -8,7 +8,7 @@ import signal
 import subprocess
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 
 from .failure import NotInstalled
@@ -32,12 +32,19 @@ class FreeFem:
 
 
 def find() -> FreeFem:
-    """$FREEFEM or FreeFem++ on the PATH, probed; NotInstalled when missing, too old or without its plugins."""
-    wanted = os.environ.get("FREEFEM", "FreeFem++")
+    """$FREEFEM or FreeFem++ on the PATH, probed once; NotInstalled when missing, too old or without its plugins."""
+    return _find(tuple(sorted(os.environ.items())))
+
+
+@cache
+def _find(variables: tuple[tuple[str, str], ...]) -> FreeFem:
+    """The same in an environment."""
+    environment = dict(variables)
+    wanted = environment.get("FREEFEM", "FreeFem++")
     command = shutil.which(wanted)
     if not command:
         raise NotInstalled(f"{wanted} not found; {HOW}")
-    environment = os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}   # one process a core
+    environment |= {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}   # one process a core
     version = _probe(command, environment)
     if not version and "FF_LOADPATH" not in environment:
         environment["FF_LOADPATH"] = DEBIAN_PLUGINS
