@@ -162,9 +162,11 @@ def read_scene(folder: Path) -> dict[str, Value]:
 
 
 def read_answers(folder: Path) -> tuple[dict, dict[str, Value], float]:
-    """Of a finished run the summary, the scene as used, and the largest speed of the centre of mass [m/s], which scales velocities."""
+    """Of a finished run the summary, with largest_energy of its history [J/m], the scene as used, and the largest speed of the centre of
+    mass [m/s]: what energies and velocities are measured by."""
     history = read_history(folder)
-    return read_summary(folder), read_scene(folder), float(np.hypot(history["vx"], history["vy"]).max())
+    energy = float((history["kinetic"] + history["elastic"] + history["contact"]).max())
+    return read_summary(folder) | {"largest_energy": energy}, read_scene(folder), float(np.hypot(history["vx"], history["vy"]).max())
 
 
 def read_summary(folder: Path) -> dict:

@@ -80,7 +80,7 @@ def test_promise_compares_with_the_finer_run(tmp_path, monkeypatch, change, erro
     monkeypatch.setattr(study, "study", runs)
     monkeypatch.setattr(promise, "read_scene", lambda _: used())
     monkeypatch.setattr(promise, "read_answers", lambda _: ({}, used(), 8.0))
-    table = promise.compare([{"speed": 8.0}], tmp_path)
+    table = promise.compare([draws.draw(1, 1)[0] | {"speed": 8.0}], tmp_path)
     assert table.error[0] == pytest.approx(error, rel=0.01) and table.estimated[0] == pytest.approx(1e-3 / 5e-3)
 
 
