@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 
@@ -11,6 +12,7 @@ import pytest
 
 from orchestrate import freefem, parameters, report, run, scene, vtu
 from orchestrate.describe import describe
+from orchestrate.failure import NotInstalled
 
 COLUMNS = ("t dt normal_force friction_force kinetic elastic contact friction_work external_work balance momentum_x momentum_y "
            "vx vy spin max_penetration contact_size sliding_fraction min_jacobian min_stretch newton_iterations min_ellipticity").split()
@@ -228,16 +230,38 @@ def test_folder_that_cannot_be_read_is_14(tmp_path):
 
 # ---- sizes
 
-@pytest.mark.parametrize("rubs", [False, True])
-def test_both_ways_choose_the_same_sizes(tmp_path, rubs):
-    """Mesh sizes that follow from the accuracy are the same from Python and in a direct run, without friction and with it (finer)."""
-    given = {"friction_static": 0.3, "friction_dynamic": 0.3} if rubs else {}
-    flags = [word for name, value in given.items() for word in (f"-{name}", str(value))]
-    assert direct("-accuracy", "0.1", "-end_time", "1e-6", *flags, "-out", str(tmp_path)).returncode == 0
-    found = scene.load(str(tmp_path / "scene.toml")).values
-    wanted = describe(given | {"accuracy": 0.1})["used"]
-    for name in ("mesh_size", "contact_mesh_size", "penalty", "slip_velocity", "friction_dynamic"):
-        assert found[name] == wanted[name], name
+@pytest.mark.parametrize("given", [{}, {"friction_static": 0.3}, {"angle": 60, "exponent": 1.5, "spin": 20}, {"accuracy_of": "peak_force", "young": 2.1e11, "density": 7850},
+                                   {"mesh_size": 0.02}, {"speed": 0, "gravity": 9.81, "height": 0.01, "penalty": 1e9}], ids=lambda given: ",".join(given) or "default")
+def test_both_ways_choose_the_same_scene(tmp_path, given):
+    """Every parameter of a direct run, those that were left to the program too, is what the scripts describe to Python; a run of the
+    recorded scene is that scene."""
+    given = given | {"accuracy": 0.1, "end_time": 1e-6}
+    assert direct(*(word for name, value in given.items() for word in (f"-{name}", str(value))), "-out", str(tmp_path)).returncode == 0
+    found, told = run.read_scene(tmp_path), describe(given)
+    assert found == {"script": "disc-plane"} | told["used"] and 0 not in (found["mesh_size"], found["contact_mesh_size"])
+    assert "auto" not in found.values() and told["half"] == (found["symmetry"] == "half")
+    assert describe(scene.load(str(tmp_path / "scene.toml")).values)["used"] == told["used"]
+
+
+def test_what_the_scripts_refuse_is_bad_input():
+    """Their own line reaches Python; what they are not told, they do not say."""
+    with pytest.raises(parameters.BadInput) as error:
+        describe({"mesh_size": 0.06})
+    assert str(error.value) == "mesh_size: 0.06 is larger than the radius 0.05" and error.value.code == 10
+    assert describe()["used"]["mesh_size"] == describe({})["used"]["mesh_size"] <= 0.025
+
+
+def test_no_description_without_freefem(tmp_path, monkeypatch):
+    """Exit code 13, whether it is missing or does not run the script."""
+    monkeypatch.setenv("FREEFEM", "/no/such/FreeFem++")
+    with pytest.raises(NotInstalled, match="not found"):
+        describe({"speed": 1.25})
+    program = tmp_path / "FreeFem++"
+    program.write_text(f'#!/bin/sh\ncase "$*" in *describe*) exit 8;; esac\nexec {shutil.which("FreeFem++")} "$@"\n')
+    program.chmod(0o755)
+    monkeypatch.setenv("FREEFEM", str(program))
+    with pytest.raises(NotInstalled, match=r"does not run edp/describe.edp \(exit code 8\)"):
+        describe({"speed": 1.25})
 
 
 # ---- chatter

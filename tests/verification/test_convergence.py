@@ -5,7 +5,7 @@ import math
 import pytest
 
 LAWS = ["svk", "neohookean"]
-BODY = dict(young=10, density=1, nu=0.3)
+BODY = dict(young=10, density=1, nu=0.3, radius=1)
 
 
 def order(coarse: float, fine: float) -> float:
