@@ -104,5 +104,8 @@ def _figures(options: argparse.Namespace) -> None:
 
 if __name__ == "__main__":
     stopping.obey()
+    for name in ("stdout", "stderr"):                  # closed by who started us
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, "w"))
     sys.stdout.reconfigure(errors="surrogateescape")   # paths are bytes, not all of them text
     sys.exit(main(sys.argv[1:]))

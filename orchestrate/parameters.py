@@ -106,4 +106,8 @@ def overrides(texts: list[str]) -> dict[str, str]:
     for name, equals, value in pairs:
         if not (name and equals and value):
             raise BadInput(f"--set: '{name}{equals}{value}' is not of the form name=value")
+    names = [name.strip() for name, _, _ in pairs]
+    for name in names:
+        if names.count(name) > 1:
+            raise BadInput(f"--set: {name} is given {names.count(name)} times (accepted: once)")
     return {name.strip(): value.strip() for name, _, value in pairs}

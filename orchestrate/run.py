@@ -35,10 +35,10 @@ from .parameters import ROOT, Value, decisive
 from .scene import Scene
 
 # what the program writes into a folder
-OWN = ("scene.toml", "history.csv", "summary.json", "failure.json", "log.txt", "mesh.msh", "fields.pvd", "fields/[0-9]*.vtu",
+OWN = ("scene.toml", "history.csv", "summary.json", "failure.json", "log.txt", "mesh.msh", "fields.pvd", "fields/[0-9][0-9][0-9][0-9].vtu",
        "figures/energies.png", "figures/velocity.png", "figures/force.png", "figures/rolling.png", "figures/shapes.png", "figures/flight.png",
        "checkpoint", "checkpoint.json", "checkpoint.part", "checkpoint.state", "scene.part", "history.part", "history.cut", "summary.part",
-       "summary.json.part", "fields.pvd.part", "fields.part/[0-9]*.vtu")
+       "summary.json.part", "fields.pvd.part", "fields.part/[0-9][0-9][0-9][0-9].vtu")
 OURS = {"scene.toml", "failure.json", "scene.part", "history.part", "checkpoint.json"}   # a folder with one of these is the program's
 FAILURES = {10: "bad input", 11: "step failed", 12: "material broke down", 13: "not installed", 14: "unreadable"}
 
@@ -331,21 +331,21 @@ def _take_away(folders: list[Path]) -> None:
 
 def _is_complete(stage: Path) -> bool:
     try:
-        return "code" in read_summary(stage).get("provenance", {})   # the last that _finish writes
+        return (stage / "checkpoint.json").exists() and "code" in read_summary(stage).get("provenance", {})   # the last that _finish writes
     except Unreadable:
         return False
 
 
 def _refuse_files_of_others(stage: Path) -> None:
-    tops = {name.partition("/")[0] for name in OWN} | {"figures"}
-    if not OURS & set(os.listdir(stage)) and set(os.listdir(stage)) - tops:
+    """What a run makes has checkpoint.json from the first to the last moment; a folder of that name that lacks it is somebody's."""
+    if os.listdir(stage) and not (stage / "checkpoint.json").exists():
         raise Unreadable(f"{stage}, where the run would be made, has files of others in it; choose another --out")
 
 
 def _clear(stage: Path) -> None:
     for checkpoint in _checkpoints(stage):   # first: without the rest they are of no use
         checkpoint.unlink()
-    for left_over in stage.iterdir():
+    for left_over in sorted(stage.iterdir(), key=lambda path: path.name == "checkpoint.json"):   # last: what makes the folder ours
         shutil.rmtree(left_over) if left_over.is_dir() else left_over.unlink()
 
 
@@ -405,6 +405,7 @@ def _replace(stage: Path, folder: Path, same: bool) -> None:
         earlier = next(place for n in itertools.count(1) if not os.path.lexists(place := folder.with_name(f"{folder.name}.{n}")))
         os.rename(folder, earlier)
     os.rename(stage, folder)
+    (folder / "checkpoint.json").unlink(missing_ok=True)
     if earlier and not (same and _merge(earlier, folder)):
         print(f"what was in {shown(folder)} before is now in {shown(earlier)}")
 
@@ -468,7 +469,6 @@ def _finish(stage: Path, found: dict, provenance: dict, pictures: bool) -> None:
         summary["skipped"] = [name for name in summary["skipped"] if name != "error estimate"]
     summary |= {"estimated_error": None} | found | {"provenance": provenance}
     (stage / "summary.json").unlink()
-    (stage / "checkpoint.json").unlink()
     _write_json(stage / "summary.json.part", summary)
     if pictures:
         from . import figures
@@ -481,8 +481,7 @@ def _finish(stage: Path, found: dict, provenance: dict, pictures: bool) -> None:
 
 def _keep_failed(stage: Path, failure: Failure, scene: Scene, provenance: dict) -> None:
     """failure.json: the one the script wrote, or what is known; never a summary.json."""
-    for name in ("summary.json", "checkpoint.json"):
-        (stage / name).unlink(missing_ok=True)
+    (stage / "summary.json").unlink(missing_ok=True)
     if not (stage / "scene.toml").exists():
         (stage / "scene.toml").write_text("".join(f"{name} = {json.dumps(value)}\n" for name, value in scene.values.items()))
     record = {"status": FAILURES.get(failure.code, "crashed"), "message": str(failure)} | _read_json(stage / "failure.json")

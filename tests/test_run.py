@@ -121,10 +121,21 @@ def test_left_over_of_a_killed_run_is_replaced(fake, tmp_path):
     (tmp_path / "out.part/fields").mkdir(parents=True)
     (tmp_path / "out.part/summary.json").write_text('{"status": "ok"}')
     (tmp_path / "out.part/fields/old.vtu").write_text("")
+    (tmp_path / "out.part/checkpoint.json").write_text("{}")
     fake("silent")
     with pytest.raises(Failure, match="without a result"):
         go(tmp_path / "out")
     assert not (tmp_path / "out/summary.json").exists() and not (tmp_path / "out/fields/old.vtu").exists()
+
+
+def test_a_finished_run_called_like_the_staging_folder_is_left_alone(fake, tmp_path):
+    """A finished run of the user's in DIR.part is neither moved nor deleted by a run into DIR: exit code 14."""
+    go(tmp_path / "out.part")
+    (tmp_path / "out.part/notes.txt").write_text("mine")
+    before = {path: path.read_bytes() for path in (tmp_path / "out.part").iterdir() if path.is_file()}
+    with pytest.raises(Unreadable, match="files of others"):
+        go(tmp_path / "out", {"speed": 7})
+    assert {path: path.read_bytes() for path in (tmp_path / "out.part").iterdir() if path.is_file()} == before and not (tmp_path / "out").exists()
 
 
 def test_foreign_folder_is_refused(fake, tmp_path):
@@ -209,7 +220,7 @@ def test_the_same_scene_again_keeps_the_files_of_others(fake, tmp_path):
     """--force replaces what the program wrote; what the user put there stays, in subfolders too, and no copy is left."""
     out = tmp_path / "out"
     go(out, {"fields": 4})
-    for name in ("notes.txt", "figures/mine.png", "fields/mine.txt", "mine/deep/x"):
+    for name in ("notes.txt", "figures/mine.png", "fields/mine.txt", "fields/0-mine.vtu", "fields/2024/mine.vtu", "mine/deep/x"):
         (out / name).parent.mkdir(parents=True, exist_ok=True)
         (out / name).write_text("mine")
     (out / "log.txt").write_text("old")
