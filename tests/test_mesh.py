@@ -5,7 +5,7 @@ import subprocess
 import numpy as np
 import pytest
 
-from orchestrate import freefem, mesh
+from orchestrate import freefem, mesh, parameters
 from orchestrate.describe import describe
 from orchestrate.failure import BadInput
 
@@ -102,6 +102,64 @@ def test_freefem_reads_it(tmp_path):
     expected = [twice_areas(m).sum() / 2, length[m.labels == 1].sum(), length[m.labels == 2].sum(), len(m.points)]
     assert list(map(float, answer.split())) == pytest.approx(expected, rel=1e-12)
     assert length[m.labels == 2].sum() == pytest.approx(0.1, rel=1e-12)
+
+
+OWN = [      # radius [m]; mesh_size, contact_mesh_size over it; touchArc; symmetry
+    pytest.param((0.05, 0.32, 2e-3, 0.015, "half"), id="half, slow impact"),
+    pytest.param((0.05, 0.32, 2e-3, 0.015, "full"), id="full, slow impact"),
+    pytest.param((5e-6, 0.5, 6e-5, 1e-3, "half"), id="half, tiny, finest contact"),
+    pytest.param((5e4, 0.5, 6e-5, 1e-3, "full"), id="full, huge, finest contact"),
+    pytest.param((0.05, 1, 1, 0.5, "half"), id="half, coarsest"),
+    pytest.param((0.05, 1, 1, 0.5, "full"), id="full, coarsest"),
+    pytest.param((0.05, 0.2, 0.02, np.pi, "half"), id="half, rolls once around"),
+    pytest.param((0.05, 0.2, 0.02, np.pi, "full"), id="full, rolls once around"),
+]
+
+
+@pytest.fixture(scope="module", params=OWN)
+def own(request, tmp_path_factory):
+    """The mesh that the scripts make without Python, over its radius, and what was asked of it."""
+    radius, bulk, contact, arc, symmetry = request.param
+    folder, core = tmp_path_factory.mktemp("own"), parameters.ROOT / "edp/core"
+    rooms = "".join(f'include "{core}/{room}.idp"\n' for room in ("parameters", "mesh-file", "outline", "sizes", "symmetry"))
+    (folder / "own.edp").write_text(
+        f'verbosity = 0;\nload "lapack"\n{rooms}touchArc = {arc!r};\ninclude "{core}/disc-mesh.idp"\n'
+        f'ofstream out("{folder}/own.msh");\nout.precision(17);\nout << Th.nv << " " << Th.nt << " " << Th.nbe << endl;\n'
+        'for (int i = 0; i < Th.nv; i++) out << Th(i).x / radius << " " << Th(i).y / radius << " 0" << endl;\n'
+        'for (int t = 0; t < Th.nt; t++) out << Th[t][0] + 1 << " " << Th[t][1] + 1 << " " << Th[t][2] + 1 << " 0" << endl;\n'
+        'for (int e = 0; e < Th.nbe; e++) out << Th.be(e)[0] + 1 << " " << Th.be(e)[1] + 1 << " " << Th.be(e).label << endl;\n')
+    flags = dict(radius=radius, mesh_size=radius * bulk, contact_mesh_size=radius * contact, symmetry=symmetry)
+    words, program = (str(word) for name, value in flags.items() for word in (f"-{name}", value)), freefem.find()
+    done = subprocess.run([program.command, "-nw", "-ne", "-v", "0", folder / "own.edp", *words], env=program.environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout
+    return mesh.read(folder / "own.msh"), bulk, contact, arc, symmetry == "half"
+
+
+def test_own_mesh_is_sound(own):
+    """The scripts' own mesh: triangles counter-clockwise, no angle below 15 degrees, that fill the polygon of the labelled edges; the
+    circle's vertices on it to rounding, the axis' on x = 0, none below the plane, the lowest point a vertex at (0, 0)."""
+    m, *_, half = own
+    assert twice_areas(m).min() > 0 and smallest_angle(m) > 15
+    a, b = m.points[m.edges[:, 0]], m.points[m.edges[:, 1]]
+    assert twice_areas(m).sum() == pytest.approx(abs((a[:, 0] * b[:, 1] - b[:, 0] * a[:, 1]).sum()), rel=1e-12)
+    assert set(m.triangles.flat) == set(range(len(m.points)))
+    assert set(m.labels) == ({mesh.FREE, mesh.AXIS} if half else {mesh.FREE})
+    assert abs(np.hypot(m.points[:, 0], m.points[:, 1] - 1)[m.edges[m.labels == mesh.FREE]] - 1).max() < 1e-14
+    assert (m.points[m.edges[m.labels == mesh.AXIS], 0] == 0).all()
+    assert m.points[:, 1].min() == 0 and np.hypot(*m.points.T).min() == 0
+
+
+def test_own_mesh_grows_from_the_contact_everywhere(own):
+    """No edge of the scripts' own mesh, on circle, axis or inside, is longer than twice the size that belongs to its middle:
+    contact_mesh_size on the arc that can touch, 0.3 per length of distance more beyond, mesh_size at most. Nor are there more than
+    1.3 times as many triangles as gmsh makes for the half."""
+    m, bulk, contact, arc, half = own
+    sides = np.unique(np.sort(np.vstack([m.triangles[:, [0, 1]], m.triangles[:, [1, 2]], m.triangles[:, [2, 0]]]), axis=1), axis=0)
+    middle, length = m.points[sides].mean(1), np.linalg.norm(m.points[sides[:, 1]] - m.points[sides[:, 0]], axis=1)
+    touching = np.linspace(-arc, arc, 10001)
+    distance = np.array([np.hypot(x - np.sin(touching), y - 1 + np.cos(touching)).min() for x, y in middle])
+    assert (length / np.minimum(bulk, contact + mesh.GROWTH * distance)).max() < 2
+    assert len(m.triangles) <= 1.3 * (1 if half else 2) * len(mesh.disc(1, bulk, contact, True, arc).triangles)
 
 
 def test_same_input_same_mesh():
