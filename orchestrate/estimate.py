@@ -18,7 +18,7 @@ from .failure import Failure
 from .parameters import Value
 
 COARSER = math.sqrt(2)
-MOST = 3                    # refinements: elements and steps are then 2.8 times smaller than at first
+MOST = 2                    # refinements: elements and steps are then half as large as at first
 SIZES = ("mesh_size", "contact_mesh_size", "dt")
 LARGEST = 0.4               # accuracy that the scripts take
 SHARE = 0.7

@@ -123,7 +123,7 @@ def test_finer_runs_follow_until_it_is(tmp_path):
 
 @pytest.mark.parametrize("given", [{"mesh_size": 0.016}, {"contact_mesh_size": 0.003}, {"dt": 1e-5}, {"mesh": "own"}, {"lost": 1e-3}, {"error": 3.0}])
 def test_what_stays_above_is_said(tmp_path, given):
-    """Sizes or steps that are given, a mesh file, a material that lost its ellipticity are not refined; nothing is more than three times."""
+    """Sizes or steps that are given, a mesh file, a material that lost its ellipticity are not refined; nothing is more than MOST times."""
     own_mesh = not given.pop("mesh", None)
     disc = Disc(tmp_path, given.pop("error", 0.03), **given)
     found = disc.settle(own_mesh)
