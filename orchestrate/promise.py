@@ -48,8 +48,8 @@ def compare(points: list[study.Point], out: Path) -> pd.DataFrame:
         row = {"scene": draws.words(point), "seconds": run.get("cpu_seconds"), "finer seconds": reference.get("cpu_seconds"),
                "warnings": run.get("warnings", ""), "message": run.message or reference.message}
         if run.exit == reference.exit == 0:
-            _, used, speed = read_answers(study.place(out, point))
-            apart = estimate.difference(reference, run, speed, used["radius"])
+            summary, used, speed = read_answers(study.place(out, point))
+            apart = estimate.difference(dict(reference) | {"largest_energy": summary.get("largest_energy")}, run, speed, used["radius"])
             row |= {name: apart[name] / asked for name in estimate.PROMISED}
             row["error"] = max(apart[name] for name in estimate.PROMISED) / asked
             row["estimated"] = run.get("estimated_error", float("nan")) / asked
