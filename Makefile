@@ -1,4 +1,4 @@
-# The front door. Parameters live in edp/core/parameters.idp, scenes in orchestrate/scenes/*.toml.
+# The front door. Parameters live in edp/core/input/parameters.idp, scenes in orchestrate/scenes/*.toml.
 # ARGS is handed on:  make disc-normal ARGS="--set speed=4 --out results/slow"
 PYTHON := .venv/bin/python
 READY := .venv/.ready

@@ -1,4 +1,4 @@
-"""Figure 3 of the paper: the friction laws (11)-(13), drawn from the function of edp/core/friction.idp that runs use."""
+"""Figure 3 of the paper: the friction laws (11)-(13), drawn from the function of edp/core/contact/friction.idp that runs use."""
 
 import argparse
 import os

@@ -139,7 +139,7 @@ def write(mesh: Mesh, path: Path) -> None:
 
 def load(path: Path) -> bytes:
     """The mesh in a file as FreeFEM's .msh: one of gmsh is converted, one of FreeFEM is taken as it is (what is in it is checked
-    by edp/core/mesh-file.idp). BadInput where it cannot be read or is neither."""
+    by edp/core/input/mesh-file.idp). BadInput where it cannot be read or is neither."""
     try:
         text = path.read_bytes()
     except OSError as error:

@@ -105,7 +105,7 @@ class Results:
         runs = [(study.place(place, point), base.override(point)) for point in stick_slip.grid(stick_slip.AXES)]
         if not all((place / f"stick-slip.{kind}").exists() for kind in ("csv", "png")) or not self._holds(runs):
             missing["stick-slip"] = None
-        picture, laws = self.folder / "friction-laws/friction-laws.png", (ROOT / "edp/core/friction.idp", ROOT / "edp/friction-laws.edp")
+        picture, laws = self.folder / "friction-laws/friction-laws.png", (ROOT / "edp/core/contact/friction.idp", ROOT / "edp/friction-laws.edp")
         if not picture.exists() or any(picture.stat().st_mtime < law.stat().st_mtime for law in laws):
             missing["friction-laws"] = None
         if not verify.there(self.folder / "verify"):

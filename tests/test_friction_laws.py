@@ -1,4 +1,4 @@
-"""The friction laws of edp/core/friction.idp, tabulated by the real FreeFem++, and their picture."""
+"""The friction laws of edp/core/contact/friction.idp, tabulated by the real FreeFem++, and their picture."""
 
 import numpy as np
 import pytest

@@ -10,7 +10,7 @@ from orchestrate.failure import BadInput
 
 def test_every_row_of_the_table_is_read():
     """No row of the table is skipped in silence, and each has a unit, a help text and a default that is accepted."""
-    text = (parameters.ROOT / "edp/core/parameters.idp").read_text().partition("// THE TABLE")[2].partition("// END OF THE TABLE")[0]
+    text = (parameters.ROOT / "edp/core/input/parameters.idp").read_text().partition("// THE TABLE")[2].partition("// END OF THE TABLE")[0]
     assert len(parameters.table()) == len(re.findall(r"^\w+ \w+ = parameter", text, re.MULTILINE)) > 20
     for row in parameters.table().values():
         assert row.unit and row.help, row.name
