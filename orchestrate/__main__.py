@@ -9,8 +9,10 @@ from pathlib import Path
 from . import stopping
 from .failure import BadInput, Failure, Unreadable
 
-OWN_MAIN = ("compare", "movie", "friction-laws", "stick-slip", "sweep", "verify", "paper", "stress", "stress-map", "bench", "textbook",
-            "skipping", "costs", "promise", "refine", "scaling", "materials")   # modules with a main(argv)
+# the commands with a module of their own, which has a main(argv), by its package
+PACKAGES = {"sweeps": ("sweep",), "report": ("friction-laws", "compare", "movie", "paper"),
+            "studies": ("stick-slip", "stress", "stress-map", "bench", "textbook", "skipping", "costs", "promise", "refine", "scaling", "materials")}
+OWN_MAIN = {"verify": "verify"} | {name: f"{package}.{name.replace('-', '_')}" for package, names in PACKAGES.items() for name in names}
 
 
 def main(argv: list[str]) -> int:
@@ -18,7 +20,7 @@ def main(argv: list[str]) -> int:
     argparse.ArgumentParser.error = _bad_usage   # one line and exit code 10 as for any bad input
     try:
         if argv[:1] and argv[0] in OWN_MAIN:
-            return importlib.import_module(f"{__package__}.{argv[0].replace('-', '_')}").main(argv[1:]) or 0
+            return importlib.import_module(f"{__package__}.{OWN_MAIN[argv[0]]}").main(argv[1:]) or 0
         options = _parser().parse_args(argv)
         options.command(options)
         return 0
@@ -72,7 +74,8 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _run(options: argparse.Namespace) -> None:
-    from . import parameters, report, run, scene
+    from . import parameters, run, scene
+    from .report import report
     given = parameters.overrides(options.set)
     if options.checkpoint_every:
         given["checkpoint_every"] = options.checkpoint_every
@@ -97,7 +100,8 @@ def _parameters(options: argparse.Namespace) -> None:
 
 
 def _figures(options: argparse.Namespace) -> None:
-    from . import figures, run
+    from . import run
+    from .report import figures
     for path in figures.draw(options.folder, run.read_summary(options.folder)["warnings"]):
         print(path)
 

@@ -471,7 +471,7 @@ def _finish(stage: Path, found: dict, provenance: dict, pictures: bool) -> None:
     (stage / "summary.json").unlink()
     _write_json(stage / "summary.json.part", summary)
     if pictures:
-        from . import figures
+        from .report import figures
         try:
             figures.draw(stage, summary["warnings"])
         except Exception as error:   # a picture is no reason to lose a run

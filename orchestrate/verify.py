@@ -19,13 +19,14 @@ import pandas as pd
 from matplotlib.ticker import NullLocator
 from tqdm import tqdm
 
-from . import freefem, run, study
+from . import freefem, run
 from .failure import Failure
-from .figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE
 from .measure import disc, measure
 from .parameters import ROOT
-from .report import REFERENCE
+from .report.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE
+from .report.report import REFERENCE
 from .run import result_folder, shown
+from .studies import study
 
 COLUMNS = ["case", "what", "size", "value", "expected", "error", "tolerance"]   # of verify.csv; a row with a tolerance is judged
 CONVERGES = "order of the largest error"   # asked for above 0, between the coarsest and the finest size

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from orchestrate import parameters, run
-from orchestrate.__main__ import main
+from orchestrate.__main__ import OWN_MAIN, main
 from orchestrate.failure import Unreadable
 
 ROOT = parameters.ROOT
@@ -178,5 +178,5 @@ def test_a_loop_of_links_is_no_folder(tmp_path, command):
     (tmp_path / "loop").symlink_to(tmp_path / "pool")
     (tmp_path / "pool").symlink_to(tmp_path / "loop")
     with pytest.raises(Unreadable, match="cannot be made") as error:
-        importlib.import_module(f"orchestrate.{command.replace('-', '_')}").main(["--out", str(tmp_path / "loop/out")])
+        importlib.import_module(f"orchestrate.{OWN_MAIN[command]}").main(["--out", str(tmp_path / "loop/out")])
     assert error.value.code == 14

@@ -10,9 +10,10 @@ import sys
 import numpy as np
 import pytest
 
-from orchestrate import freefem, parameters, report, run, scene, vtu
+from orchestrate import freefem, parameters, run, scene, vtu
 from orchestrate.describe import describe
 from orchestrate.failure import NotInstalled
+from orchestrate.report import report
 
 COLUMNS = ("t dt normal_force friction_force kinetic elastic contact friction_work external_work balance momentum_x momentum_y "
            "vx vy spin max_penetration contact_size sliding_fraction min_jacobian min_stretch newton_iterations min_ellipticity").split()

@@ -5,9 +5,11 @@ import re
 import numpy as np
 import pytest
 
-from orchestrate import compare, figures, parameters, report, run, scene, study, vtu
+from orchestrate import parameters, run, scene, vtu
 from orchestrate.__main__ import main
 from orchestrate.failure import BadInput
+from orchestrate.report import compare, figures, report
+from orchestrate.studies import study
 
 COARSE = {"degree": 1, "mesh_size": 0.0125, "contact_mesh_size": 0.0125, "fields": 3}
 FRICTIONLESS = {"energies", "force", "shapes", "velocity"}

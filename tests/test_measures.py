@@ -4,7 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from orchestrate import bench, costs, run, scene, skipping, stress_map, study
+from orchestrate import run, scene
+from orchestrate.studies import bench, costs, skipping, stress_map, study
 
 
 def rows(**columns) -> pd.DataFrame:

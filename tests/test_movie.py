@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from orchestrate import figures, movie, run, vtu
+from orchestrate import run, vtu
 from orchestrate.__main__ import main
+from orchestrate.report import figures, movie
 
 FFMPEG = """#!/bin/sh
 # keeps the raw frames that it gets, in the file that the last argument names

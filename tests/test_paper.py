@@ -8,9 +8,10 @@ import pandas as pd
 import pytest
 
 import fake_freefem
-from orchestrate import paper, run, scene
+from orchestrate import run, scene
 from orchestrate.__main__ import main
-from orchestrate.paper import AGREES, DIFFERS, OPEN, PARTLY
+from orchestrate.report import paper
+from orchestrate.report.paper import AGREES, DIFFERS, OPEN, PARTLY
 
 FIND = {find.__name__: find for _, _, find in paper.STATEMENTS}
 

@@ -7,7 +7,8 @@ import sys
 import pandas as pd
 import pytest
 
-from orchestrate import refine, run, stress, study, textbook
+from orchestrate import run
+from orchestrate.studies import refine, stress, study, textbook
 from test_cli import is_alive, start, wait_for
 
 POINTS = [{"speed": speed, "dt": dt} for speed in (4.0, 8.0) for dt in (0.0, 1e-4)]

@@ -14,11 +14,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from orchestrate import parameters, run, study, sweep, sweep_figures
+from orchestrate import parameters, run
 from orchestrate.__main__ import main
 from orchestrate.describe import describe
 from orchestrate.failure import BadInput
-from orchestrate.figures import plt
+from orchestrate.report.figures import plt
+from orchestrate.studies import study
+from orchestrate.sweeps import sweep, sweep_figures
 from test_cli import call, is_alive, start, wait_for
 
 COARSE = "[set]\nmesh_size = 0.02\ncontact_mesh_size = 0.01\n"

@@ -6,9 +6,10 @@ import math
 import pandas as pd
 import pytest
 
-from orchestrate import paper, verify
+from orchestrate import verify
 from orchestrate.__main__ import main
 from orchestrate.failure import Failure
+from orchestrate.report import paper
 from orchestrate.verify import Case, Row
 
 

@@ -8,8 +8,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from orchestrate import figures, freefem, measure, parameters, report, run, scene, study, sweep
-from orchestrate.figures import plt
+from orchestrate import freefem, measure, parameters, run, scene
+from orchestrate.report import figures, report
+from orchestrate.report.figures import plt
+from orchestrate.studies import study
+from orchestrate.sweeps import sweep
 
 COARSE = dict(accuracy=0.1, mesh_size=0.02, contact_mesh_size=0.006, dt=5e-5)
 OBLIQUE = COARSE | dict(angle=60, law="neohookean", friction_static=0.7)

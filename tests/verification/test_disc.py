@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from orchestrate import mesh, parameters
-from orchestrate.sweep_figures import distance
+from orchestrate.sweeps.sweep_figures import distance
 
 COARSE = dict(mesh_size=0.025, contact_mesh_size=0.0079, accuracy=0.03)
 MASS = 1722 * math.pi * 0.05**2

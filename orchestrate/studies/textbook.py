@@ -7,10 +7,11 @@ from pathlib import Path
 
 import pandas as pd
 
-from . import freefem, mesh, run, scene, study
-from .failure import Failure
-from .parameters import ROOT, whole
-from .run import result_folder, shown
+from .. import freefem, mesh, run, scene
+from ..failure import Failure
+from ..parameters import ROOT, whole
+from ..run import result_folder, shown
+from . import study
 
 DT = 2e-5                   # s
 OURS = 3                    # runs of the program at least: they are short, and a busy neighbour shows

@@ -5,9 +5,10 @@ from pathlib import Path
 
 import pandas as pd
 
-from . import draws, estimate, study
-from .parameters import ROOT, defaults, whole
-from .run import read_answers, read_scene, result_folder, shown
+from .. import estimate
+from ..parameters import ROOT, defaults, whole
+from ..run import read_answers, read_scene, result_folder, shown
+from . import draws, study
 
 SEED, COUNT = 41, 40        # other scenes than those of the calibration (seeds 1, 2, 5 and 40)
 FINER = 3                   # elements and steps of the reference are so many times smaller

@@ -13,9 +13,9 @@ import numpy as np
 from matplotlib.collections import TriMesh
 from matplotlib.tri import LinearTriInterpolator, Triangulation
 
-from . import vtu
-from .parameters import Value
-from .run import read_history, read_scene
+from .. import vtu
+from ..parameters import Value
+from ..run import read_history, read_scene
 
 LAWS = {"svk": "St. Venant–Kirchhoff", "neohookean": "neo-Hookean", "incompressible": "incompressible neo-Hookean"}
 BLUE, ORANGE, GREEN, PURPLE, BLACK, GREY = "#0072b2", "#d55e00", "#009e73", "#aa4499", "#222222", "#999999"

@@ -15,9 +15,9 @@ from pathlib import Path
 import pandas as pd
 from tqdm import tqdm
 
-from . import estimate as estimates, freefem, run, scene, stopping
-from .failure import Busy, Failure, TooLong, Unreadable
-from .parameters import Value, decisive
+from .. import estimate as estimates, freefem, run, scene, stopping
+from ..failure import Busy, Failure, TooLong, Unreadable
+from ..parameters import Value, decisive
 
 CORES = len(os.sched_getaffinity(0))
 TOO_LONG = TooLong("").code   # of a run that its time limit ended

@@ -4,8 +4,8 @@ import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
-from .parameters import Value
-from .run import RunResult, shown
+from ..parameters import Value
+from ..run import RunResult, shown
 
 REFERENCE = Path(__file__).resolve().parent / "reference"
 

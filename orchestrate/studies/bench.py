@@ -11,12 +11,13 @@ import numpy as np
 import pandas as pd
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from . import mesh, peers, scene, study, textbook
-from .describe import describe
-from .figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE
-from .parameters import ROOT
-from .run import read_history, result_folder, shown
-from .sweep_figures import distance
+from .. import mesh, scene
+from ..describe import describe
+from ..parameters import ROOT
+from ..report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE
+from ..run import read_history, result_folder, shown
+from ..sweeps.sweep_figures import distance
+from . import peers, study, textbook
 
 LEVELS = (5.0, 1.0, 0.1)    # % of error
 HEADLINE, HEADLINE_CONTACT = 0.5, 1.0   # % at the same time in everything but the contact time, and in that

@@ -31,13 +31,15 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from . import parameters, run, scene, study, sweep_figures
-from .describe import describe
-from .failure import BadInput, Busy, Failure, Unreadable
-from .parameters import ROOT, Value
-from .run import shown
+from .. import parameters, run, scene
+from ..describe import describe
+from ..failure import BadInput, Busy, Failure, Unreadable
+from ..parameters import ROOT, Value
+from ..run import shown
+from ..studies import study
+from . import sweep_figures
 
-SWEEPS = Path(__file__).resolve().parent / "sweeps"
+SWEEPS = Path(__file__).resolve().parent   # the built-in sweeps are beside us
 LIMIT = 600.0                   # seconds a run may take
 MOST_RUNS = 20_000              # more than that is a slip of the pen
 KEYS = ("title", "scene", "collect", "limit", "set", "product", "zip", "refine", "figure")

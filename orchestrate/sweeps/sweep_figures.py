@@ -18,11 +18,13 @@ import numpy as np
 import pandas as pd
 from matplotlib.ticker import LogLocator, NullLocator
 
-from . import parameters, report, study
-from .describe import describe
-from .failure import BadInput
-from .figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE
-from .run import read_history
+from .. import parameters
+from ..describe import describe
+from ..failure import BadInput
+from ..report import report
+from ..report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE
+from ..run import read_history
+from ..studies import study
 
 KINDS = {"lines": ("x", "y", "by"), "map": ("x", "y", "colour", "by", "level", "band"), "histories": ("y", "panel", "by")}
 WORDS = {"nu": "ν", "penalty": "k"}

@@ -5,9 +5,10 @@ from pathlib import Path
 
 import pandas as pd
 
-from . import draws, estimate, study
-from .parameters import ROOT, defaults
-from .run import read_scene, result_folder, shown
+from .. import estimate
+from ..parameters import ROOT, defaults
+from ..run import read_scene, result_folder, shown
+from . import draws, study
 
 CASES = {"normal": {"law": "svk", "nu": 0.45}, "oblique": {"law": "neohookean", "nu": 0.45, "angle": 60.0, "friction_static": 0.7, "friction_dynamic": 0.5}}
 SPEED = {"normal": 8.0, "oblique": 12.0}            # m/s of the paper's disc

@@ -13,9 +13,9 @@ from functools import cache, partial
 from pathlib import Path
 from signal import SIGKILL
 
-from . import mesh
-from .freefem import die_with_parent
-from .parameters import ROOT, Value
+from .. import mesh
+from ..freefem import die_with_parent
+from ..parameters import ROOT, Value
 
 PYTHONS = {"ngsolve": ("NGSOLVE_PYTHON", sys.executable), "getfem": ("GETFEM_PYTHON", "/usr/bin/python3")}
 INSTALL = {"ngsolve": "pip install ngsolve==6.2.2608", "getfem": "apt-get install python3-getfem"}

@@ -5,9 +5,10 @@ from pathlib import Path
 
 import pandas as pd
 
-from . import draws, estimate, study
-from .parameters import ROOT
-from .run import read_scene, result_folder, shown
+from .. import estimate
+from ..parameters import ROOT
+from ..run import read_scene, result_folder, shown
+from . import draws, study
 
 SPEEDS = (0.001, 0.01, 0.1)         # over sqrt(E/density)
 STIFFER, FINER = 10, 2

@@ -16,11 +16,11 @@ from matplotlib.patheffects import withStroke
 from PIL import Image
 from tqdm import tqdm
 
-from . import scene, vtu
-from .failure import BadInput, NotInstalled, Unreadable
+from .. import scene, vtu
+from ..failure import BadInput, NotInstalled, Unreadable
+from ..parameters import ROOT, overrides, whole
+from ..run import RunResult, run, shown
 from .figures import BLACK, BLUE, GREY, ORANGE, STRESS, STYLE, Body, deformed, diameter, draw_body, draw_ground, is_half, limits, per_metre, title
-from .parameters import ROOT, overrides, whole
-from .run import RunResult, run, shown
 
 SECONDS = 8.0     # of the film
 MOST = 400        # frames, 50 a second: players show a faster GIF slower

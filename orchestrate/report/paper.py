@@ -17,10 +17,12 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from . import parameters, run, scene, stick_slip, study, sweep, sweep_figures, verify
-from .failure import Failure, Unreadable
-from .parameters import ROOT, Value
-from .run import result_folder, shown
+from .. import parameters, run, scene, verify
+from ..failure import Failure, Unreadable
+from ..parameters import ROOT, Value
+from ..run import result_folder, shown
+from ..studies import stick_slip, study
+from ..sweeps import sweep, sweep_figures
 
 AGREES, DIFFERS, PARTLY, OPEN = "agrees", "does not agree", "partly", "not yet in this program"
 COLOURS = {AGREES: "#009e73", DIFFERS: "#d55e00", PARTLY: "#b8860b", OPEN: "#777777"}
@@ -384,7 +386,7 @@ details {{ font-size: .85em }} pre {{ white-space: pre-wrap }}
 <h1>The paper's statements and our numbers</h1>
 <p>Buezas, Rosales and Filipich, <i>Nonlinear deformable bodies with unilateral contact including friction</i>. The paper states neither ν (only
 “ν → 0.5”) nor the contact stiffness, ε, mesh or step; a number that it prints is taken as known to half a unit of its last digit.
-Error bars of ours are what refining mesh and step changes. Verdicts follow from the numbers by fixed rules (orchestrate/paper.py).</p>
+Error bars of ours are what refining mesh and step changes. Verdicts follow from the numbers by fixed rules (orchestrate/report/paper.py).</p>
 <p><b>{counts}</b></p>
 <table><tr><th>where</th><th>the paper</th><th>here</th><th>verdict</th></tr>
 {rows}

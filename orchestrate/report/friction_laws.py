@@ -7,11 +7,11 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import pandas as pd
 
-from . import freefem, parameters
-from .failure import Failure, Unreadable
+from .. import freefem, parameters
+from ..failure import Failure, Unreadable
+from ..parameters import ROOT
+from ..run import result_folder, shown
 from .figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE
-from .parameters import ROOT
-from .run import result_folder, shown
 
 VALUES = {"friction_static": 0.7, "friction_dynamic": 0.5, "slip_velocity": 0.1}   # of section 3.1 and figure 3
 LABELS = {"linear": (r"linear, $\phi^3$ with $v_T/\varepsilon$", BLUE, "-"), "sqrt": (r"sqrt, $\phi^1$", GREEN, "-"),

@@ -10,12 +10,13 @@ import numpy as np
 import pandas as pd
 from matplotlib.ticker import NullLocator
 
-from . import scene as scenes, study
-from .describe import describe
-from .failure import Failure
-from .figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE
-from .parameters import ROOT, defaults
-from .run import result_folder, shown
+from .. import scene as scenes
+from ..describe import describe
+from ..failure import Failure
+from ..parameters import ROOT, defaults
+from ..report.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE
+from ..run import result_folder, shown
+from . import study
 
 ANSWERS = {                 # by scene; all but the last are promised to ASKED
     "disc-normal": ("contact_time", "impulse", "rebound_vy", "peak_force"),

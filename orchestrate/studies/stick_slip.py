@@ -11,11 +11,11 @@ import numpy as np
 import pandas as pd
 from matplotlib.patches import Rectangle
 
+from ..failure import Unreadable
+from ..parameters import ROOT
+from ..report.figures import BLACK, LAWS, STYLE
+from ..run import read_history, result_folder, shown
 from . import study
-from .failure import Unreadable
-from .figures import BLACK, LAWS, STYLE
-from .parameters import ROOT
-from .run import read_history, result_folder, shown
 
 AXES = {"slip_velocity": (0.03, 0.3, 1.0, 3.0), "penalty": (1e8, 1e9, 1e10), "nu": (0.3, 0.4, 0.45), "angle": (60.0, 30.0)}
 LAW = {"svk": {"degree": 1, "mesh_size": 0.01, "contact_mesh_size": 0.005, "breakdown": "continue", "accuracy": 0.0025},   # as the paper ran it

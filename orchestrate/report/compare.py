@@ -7,11 +7,12 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 
-from . import report, scene
-from .failure import BadInput, Failure
+from .. import scene
+from ..failure import BadInput, Failure
+from ..parameters import ROOT, overrides
+from ..run import RunResult, result_folder, run, shown
+from . import report
 from .figures import BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE
-from .parameters import ROOT, overrides
-from .run import RunResult, result_folder, run, shown
 
 
 def main(argv: list[str]) -> int:

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pandas as pd
 
+from ..failure import Failure
+from ..parameters import ROOT
+from ..run import read_history, result_folder, shown
 from . import study
-from .failure import Failure
-from .parameters import ROOT
-from .run import read_history, result_folder, shown
 
 BASE = {"height": 0.05, "fields": 0}   # a drop from 5 cm above the plane, so that there is a flight
 LIMIT = 600.0                          # seconds a run may take

@@ -12,11 +12,12 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
-from . import run, scene, study
-from .failure import Failure
-from .figures import BLUE, GREY, ORANGE, STYLE
-from .parameters import ROOT
-from .run import result_folder, shown
+from .. import run, scene
+from ..failure import Failure
+from ..parameters import ROOT
+from ..report.figures import BLUE, GREY, ORANGE, STYLE
+from ..run import result_folder, shown
+from . import study
 
 PHASES = ("assembly", "factor", "solve", "contact", "output", "audit", "setup", "other")
 LIMIT = 900.0                                   # seconds a run may take

@@ -7,10 +7,10 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
+from ..parameters import ROOT, whole
+from ..report.figures import BLUE, ORANGE, PURPLE, STYLE
+from ..run import result_folder, shown
 from . import stress, study
-from .figures import BLUE, ORANGE, PURPLE, STYLE
-from .parameters import ROOT, whole
-from .run import result_folder, shown
 
 SEED, SETS = 2024, 300
 LIMIT = 300.0               # seconds a run may take
