@@ -27,7 +27,7 @@ def main(argv: list[str]) -> int:
     except Failure as failure:
         print(f"ffimpact: {failure}", file=sys.stderr)
         if failure.folder:
-            from .run import shown
+            from .places import shown
             print(f"files of the failed run: {shown(failure.folder)}")
         return failure.code
     except BrokenPipeError:   # the reader of our output left
@@ -74,13 +74,14 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _run(options: argparse.Namespace) -> None:
-    from . import parameters, run, scene
+    from . import parameters, results, run, scene
     from .report import report
     given = parameters.overrides(options.set)
     if options.checkpoint_every:
         given["checkpoint_every"] = options.checkpoint_every
     result = run.run(scene.load(options.scene), given, options.out, mesh_file=options.mesh,
                      force=options.force, progress=not options.quiet and sys.stderr.isatty())
+    report.draw(result)
     if not options.quiet:
         print(report.report(result))
 
@@ -100,9 +101,9 @@ def _parameters(options: argparse.Namespace) -> None:
 
 
 def _figures(options: argparse.Namespace) -> None:
-    from . import run
+    from . import results
     from .report import figures
-    for path in figures.draw(options.folder, run.read_summary(options.folder)["warnings"]):
+    for path in figures.draw(options.folder, results.read_summary(options.folder)["warnings"]):
         print(path)
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from . import freefem, run
+from . import freefem, results
 from .failure import Failure
 from .parameters import ROOT, Value
 
@@ -36,7 +36,7 @@ def measure(script: str, **given: Value | Path) -> dict[str, float]:
 def disc(folder: Path, **given: Value | Path) -> Outcome:
     """edp/disc-plane.edp with these flags, run into `folder`."""
     _start("edp/disc-plane.edp", (*_flags(given), "-out", str(folder)), ROOT)
-    return Outcome(run.read_summary(folder), run.read_history(folder))
+    return Outcome(results.read_summary(folder), results.read_history(folder))
 
 
 def _flags(given: dict[str, Value | Path]) -> tuple[str, ...]:

@@ -19,13 +19,14 @@ import pandas as pd
 from matplotlib.ticker import NullLocator
 from tqdm import tqdm
 
-from . import freefem, run
+from . import freefem, results, run
 from .failure import Failure
+from .folder import result_folder
 from .measure import disc, measure
 from .parameters import ROOT
+from .places import shown
 from .report.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE
 from .report.report import REFERENCE
-from .run import result_folder, shown
 from .studies import study
 
 COLUMNS = ["case", "what", "size", "value", "expected", "error", "tolerance"]   # of verify.csv; a row with a tolerance is judged
@@ -109,7 +110,7 @@ def bar(folder: Path, elements: int) -> Iterator[Row]:
     c = math.sqrt(young / DENSITY)
     measure("impact", nu=0, radius=LENGTH, density=DENSITY, speed=speed, young=young, penalty=1e12, mesh_size=LENGTH / elements,
             dt=LENGTH / elements / c / 2, chatter="continue", out=folder)   # its end chatters on a plane that is all but rigid
-    summary, history = run.read_summary(folder), run.read_history(folder)
+    summary, history = results.read_summary(folder), results.read_history(folder)
     time = summary["contact_time"]
     plateau = (history["t"] > 0.1 * time) & (history["t"] < 0.9 * time)
     force = np.average(history["normal_force"][plateau], weights=history["dt"][plateau])
@@ -132,7 +133,7 @@ def rigid(folder: Path, exponent: float, speed: float, dt: float) -> Iterator[Ro
     """A nearly rigid body of mass M on F = K d^m: depth [(m+1) M v^2/(2K)]^(1/(m+1)), contact time, restitution 1."""
     measure("impact", nu=0, radius=LENGTH, density=DENSITY, speed=speed, young=1e12, penalty=1e7, exponent=exponent,
             mesh_size=LENGTH / 4, dt=dt, out=folder)
-    summary, power = run.read_summary(folder), 1 / (exponent + 1)
+    summary, power = results.read_summary(folder), 1 / (exponent + 1)
     depth = (DENSITY * LENGTH * speed**2 / (2 * power * 1e7)) ** power
     time = 2 * math.sqrt(math.pi) * math.gamma(1 + power) / math.gamma(0.5 + power) * depth / speed
     yield Row(f"m = {exponent:g}: depth", dt, summary["max_penetration"], depth, 2)

@@ -58,6 +58,20 @@ def test_run_reports_beside_the_published_numbers(fake, tmp_path):
     assert "finished earlier" in call("run", "disc-normal", "--out", str(tmp_path / "out"))[1]
 
 
+def test_a_run_needs_no_matplotlib(fake, tmp_path, monkeypatch, capsys):
+    """Where nothing can be drawn one line says so, and the run is finished and reported all the same; drawn once it can be."""
+    with monkeypatch.context() as without:
+        without.setitem(sys.modules, "orchestrate.report.figures", None)
+        without.delattr("orchestrate.report.figures", raising=False)
+        assert main(["run", "disc-normal", "--out", str(tmp_path / "out")]) == 0
+    said, starts = capsys.readouterr(), fake.starts()
+    assert said.err.startswith("ffimpact: the figures could not be drawn: ") and said.err.count("\n") == 1 and "contact time" in said.out
+    assert main(["run", "disc-normal", "--out", str(tmp_path / "out")]) == 0 and (tmp_path / "out/figures/force.png").exists()
+    assert "finished earlier" in capsys.readouterr().out and fake.starts() == starts
+    known = subprocess.run([sys.executable, "-c", "import orchestrate.run, sys; print('matplotlib' in sys.modules)"], cwd=ROOT, capture_output=True, text=True)
+    assert known.stdout == "False\n"
+
+
 def test_published_numbers_are_not_shown_beside_another_scene(fake, tmp_path):
     """At another speed the paper has no number, and none is shown."""
     _, out, _ = call("run", "disc-normal", "--set", "speed=4", "--set", "fields=0", "--out", str(tmp_path / "out"))

@@ -6,7 +6,7 @@ import pandas as pd
 import pytest
 
 from orchestrate import estimate, scene
-from orchestrate.run import read_scene
+from orchestrate.results import read_scene
 from orchestrate.studies import draws, materials, promise, scaling, study
 
 ANSWERS = {"impulse": 2.0, "rebound_vx": 0.0, "rebound_vy": 7.0, "spin": 0.0, "energy_initial": 5.0, "energy_final": 4.5, "vibration_energy": 1.0,

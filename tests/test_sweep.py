@@ -14,7 +14,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from orchestrate import parameters, run
+from orchestrate import parameters, results, run
 from orchestrate.__main__ import main
 from orchestrate.describe import describe
 from orchestrate.failure import BadInput
@@ -151,7 +151,7 @@ def test_table_and_figure(fake, tmp_path, capsys):
     assert (out / "sweep.toml").read_text() == DRAWN and plt.imread(out / "sweep.png").std() > 0
     said = capsys.readouterr().out
     assert "6 of 6 points finished" in said and "ν = 0.3: contact time over speed" in said and "no error bars" in said
-    assert all(run.read_scene(folder)["mesh_size"] == 0.02 for folder in (out / "runs").iterdir())
+    assert all(results.read_scene(folder)["mesh_size"] == 0.02 for folder in (out / "runs").iterdir())
 
 
 @pytest.mark.parametrize("mode, code, returned", [("material", 12, 0), ("step", 11, 0), ("crash", 1, 1)])

@@ -9,8 +9,11 @@ import numpy as np
 
 from .. import scene
 from ..failure import BadInput, Failure
+from ..folder import result_folder
 from ..parameters import ROOT, overrides
-from ..run import RunResult, result_folder, run, shown
+from ..places import shown
+from ..results import RunResult
+from ..run import run
 from . import report
 from .figures import BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE
 
@@ -30,6 +33,7 @@ def main(argv: list[str]) -> int:
         try:
             result = run(each, overrides(options.set), folder / each.name, progress=sys.stderr.isatty())
             results[each.name] = result
+            report.draw(result)
             print(report.report(result) + "\n")
         except Failure as failure:
             print(f"{each.name}: failed: {failure}\n")

@@ -15,7 +15,7 @@ from matplotlib.tri import LinearTriInterpolator, Triangulation
 
 from .. import vtu
 from ..parameters import Value
-from ..run import read_history, read_scene
+from ..results import read_history, read_scene
 
 LAWS = {"svk": "St. Venant–Kirchhoff", "neohookean": "neo-Hookean", "incompressible": "incompressible neo-Hookean"}
 BLUE, ORANGE, GREEN, PURPLE, BLACK, GREY = "#0072b2", "#d55e00", "#009e73", "#aa4499", "#222222", "#999999"
@@ -29,7 +29,7 @@ DASHED = (0, (4, 2))
 
 def draw(folder: Path, warnings: list[str]) -> list[Path]:
     """Draws all figures of the run in `folder` into folder/figures, with its warnings below; the files. Unreadable where the
-    folder is broken."""
+    folder is broken. energies.png is the last: where it is, all are."""
     history, scene = read_history(folder), read_scene(folder)
     snapshots = vtu.series(folder / "fields.pvd")
     target = folder / "figures"
@@ -47,14 +47,12 @@ def draw(folder: Path, warnings: list[str]) -> list[Path]:
             drawn["shapes"] = _shapes(snapshots, half)
             if len(snapshots) > 2 and not half:
                 drawn["flight"] = _flight(history, scene, snapshots)
-        files = []
-        for name, figure in drawn.items():
+        for name, figure in reversed(drawn.items()):
             figure.suptitle(title(scene), fontsize=9)
             footer(figure, warnings)
-            files.append(target / f"{name}.png")
-            figure.savefig(files[-1])
+            figure.savefig(target / f"{name}.png")
             plt.close(figure)
-    return files
+    return [target / f"{name}.png" for name in drawn]
 
 
 def footer(figure: plt.Figure, warnings: list[str]) -> None:

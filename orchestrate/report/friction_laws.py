@@ -9,8 +9,9 @@ import pandas as pd
 
 from .. import freefem, parameters
 from ..failure import Failure, Unreadable
+from ..folder import result_folder
 from ..parameters import ROOT
-from ..run import result_folder, shown
+from ..places import shown
 from .figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE
 
 VALUES = {"friction_static": 0.7, "friction_dynamic": 0.5, "slip_velocity": 0.1}   # of section 3.1 and figure 3

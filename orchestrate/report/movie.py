@@ -19,7 +19,9 @@ from tqdm import tqdm
 from .. import scene, vtu
 from ..failure import BadInput, NotInstalled, Unreadable
 from ..parameters import ROOT, overrides, whole
-from ..run import RunResult, run, shown
+from ..places import shown
+from ..results import RunResult
+from ..run import run
 from .figures import BLACK, BLUE, GREY, ORANGE, STRESS, STYLE, Body, deformed, diameter, draw_body, draw_ground, is_half, limits, per_metre, title
 
 SECONDS = 8.0     # of the film
@@ -44,7 +46,7 @@ def main(argv: list[str]) -> int:
     form = options.format or ("mp4" if FFMpegWriter.isAvailable() else "gif")
     given, progress = scene.load(options.scene), sys.stderr.isatty()
     result = run(given, overrides(options.set) | {"fields": options.frames}, options.out or ROOT / "results/movies" / given.name,
-                 progress=progress, pictures=False)
+                 progress=progress)
     film = result.folder / f"{given.name}.{form}"
     done = result.reused and film.exists() and film.stat().st_mtime >= (result.folder / "summary.json").stat().st_mtime
     if not done:

@@ -1,11 +1,13 @@
 """What a finished run is told in: its key figures, beside the published numbers of the same scene."""
 
+import sys
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
 from ..parameters import Value
-from ..run import RunResult, shown
+from ..places import shown
+from ..results import RunResult
 
 REFERENCE = Path(__file__).resolve().parent / "reference"
 
@@ -78,6 +80,17 @@ def references(script: str, scene: dict[str, Value]) -> dict[str, list[dict]]:
                 for key, number in run["numbers"].items():
                     found.setdefault(key, []).append(number | {k: run[k] for k in ("source", "note") if k in run})
     return found
+
+
+def draw(result: RunResult) -> None:
+    """The figures of the run into its folder, unless they are there; a picture is no reason to lose a run: what hinders it is a line on stderr."""
+    if result.reused and (result.folder / "figures/energies.png").exists():
+        return
+    try:
+        from . import figures   # matplotlib: only where something is drawn
+        figures.draw(result.folder, result.summary["warnings"])
+    except Exception as error:
+        print(f"ffimpact: the figures could not be drawn: {error!r}", file=sys.stderr)
 
 
 def report(result: RunResult) -> str:

@@ -13,9 +13,11 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from .. import mesh, scene
 from ..describe import describe
+from ..folder import result_folder
 from ..parameters import ROOT
+from ..places import shown
 from ..report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE
-from ..run import read_history, result_folder, shown
+from ..results import read_history
 from ..sweeps.sweep_figures import distance
 from . import peers, study, textbook
 

@@ -12,11 +12,12 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
-from .. import run, scene
+from .. import results, run, scene
 from ..failure import Failure
+from ..folder import result_folder
 from ..parameters import ROOT
+from ..places import shown
 from ..report.figures import BLUE, GREY, ORANGE, STYLE
-from ..run import result_folder, shown
 from . import study
 
 PHASES = ("assembly", "factor", "solve", "contact", "output", "audit", "setup", "other")
@@ -69,7 +70,7 @@ def profile(out: Path, rate: float, quick: bool) -> pd.DataFrame:
     """A row a case: seconds by phase, their sum (the wall time), and a step beside its floor; rate: bytes a second."""
     rows = []
     for name, (wanted, point) in list(CASES.items())[:2 if quick else None]:
-        result = run.run(scene.load(wanted), {"fields": 0} | point, out / "runs" / name.replace(",", "").replace(" ", "-"), force=True, pictures=False)
+        result = run.run(scene.load(wanted), {"fields": 0} | point, out / "runs" / name.replace(",", "").replace(" ", "-"), force=True)
         end = result.summary
         phases = end["phase_seconds"]
         floor = end["residual_evaluations"] * end["operator_bytes"] / rate + phases["solve"]
@@ -90,7 +91,7 @@ def growth(out: Path, quick: bool) -> tuple[pd.DataFrame, dict[str, tuple[float,
     rows = study.study(points, out, {"fields": 0, "dt": DT, "end_time": STEPS * DT}, LIMIT, cores=1)
     if rows.exit.any():
         raise Failure(f"costs: {rows.message[rows.exit != 0].iloc[0]}", int(rows.exit.max()))
-    setup = pd.Series([run.read_summary(study.place(out, point))["phase_seconds"]["setup"] for point in points])
+    setup = pd.Series([results.read_summary(study.place(out, point))["phase_seconds"]["setup"] for point in points])
     table = pd.DataFrame({"dofs": rows.dofs, "seconds": rows.cpu_seconds, "ms a step": 1e3 * (rows.cpu_seconds - setup) / rows.steps,
                           "set-up": setup, "memory, MB": rows.peak_memory / 1e6})
     laws = {}

@@ -6,8 +6,10 @@ from pathlib import Path
 import pandas as pd
 
 from .. import estimate
+from ..folder import result_folder
 from ..parameters import ROOT
-from ..run import read_scene, result_folder, shown
+from ..places import shown
+from ..results import read_scene
 from . import draws, study
 
 SPEEDS = (0.001, 0.01, 0.1)         # over sqrt(E/density)

@@ -6,8 +6,10 @@ from pathlib import Path
 import pandas as pd
 
 from .. import estimate
+from ..folder import result_folder
 from ..parameters import ROOT, defaults, whole
-from ..run import read_answers, read_scene, result_folder, shown
+from ..places import shown
+from ..results import read_answers, read_scene
 from . import draws, study
 
 SEED, COUNT = 41, 40        # other scenes than those of the calibration (seeds 1, 2, 5 and 40)

@@ -13,9 +13,10 @@ from matplotlib.ticker import NullLocator
 from .. import scene as scenes
 from ..describe import describe
 from ..failure import Failure
+from ..folder import result_folder
 from ..parameters import ROOT, defaults
+from ..places import shown
 from ..report.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE
-from ..run import result_folder, shown
 from . import study
 
 ANSWERS = {                 # by scene; all but the last are promised to ASKED

@@ -6,8 +6,10 @@ from pathlib import Path
 import pandas as pd
 
 from .. import estimate
+from ..folder import result_folder
 from ..parameters import ROOT, defaults
-from ..run import read_scene, result_folder, shown
+from ..places import shown
+from ..results import read_scene
 from . import draws, study
 
 CASES = {"normal": {"law": "svk", "nu": 0.45}, "oblique": {"law": "neohookean", "nu": 0.45, "angle": 60.0, "friction_static": 0.7, "friction_dynamic": 0.5}}

@@ -6,8 +6,10 @@ from pathlib import Path
 import pandas as pd
 
 from ..failure import Failure
+from ..folder import result_folder
 from ..parameters import ROOT
-from ..run import read_history, result_folder, shown
+from ..places import shown
+from ..results import read_history
 from . import study
 
 BASE = {"height": 0.05, "fields": 0}   # a drop from 5 cm above the plane, so that there is a flight

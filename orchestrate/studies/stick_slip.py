@@ -12,9 +12,11 @@ import pandas as pd
 from matplotlib.patches import Rectangle
 
 from ..failure import Unreadable
+from ..folder import result_folder
 from ..parameters import ROOT
+from ..places import shown
 from ..report.figures import BLACK, LAWS, STYLE
-from ..run import read_history, result_folder, shown
+from ..results import read_history
 from . import study
 
 AXES = {"slip_velocity": (0.03, 0.3, 1.0, 3.0), "penalty": (1e8, 1e9, 1e10), "nu": (0.3, 0.4, 0.45), "angle": (60.0, 30.0)}

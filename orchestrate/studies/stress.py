@@ -11,9 +11,10 @@ import pandas as pd
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm
 
+from ..folder import result_folder
 from ..parameters import ROOT, whole
+from ..places import shown
 from ..report.figures import LAWS, STYLE
-from ..run import result_folder, shown
 from . import study
 
 AXES = {"law": ("svk", "neohookean"), "nu": (0.0, 0.3, 0.45, 0.49), "speed": (0.5, 4.0, 10.0), "penalty": (1e9, 1e10, 1e12),

@@ -7,9 +7,10 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
+from ..folder import result_folder
 from ..parameters import ROOT, whole
+from ..places import shown
 from ..report.figures import BLUE, ORANGE, PURPLE, STYLE
-from ..run import result_folder, shown
 from . import stress, study
 
 SEED, SETS = 2024, 300

@@ -1,7 +1,6 @@
 """Studies: many runs of one scene, one FreeFem++ a core at most; whatever a run comes to becomes a row of a table."""
 
 import hashlib
-import json
 import multiprocessing
 import os
 import signal
@@ -18,6 +17,7 @@ from tqdm import tqdm
 from .. import estimate as estimates, freefem, run, scene, stopping
 from ..failure import Busy, Failure, TooLong, Unreadable
 from ..parameters import Value, decisive
+from ..results import read_json
 
 CORES = len(os.sched_getaffinity(0))
 TOO_LONG = TooLong("").code   # of a run that its time limit ended
@@ -126,12 +126,12 @@ def _outcome(folder: Path, wanted: scene.Scene, estimate: bool) -> dict | None:
     if found := there(folder, wanted, estimate):
         return found
     try:
-        result = run.run(wanted, out=folder, pictures=False, estimate=estimate)
+        result = run.run(wanted, out=folder, estimate=estimate)
         return _row(0, result.summary["message"], result.reused, result.summary)
     except Busy:
         return None
     except Failure as failure:
-        record = _read_json(failure.folder / "failure.json") if failure.folder else {}
+        record = read_json(failure.folder / "failure.json") if failure.folder else {}
         return _row(failure.code, str(failure), False, record)
     except OSError as error:                             # a full disk
         return _row(Unreadable("").code, f"{error.filename or folder}: {error.strerror}", False, {})
@@ -147,19 +147,11 @@ def _row(code: int, message: str, reused: bool, summary: dict) -> dict:
 def _failed_before(wanted: scene.Scene, folder: Path) -> dict | None:
     """The record of the same scene's failure with the same code: FreeFem++ would say the same again."""
     for place in (folder, folder.with_name(folder.name + ".failed")):
-        record = _read_json(place / "failure.json")
+        record = read_json(place / "failure.json")
         if record.get("exit_code") in (11, 12) and (record.get("provenance") or {}).get("code") == run.code_hash():
             if record["provenance"].get("asked") == decisive(wanted.values):
                 return record
     return None
-
-
-def _read_json(path: Path) -> dict:
-    try:
-        content = json.loads(path.read_text())
-    except (OSError, ValueError):
-        return {}
-    return content if isinstance(content, dict) else {}
 
 
 def warned(warnings: Iterable[str]) -> str:

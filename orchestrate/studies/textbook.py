@@ -9,8 +9,9 @@ import pandas as pd
 
 from .. import freefem, mesh, run, scene
 from ..failure import Failure
+from ..folder import result_folder
 from ..parameters import ROOT, whole
-from ..run import result_folder, shown
+from ..places import shown
 from . import study
 
 DT = 2e-5                   # s
@@ -71,7 +72,7 @@ def compare(case: Case, out: Path, runs: int) -> dict:
 
 def timed(wanted: scene.Scene, folder: Path, mesh_file: Path) -> dict:
     """The summary of a run of ours, made now."""
-    return run.run(wanted, out=folder, mesh_file=mesh_file, force=True, pictures=False).summary
+    return run.run(wanted, out=folder, mesh_file=mesh_file, force=True).summary
 
 
 def _marching(result: dict) -> float:

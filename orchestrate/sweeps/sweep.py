@@ -31,11 +31,12 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from .. import parameters, run, scene
+from .. import parameters, scene
 from ..describe import describe
 from ..failure import BadInput, Busy, Failure, Unreadable
 from ..parameters import ROOT, Value
-from ..run import shown
+from ..folder import result_folder
+from ..places import shown
 from ..studies import study
 from . import sweep_figures
 
@@ -86,7 +87,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--run", metavar="NAME", help="only this run of the list, without table and figure")
     options = parser.parse_args(argv)
     wanted = load(options.sweep)
-    out = run.result_folder(options.out or ROOT / "results/sweeps" / wanted.name)
+    out = result_folder(options.out or ROOT / "results/sweeps" / wanted.name)
     names = {study.place(out, point).name: point for point in wanted.runs}
     if options.list or options.open:
         base = scene.load(wanted.scene).override(wanted.base)

@@ -23,7 +23,7 @@ from ..describe import describe
 from ..failure import BadInput
 from ..report import report
 from ..report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE
-from ..run import read_history
+from ..results import read_history
 from ..studies import study
 
 KINDS = {"lines": ("x", "y", "by"), "map": ("x", "y", "colour", "by", "level", "band"), "histories": ("y", "panel", "by")}

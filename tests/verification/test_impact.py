@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from orchestrate import run, verify
+from orchestrate import results, verify
 
 
 def test_bar_on_a_wall(tmp_path):
@@ -21,7 +21,7 @@ def test_rigid_body_on_the_penalty(tmp_path, exponent, speed):
     """V8: a nearly rigid body on F = K d^m goes as deep and stays as long as the closed form, within 1 %."""
     rows = {row.what: row for row in verify.rigid(tmp_path, exponent, speed, 4e-5)}
     assert all(row.error < 0.01 for row in rows.values())
-    assert run.read_summary(tmp_path)["rebound_vy"] == pytest.approx(speed, rel=1e-3)
+    assert results.read_summary(tmp_path)["rebound_vy"] == pytest.approx(speed, rel=1e-3)
     if exponent == 1:
         time = math.pi * math.sqrt(verify.DENSITY * verify.LENGTH / 1e7)   # whatever the speed
         assert rows["m = 1: contact time"].expected == pytest.approx(time)
