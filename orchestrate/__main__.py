@@ -74,7 +74,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _run(options: argparse.Namespace) -> None:
-    from . import parameters, results, run, scene
+    from . import parameters, run, scene
     from .report import report
     given = parameters.overrides(options.set)
     if options.checkpoint_every:

@@ -17,11 +17,12 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from .. import parameters, results, scene, verify
+from .. import parameters, scene, verify
 from ..failure import Failure, Unreadable
 from ..folder import result_folder
 from ..parameters import ROOT, Value
 from ..places import shown
+from ..results import read_history, read_scene, read_summary
 from ..studies import stick_slip, study
 from ..sweeps import sweep, sweep_figures
 
@@ -73,11 +74,11 @@ class Results:
 
     def summary(self, name: str) -> dict:
         """The summary of a run."""
-        return results.read_summary(self.run(name))
+        return read_summary(self.run(name))
 
     def history(self, name: str) -> dict[str, np.ndarray]:
         """The history of a run."""
-        return results.read_history(self.run(name))
+        return read_history(self.run(name))
 
     def sweep(self, name: str) -> Path:
         """The folder of a sweep."""
@@ -232,7 +233,7 @@ def sliding_first(results: Results) -> Finding:
 @states("Section 3.1", "a disc that impacts and rolls")
 def rolls(results: Results) -> Finding:
     """Agrees where the disc, set down at v₀, ends rolling at 2/3 v₀ within 1 %, as a rigid one."""
-    end, used = results.summary("disc-rolling"), results.read_scene(results.run("disc-rolling"))
+    end, used = results.summary("disc-rolling"), read_scene(results.run("disc-rolling"))
     ratio = end["rebound_vx"] / used["speed"]
     rim = -used["radius"] * end["spin"] / used["speed"]
     good = abs(ratio / (2 / 3) - 1) < 0.01 and abs(rim / (2 / 3) - 1) < 0.01
@@ -339,7 +340,7 @@ def _finished(results: Results, name: str) -> pd.DataFrame:
 def _both(results: Results) -> list[dict[str, np.ndarray]]:
     """The histories of the oblique impact for nu = 0.45 with the plain and the refined mesh and step."""
     wanted, out = sweep.load("oblique"), results.sweep("oblique")
-    return [results.read_history(study.place(out, {"nu": 0.45} | more)) for more in ({}, wanted.refine)]
+    return [read_history(study.place(out, {"nu": 0.45} | more)) for more in ({}, wanted.refine)]
 
 
 def _trends(results: Results, name: str) -> tuple[list[sweep_figures.Trend | None], str, tuple[list[Path], list[Path]]]:
@@ -435,7 +436,7 @@ def _table(frame: pd.DataFrame, formats: dict[str, str]) -> str:
 
 def _provenance(folders: list[Path]) -> str:
     """Parameters that differ from their defaults, common to all runs and by run, and where the runs come from."""
-    scenes = [results.read_scene(folder) for folder in folders if (folder / "scene.toml").exists()]
+    scenes = [read_scene(folder) for folder in folders if (folder / "scene.toml").exists()]
     if not scenes:
         return ""
     standard = parameters.defaults()
