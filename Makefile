@@ -51,7 +51,7 @@ movie: $(READY) ## a film of a scene: make movie CASE=disc-oblique
 	@$(PYTHON) -m orchestrate $@ $(CASE) $(ARGS)
 
 test: $(READY) ## run all tests
-	@$(PYTHON) -m pytest -q tests $(ARGS)
+	@$(PYTHON) -m pytest -q tests verification $(ARGS)
 
 robustness: $(READY) ## malformed input, kills, and hard runs drawn at random: nothing is silently wrong, lost or left behind
 	@$(PYTHON) -m pytest -q -m "robustness or not robustness" tests/test_malformed.py tests/test_direct.py tests/test_kills.py

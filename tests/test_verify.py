@@ -10,7 +10,7 @@ from orchestrate import verify
 from orchestrate.__main__ import main
 from orchestrate.failure import Failure
 from orchestrate.report import paper
-from orchestrate.verify import Case, Row
+from verification.case import Case, Row
 
 
 def case(numbers, **given) -> Case:

@@ -8,11 +8,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from orchestrate import freefem, measure, parameters, results, run, scene
+from orchestrate import freefem, parameters, results, run, scene
 from orchestrate.report import figures, report
 from orchestrate.report.figures import plt
 from orchestrate.studies import study
 from orchestrate.sweeps import sweep
+from verification import measure
 
 COARSE = dict(accuracy=0.1, mesh_size=0.02, contact_mesh_size=0.006, dt=5e-5)
 OBLIQUE = COARSE | dict(angle=60, law="neohookean", friction_static=0.7)

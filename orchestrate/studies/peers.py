@@ -1,4 +1,4 @@
-"""Other programs on the same disc (tests/oracle/*_disc.py): found where they are installed, run one process at a time.
+"""Other programs on the same disc (verification/peers/*_disc.py): found where they are installed, run one process at a time.
 
 NGSolve: `pip install ngsolve==6.2.2608`, in this Python or in the one that $NGSOLVE_PYTHON names. GetFEM: Debian's python3-getfem,
 in /usr/bin/python3 or in $GETFEM_PYTHON. Nothing else needs them.
@@ -52,7 +52,7 @@ def run(program: str, form: str, mesh_size: float, contact_mesh_size: float, dt:
             mesh.write(mesh.disc(RADIUS, mesh_size, contact_mesh_size, half=True), Path(flags["mesh"]))
         words = [word for name, value in flags.items() for word in (f"--{name.replace('_', '-')}", str(value))]
         try:
-            done = subprocess.run([python, ROOT / f"tests/oracle/{program}_disc.py", *words], env=os.environ | ONE_THREAD,
+            done = subprocess.run([python, ROOT / f"verification/peers/{program}_disc.py", *words], env=os.environ | ONE_THREAD,
                                   cwd=folder, capture_output=True, text=True, timeout=limit,
                                   preexec_fn=partial(die_with_parent, os.getpid(), SIGKILL))
         except subprocess.TimeoutExpired:

@@ -1,4 +1,4 @@
-"""Seconds a step of the program and of the plain textbook script tests/oracle/textbook.edp: same mesh, step and answers."""
+"""Seconds a step of the program and of the plain textbook script verification/peers/textbook.edp: same mesh, step and answers."""
 
 import argparse
 import statistics
@@ -17,7 +17,7 @@ from . import study
 DT = 2e-5                   # s
 OURS = 3                    # runs of the program at least: they are short, and a busy neighbour shows
 ASKED = 40                  # times as fast as the textbook
-TEXTBOOK = "../tests/oracle/textbook"
+TEXTBOOK = "../verification/peers/textbook"
 
 
 @dataclass(frozen=True)
