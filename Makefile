@@ -5,7 +5,7 @@ READY := .venv/.ready
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup disc-normal disc-oblique disc-rolling friction-laws oblique contact-time-svk law-comparison contact-time-neohookean calibrate stick-slip verify paper movie test robustness stress bench bench-quick textbook skipping costs promise scaling materials refine refine-oblique clean
+.PHONY: help setup disc-normal disc-oblique disc-rolling friction-laws oblique contact-time-svk law-comparison contact-time-neohookean calibrate stick-slip verify paper movie test robustness bench bench-quick textbook skipping costs promise scaling materials refine refine-oblique clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
@@ -51,14 +51,12 @@ movie: $(READY) ## a film of a scene: make movie CASE=disc-oblique
 	@$(PYTHON) -m orchestrate $@ $(CASE) $(ARGS)
 
 test: $(READY) ## run all tests
-	@$(PYTHON) -m pytest -q tests $(ARGS)
+	@$(PYTHON) -m pytest -q tests verification $(ARGS)
 
-robustness: $(READY) ## malformed input, kills, and hard runs drawn at random: nothing is silently wrong, lost or left behind
+robustness: $(READY) ## malformed input, kills, hard runs drawn at random, and every combination of hard parameters: nothing is silently wrong, lost or left behind
 	@$(PYTHON) -m pytest -q -m "robustness or not robustness" tests/test_malformed.py tests/test_direct.py tests/test_kills.py
-	@$(PYTHON) -m orchestrate promise --hard --scenes 200 --seed 200 --out results/robustness --page docs/robustness.md $(ARGS)
-
-stress: $(READY) ## hard parameter sets: every combination of some, and hundreds drawn from all; which hold, which fail and why
-	@$(PYTHON) -m orchestrate stress $(ARGS)
+	@$(PYTHON) -m orchestrate promise --hard --scenes 200 --seed 201 --out results/robustness --page docs/robustness.md $(ARGS)
+	@$(PYTHON) -m orchestrate stress
 	@$(PYTHON) -m orchestrate stress-map
 
 promise scaling materials: override ARGS += --page docs/$@.md

@@ -9,8 +9,10 @@ from pathlib import Path
 from . import stopping
 from .failure import BadInput, Failure, Unreadable
 
-OWN_MAIN = ("compare", "movie", "friction-laws", "stick-slip", "sweep", "verify", "paper", "stress", "stress-map", "bench", "textbook",
-            "skipping", "costs", "promise", "refine", "scaling", "materials")   # modules with a main(argv)
+# the commands with a module of their own, which has a main(argv), by its package
+PACKAGES = {"sweeps": ("sweep",), "report": ("friction-laws", "compare", "movie", "paper"),
+            "studies": ("stick-slip", "stress", "stress-map", "bench", "textbook", "skipping", "costs", "promise", "refine", "scaling", "materials")}
+OWN_MAIN = {"verify": "verify"} | {name: f"{package}.{name.replace('-', '_')}" for package, names in PACKAGES.items() for name in names}
 
 
 def main(argv: list[str]) -> int:
@@ -18,14 +20,14 @@ def main(argv: list[str]) -> int:
     argparse.ArgumentParser.error = _bad_usage   # one line and exit code 10 as for any bad input
     try:
         if argv[:1] and argv[0] in OWN_MAIN:
-            return importlib.import_module(f"{__package__}.{argv[0].replace('-', '_')}").main(argv[1:]) or 0
+            return importlib.import_module(f"{__package__}.{OWN_MAIN[argv[0]]}").main(argv[1:]) or 0
         options = _parser().parse_args(argv)
         options.command(options)
         return 0
     except Failure as failure:
         print(f"ffimpact: {failure}", file=sys.stderr)
         if failure.folder:
-            from .run import shown
+            from .places import shown
             print(f"files of the failed run: {shown(failure.folder)}")
         return failure.code
     except BrokenPipeError:   # the reader of our output left
@@ -72,12 +74,14 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _run(options: argparse.Namespace) -> None:
-    from . import parameters, report, run, scene
+    from . import parameters, run, scene
+    from .report import report
     given = parameters.overrides(options.set)
     if options.checkpoint_every:
         given["checkpoint_every"] = options.checkpoint_every
     result = run.run(scene.load(options.scene), given, options.out, mesh_file=options.mesh,
                      force=options.force, progress=not options.quiet and sys.stderr.isatty())
+    report.draw(result)
     if not options.quiet:
         print(report.report(result))
 
@@ -97,8 +101,9 @@ def _parameters(options: argparse.Namespace) -> None:
 
 
 def _figures(options: argparse.Namespace) -> None:
-    from . import figures, run
-    for path in figures.draw(options.folder, run.read_summary(options.folder)["warnings"]):
+    from . import results
+    from .report import figures
+    for path in figures.draw(options.folder, results.read_summary(options.folder)["warnings"]):
         print(path)
 
 

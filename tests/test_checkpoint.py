@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from orchestrate import freefem, parameters, run, scene
+from orchestrate import freefem, parameters, results, run, scene
 from orchestrate.failure import Failure, Unreadable
 from test_cli import call, is_alive, start, wait_for
 
@@ -62,12 +62,12 @@ def kill_at(process: subprocess.Popen, checkpoint: Path, rows: int) -> None:
 def assert_same(folder: Path, straight: Path) -> None:
     """Histories and summaries agree to round-off, 1e-12 of the largest value of a column (the balance is itself round-off:
     of the energy); snapshots to their 9 digits."""
-    there, expected = run.read_history(folder), run.read_history(straight)
+    there, expected = results.read_history(folder), results.read_history(straight)
     assert list(there) == list(expected)
     for name, column in expected.items():
         scale = np.abs(expected["kinetic" if name == "balance" else name]).max()
         np.testing.assert_allclose(there[name], column, rtol=0, atol=1e-12 * scale, err_msg=name)
-    there, expected = run.read_summary(folder), run.read_summary(straight)
+    there, expected = results.read_summary(folder), results.read_summary(straight)
     assert list(there) == list(expected)
     for name in set(expected) - set(EFFORT):
         exact = not isinstance(expected[name], float)
@@ -97,9 +97,9 @@ def test_half_a_run_and_the_rest_are_the_whole(tmp_path, name):
     last = direct(flags | {"restart": out / "checkpoint"}, out)
     assert last.communicate(timeout=120) and last.returncode == 0
     assert_same(out, tmp_path / "straight")
-    summary = run.read_summary(out)
-    assert summary["resumed_at"] == run.read_history(out)["t"][knows - 1]
-    assert run.read_summary(tmp_path / "straight")["resumed_at"] is None
+    summary = results.read_summary(out)
+    assert summary["resumed_at"] == results.read_history(out)["t"][knows - 1]
+    assert results.read_summary(tmp_path / "straight")["resumed_at"] is None
     assert not {path.name for path in out.iterdir()} - {"scene.toml", "history.csv", "summary.json", "fields", "fields.pvd"}
 
 
@@ -110,9 +110,9 @@ COMMAND = ("run", "disc-normal", "--quiet", "--checkpoint-every", "10", "--set",
            *(f"{name}={value}" for name, value in SET.items() if name != "checkpoint_every"), "--out")
 
 
-def go(out: Path, **changed) -> run.RunResult:
+def go(out: Path, **changed) -> results.RunResult:
     options = {name: changed.pop(name) for name in ("force", "mesh_file") if name in changed}
-    return run.run(scene.load("disc-normal"), SET | changed, out, pictures=False, **options)
+    return run.run(scene.load("disc-normal"), SET | changed, out, **options)
 
 
 def children(process: subprocess.Popen) -> list[int]:
@@ -120,7 +120,7 @@ def children(process: subprocess.Popen) -> list[int]:
 
 
 @pytest.fixture(scope="module")
-def straight(tmp_path_factory) -> run.RunResult:
+def straight(tmp_path_factory) -> results.RunResult:
     """The run that is never killed."""
     return go(tmp_path_factory.mktemp("straight") / "out", checkpoint_every=0)
 
@@ -150,7 +150,7 @@ def out(killed, tmp_path) -> Path:
 def test_killed_driver(out, straight):
     """After kill -9 of the driver the same command goes on, and leaves the folder that a straight run leaves."""
     assert call(*COMMAND, str(out)) == (0, "", "")
-    result = run.RunResult(out, run.read_summary(out), False)
+    result = results.RunResult(out, results.read_summary(out), False)
     assert result.summary["resumed_at"] > 1.5e-3
     assert set(result.summary["provenance"]) == set(straight.summary["provenance"])
     assert {path.name for path in out.iterdir()} == {path.name for path in straight.folder.iterdir()} | {"figures"}
@@ -207,7 +207,7 @@ def test_failed_run_leaves_no_checkpoint(tmp_path):
     with pytest.raises(Failure) as error:
         go(tmp_path / "out", law="svk", speed=60, dt=0, checkpoint_every=1)
     assert error.value.code in (11, 12) and error.value.folder == tmp_path / "out"
-    assert len(run.read_history(tmp_path / "out")["t"]) > 2
+    assert len(results.read_history(tmp_path / "out")["t"]) > 2
     assert not list(tmp_path.glob("out/checkpoint*")) and not list(tmp_path.glob("out.*"))
 
 

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from orchestrate import parameters, run
-from orchestrate.__main__ import main
+from orchestrate.__main__ import OWN_MAIN, main
 from orchestrate.failure import Unreadable
 
 ROOT = parameters.ROOT
@@ -56,6 +56,20 @@ def test_run_reports_beside_the_published_numbers(fake, tmp_path):
     assert "4.8 (paper, section 3.3; k, nu not stated in the paper)" in out
     assert "figures/{energies,force,shapes,velocity}.png" in out and "half of the disc" in out
     assert "finished earlier" in call("run", "disc-normal", "--out", str(tmp_path / "out"))[1]
+
+
+def test_a_run_needs_no_matplotlib(fake, tmp_path, monkeypatch, capsys):
+    """Where nothing can be drawn one line says so, and the run is finished and reported all the same; drawn once it can be."""
+    with monkeypatch.context() as without:
+        without.setitem(sys.modules, "orchestrate.report.figures", None)
+        without.delattr("orchestrate.report.figures", raising=False)
+        assert main(["run", "disc-normal", "--out", str(tmp_path / "out")]) == 0
+    said, starts = capsys.readouterr(), fake.starts()
+    assert said.err.startswith("ffimpact: the figures could not be drawn: ") and said.err.count("\n") == 1 and "contact time" in said.out
+    assert main(["run", "disc-normal", "--out", str(tmp_path / "out")]) == 0 and (tmp_path / "out/figures/force.png").exists()
+    assert "finished earlier" in capsys.readouterr().out and fake.starts() == starts
+    known = subprocess.run([sys.executable, "-c", "import orchestrate.run, sys; print('matplotlib' in sys.modules)"], cwd=ROOT, capture_output=True, text=True)
+    assert known.stdout == "False\n"
 
 
 def test_published_numbers_are_not_shown_beside_another_scene(fake, tmp_path):
@@ -178,5 +192,5 @@ def test_a_loop_of_links_is_no_folder(tmp_path, command):
     (tmp_path / "loop").symlink_to(tmp_path / "pool")
     (tmp_path / "pool").symlink_to(tmp_path / "loop")
     with pytest.raises(Unreadable, match="cannot be made") as error:
-        importlib.import_module(f"orchestrate.{command.replace('-', '_')}").main(["--out", str(tmp_path / "loop/out")])
+        importlib.import_module(f"orchestrate.{OWN_MAIN[command]}").main(["--out", str(tmp_path / "loop/out")])
     assert error.value.code == 14

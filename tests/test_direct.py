@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from orchestrate import freefem, mesh, parameters, run, scene
+from orchestrate import folder, freefem, mesh, parameters, run, scene
 
 COARSE = ("-law", "neohookean", "-nu", "0.4", "-accuracy", "0.4")
 ODD = "it's; touch pwned #$(touch pwned)`touch pwned`\"\\ *"     # a name that a shell would make something of
@@ -51,7 +51,7 @@ def test_any_name_will_do(tmp_path, name):
 
 def test_any_name_will_do_for_python(tmp_path):
     """The same through Python, which hands its paths to the script."""
-    result = run.run(scene.load("disc-normal"), {"accuracy": 0.4, "law": "neohookean", "nu": 0.4, "checkpoint_every": 5}, tmp_path / ODD, pictures=False)
+    result = run.run(scene.load("disc-normal"), {"accuracy": 0.4, "law": "neohookean", "nu": 0.4, "checkpoint_every": 5}, tmp_path / ODD)
     assert result.summary["status"] == "ok" and not list(tmp_path.rglob("pwned"))
 
 
@@ -75,7 +75,7 @@ def test_second_run_on_a_folder_is_refused(tmp_path):
 def test_run_in_a_folder_that_python_is_at_is_refused(tmp_path):
     """Python makes the files of DIR in DIR.part: as long as that is locked, DIR is taken."""
     (tmp_path / "out.part").mkdir()
-    lock = run._hold(tmp_path / "out.part", tmp_path / "out")
+    lock = folder._hold(tmp_path / "out.part", tmp_path / "out")
     code, _, error = call(*COARSE, "-out", "out", cwd=tmp_path)
     os.close(lock)
     assert code == 14 and "another run" in error

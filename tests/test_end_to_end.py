@@ -10,9 +10,10 @@ import sys
 import numpy as np
 import pytest
 
-from orchestrate import freefem, parameters, report, run, scene, vtu
+from orchestrate import freefem, parameters, results, run, scene, vtu
 from orchestrate.describe import describe
 from orchestrate.failure import NotInstalled
+from orchestrate.report import report
 
 COLUMNS = ("t dt normal_force friction_force kinetic elastic contact friction_work external_work balance momentum_x momentum_y "
            "vx vy spin max_penetration contact_size sliding_fraction min_jacobian min_stretch newton_iterations min_ellipticity").split()
@@ -24,7 +25,9 @@ KEYS = ("status message warnings contact_time thresholded_contact_time contact_i
 
 @pytest.fixture(scope="module")
 def result(tmp_path_factory):
-    return run.run(scene.load("disc-normal"), {}, tmp_path_factory.mktemp("real") / "disc-normal")
+    found = run.run(scene.load("disc-normal"), {}, tmp_path_factory.mktemp("real") / "disc-normal")
+    report.draw(found)
+    return found
 
 
 def test_folder_holds_what_the_contract_says(result):
@@ -78,7 +81,7 @@ def test_snapshots_can_be_read(result):
 def test_stress_of_the_snapshots_agrees_with_its_von_mises_stress(tmp_path):
     """A mean of stresses has at most the mean of their von Mises stresses, and nearly it where the mesh resolves the stress."""
     fine = dict(mesh_size=5.6e-3, contact_mesh_size=1.7e-3, dt=3.5e-5)
-    result = run.run(scene.load("disc-normal"), fine, tmp_path / "fine", pictures=False, estimate=False)
+    result = run.run(scene.load("disc-normal"), fine, tmp_path / "fine", estimate=False)
     snapshots = [vtu.read(path).fields for _, path in vtu.series(result.folder / "fields.pvd")]
     largest = max(fields["von_mises"].max() for fields in snapshots)
     for fields in snapshots:
@@ -190,9 +193,9 @@ def test_breakdown_can_be_run_through(tmp_path):
     """With breakdown=continue the same impact is computed to its end, and its summary tells when the law broke down."""
     process = call("speed=14", "breakdown=continue", "accuracy=0.1", out=tmp_path / "out")
     assert process.returncode == 0, process.stderr
-    summary = run.read_summary(tmp_path / "out")
+    summary = results.read_summary(tmp_path / "out")
     assert 0 < summary["breakdown_time"] < 5e-3 and summary["min_jacobian"] <= 0 and summary["rebound_vy"] > 0
-    h = run.read_history(tmp_path / "out")
+    h = results.read_history(tmp_path / "out")
     assert h["t"][np.argmax(h["min_jacobian"] <= 0)] == pytest.approx(summary["breakdown_time"])
     assert h["t"][np.argmax(h["min_ellipticity"] <= 0)] == summary["ellipticity_lost_time"] < summary["breakdown_time"]
     assert np.hypot(summary["ellipticity_lost_x"], summary["ellipticity_lost_y"] - 0.05) <= 0.05
@@ -202,7 +205,7 @@ def test_neohookean_does_not_break_down(tmp_path):
     """The same impact under the neo-Hookean law keeps det F > 0."""
     process = direct("-speed", "14", "-law", "neohookean", "-accuracy", "0.1", "-end_time", "0.006", "-out", str(tmp_path / "out"))
     assert process.returncode == 0
-    summary = run.read_summary(tmp_path / "out")
+    summary = results.read_summary(tmp_path / "out")
     assert summary["breakdown_time"] is None and summary["min_jacobian"] > 0.2 and summary["energy_drift"] < 1e-8
 
 
@@ -237,7 +240,7 @@ def test_both_ways_choose_the_same_scene(tmp_path, given):
     recorded scene is that scene."""
     given = given | {"accuracy": 0.1, "end_time": 1e-6}
     assert direct(*(word for name, value in given.items() for word in (f"-{name}", str(value))), "-out", str(tmp_path)).returncode == 0
-    found, told = run.read_scene(tmp_path), describe(given)
+    found, told = results.read_scene(tmp_path), describe(given)
     assert found == {"script": "disc-plane"} | told["used"] and 0 not in (found["mesh_size"], found["contact_mesh_size"])
     assert "auto" not in found.values() and told["half"] == (found["symmetry"] == "half")
     assert describe(scene.load(str(tmp_path / "scene.toml")).values)["used"] == told["used"]
@@ -269,11 +272,11 @@ def test_own_mesh_of_a_slow_impact_gives_what_gmsh_gives(tmp_path, symmetry):
     """At 1e-5 of the bar's sound speed, where the contact is 1/220 of the radius, a direct run on its own mesh of half the disc or all of
     it agrees with Python's on gmsh's to the accuracy asked."""
     given = {"law": "neohookean", "nu": 0.4, "speed": 6.38e-4, "penalty": "auto", "accuracy": 0.005, "fields": 0}
-    theirs = run.run(scene.load("disc-normal"), given, tmp_path / "python", pictures=False, estimate=False).summary
+    theirs = run.run(scene.load("disc-normal"), given, tmp_path / "python", estimate=False).summary
     flags = [str(word) for name, value in (given | {"symmetry": symmetry}).items() for word in (f"-{name}", value)]
     process = direct(*flags, "-out", str(tmp_path / "direct"))
     assert process.returncode == 0, process.stdout + process.stderr
-    ours = run.read_summary(tmp_path / "direct")
+    ours = results.read_summary(tmp_path / "direct")
     for key in ("thresholded_contact_time", "impulse"):
         assert ours[key] == pytest.approx(theirs[key], rel=given["accuracy"]), key
 
@@ -297,7 +300,7 @@ def test_chatter_is_11_or_a_warning(tmp_path, how):
         assert plain.returncode == 11
     else:
         assert process.returncode == plain.returncode == 0, process.stderr
-        summary = run.read_summary(tmp_path / "out")
+        summary = results.read_summary(tmp_path / "out")
         assert summary["status"] == "ok" and summary["message"] == "" and any(re.fullmatch(told, each) for each in summary["warnings"]) and summary["rebound_vy"] > 0
         assert "warning                 chatter: " in process.stdout and "warning           chatter: " in plain.stdout
 
@@ -305,14 +308,14 @@ def test_chatter_is_11_or_a_warning(tmp_path, how):
 def test_a_sensible_penalty_does_not_chatter(tmp_path):
     """The same coarse disc at the default penalty ends without a word of chatter."""
     process = call(*(f"{name}={value}" for name, value in COARSE.items()), out=tmp_path / "out")
-    assert process.returncode == 0 and not any("chatter" in each for each in run.read_summary(tmp_path / "out")["warnings"])
+    assert process.returncode == 0 and not any("chatter" in each for each in results.read_summary(tmp_path / "out")["warnings"])
 
 
 def test_hopping_is_no_chatter(tmp_path):
     """A disc that hops on the plane under gravity is back within a wave's transit many times, but not in a row: no failure, no warning."""
     process = direct("-law", "neohookean", "-speed", "0", "-height", "1e-5", "-gravity", "9.81", "-end_time", "0.7", "-accuracy", "0.4", "-degree", "1",
                      "-mesh_size", "0.01", "-contact_mesh_size", "0.01", "-out", str(tmp_path / "out"))
-    summary = run.read_summary(tmp_path / "out")
+    summary = results.read_summary(tmp_path / "out")
     assert process.returncode == 0 and summary["contact_intervals"] > 40 and not any("chatter" in each for each in summary["warnings"])
 
 

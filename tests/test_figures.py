@@ -5,8 +5,9 @@ import xml.etree.ElementTree as xml
 import numpy as np
 import pytest
 
-from orchestrate import figures, vtu
+from orchestrate import vtu
 from orchestrate.failure import Unreadable
+from orchestrate.report import figures
 
 
 def test_all_figures_are_drawn(finished_folder):

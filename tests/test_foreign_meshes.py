@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from orchestrate import freefem, gmsh_file, mesh, run, scene
+from orchestrate import freefem, gmsh_file, mesh, results, run, scene
 from orchestrate.describe import describe
 from orchestrate.failure import BadInput
 from orchestrate.parameters import ROOT
@@ -179,10 +179,10 @@ SIZE = 0.008                # of the elements of other shapes [m]
 SETTINGS = {"law": "neohookean", "penalty": 1e9, "speed": 4, "fields": 0, "dt": 4e-5}
 
 
-def go(out: Path, m: mesh.Mesh, **values) -> run.RunResult:
+def go(out: Path, m: mesh.Mesh, **values) -> results.RunResult:
     """A run of disc-normal with these values on this mesh; the file is beside the folder."""
     mesh.write(m, out.with_suffix(".msh"))
-    return run.run(scene.load("disc-normal"), SETTINGS | values, out, mesh_file=out.with_suffix(".msh"), pictures=False)
+    return run.run(scene.load("disc-normal"), SETTINGS | values, out, mesh_file=out.with_suffix(".msh"))
 
 
 def shaped(draw, size: float = SIZE) -> mesh.Mesh:
@@ -228,7 +228,7 @@ def whole_of(half: mesh.Mesh) -> mesh.Mesh:
                      np.vstack([outline, number[outline][:, ::-1]]), np.full(2 * len(outline), mesh.FREE))
 
 
-def agree(a: run.RunResult, b: run.RunResult, band: float, names=("normal_force", "kinetic", "elastic", "contact", "y", "vy", "contact_size")) -> None:
+def agree(a: results.RunResult, b: results.RunResult, band: float, names=("normal_force", "kinetic", "elastic", "contact", "y", "vy", "contact_size")) -> None:
     for name in names:
         assert abs(a.history[name] - b.history[name]).max() < band * abs(a.history[name]).max(), name
 
@@ -364,7 +364,7 @@ def test_body_that_is_set_down_is_in_touch_at_once(direct, tmp_path, accuracy):
     """With an end_time it rests on its lowest contact point, and does not fall through the gap between the plane and that point."""
     process = direct("-speed", "0", "-gravity", "9.81", "-accuracy", str(accuracy), "-end_time", "0.01", "-out", str(tmp_path / "out"))
     assert process.returncode == 0, process.stderr
-    summary, history = run.read_summary(tmp_path / "out"), run.read_history(tmp_path / "out")
+    summary, history = results.read_summary(tmp_path / "out"), results.read_history(tmp_path / "out")
     assert 0 <= summary["contact_start"] < 1e-12 and history["normal_force"][1] > 0
     assert abs(history["max_penetration"][0]) < 1e-15 and summary["energy_drift"] < 1e-8
 
@@ -415,9 +415,9 @@ def test_gmsh_file_gives_the_same_answer(tmp_path):
     m = mesh.disc(RADIUS, 0.015, 0.006, True)
     in_gmsh(tmp_path / "gmsh.msh", m, 4.1, True)
     ours = go(tmp_path / "ours", m)
-    theirs = run.run(scene.load("disc-normal"), SETTINGS, tmp_path / "theirs", mesh_file=tmp_path / "gmsh.msh", pictures=False)
+    theirs = run.run(scene.load("disc-normal"), SETTINGS, tmp_path / "theirs", mesh_file=tmp_path / "gmsh.msh")
     agree(ours, theirs, 1e-6)
-    assert run.run(scene.load("disc-normal"), SETTINGS, tmp_path / "theirs", mesh_file=tmp_path / "gmsh.msh", pictures=False).reused
+    assert run.run(scene.load("disc-normal"), SETTINGS, tmp_path / "theirs", mesh_file=tmp_path / "gmsh.msh").reused
 
 
 def test_gmsh_by_default_lets_the_outside_touch(tmp_path):

@@ -5,9 +5,11 @@ import re
 import numpy as np
 import pytest
 
-from orchestrate import compare, figures, parameters, report, run, scene, study, vtu
+from orchestrate import parameters, results, run, scene, vtu
 from orchestrate.__main__ import main
 from orchestrate.failure import BadInput
+from orchestrate.report import compare, figures, report
+from orchestrate.studies import study
 
 COARSE = {"degree": 1, "mesh_size": 0.0125, "contact_mesh_size": 0.0125, "fields": 3}
 FRICTIONLESS = {"energies", "force", "shapes", "velocity"}
@@ -16,7 +18,9 @@ FRICTIONLESS = {"energies", "force", "shapes", "velocity"}
 @pytest.fixture(scope="module")
 def oblique(tmp_path_factory):
     """The oblique impact as the paper ran it, with the real FreeFem++."""
-    return run.run(scene.load("disc-oblique-svk"), {"fields": 5}, tmp_path_factory.mktemp("friction") / "oblique")
+    found = run.run(scene.load("disc-oblique-svk"), {"fields": 5}, tmp_path_factory.mktemp("friction") / "oblique")
+    report.draw(found)
+    return found
 
 
 @pytest.mark.parametrize("name", scene.built_in())
@@ -62,6 +66,7 @@ def test_whole_body_without_friction(tmp_path):
     """Without friction there is no figure of friction or rolling; a whole body still gets its flight."""
     values = COARSE | {"angle": 60, "speed": 4}
     result = run.run(scene.load("disc-normal"), values, tmp_path / "slide")
+    report.draw(result)
     assert {path.stem for path in (result.folder / "figures").iterdir()} == FRICTIONLESS | {"flight"}
     assert "slide" not in report.report(result).replace(str(result.folder), "") and "lost to friction" not in report.report(result)
 
@@ -71,7 +76,7 @@ def test_whole_body_without_friction(tmp_path):
                                     {"regularization": "tanh", "friction_transition": "smooth"}, {"fields": 1}, {"fields": 0}])
 def test_figures_of_unusual_runs(tmp_path, values):
     """Falls from rest, spins, runs that end inside the contact or keep one or no snapshot are drawn without an error."""
-    result = run.run(scene.load("disc-oblique"), COARSE | values, tmp_path / "run", pictures=False)
+    result = run.run(scene.load("disc-oblique"), COARSE | values, tmp_path / "run")
     names = {path.stem for path in figures.draw(result.folder, [])}
     assert FRICTIONLESS - {"shapes"} <= names and ("flight" in names) == (result.scene["fields"] > 2)
 
@@ -87,7 +92,7 @@ def test_report_tells_sliding_from_sticking(oblique):
 def test_report_tells_breakdown_and_unsolved_jumps(oblique):
     """Where there are any, unsolved jumps are told in plain words, and the place and time of a breakdown in mm and ms."""
     told = oblique.summary | {"unsolved_jumps": 7, "breakdown_time": 1.5e-3, "breakdown_x": 0.01, "breakdown_y": 0.002}
-    text = report.report(run.RunResult(oblique.folder, told, reused=False))
+    text = report.report(results.RunResult(oblique.folder, told, reused=False))
     assert "7 steps of points in a jump of the friction law" in text
     for line in (r"det F <= 0 from +1\.5 ms", r"there X = +10 mm", r"there Y = +2 mm"):
         assert re.search(line, text)
@@ -175,5 +180,5 @@ def test_study_of_another_scene(fake, tmp_path):
     """A study runs the scene that it is asked for, disc-normal otherwise."""
     study.study([{"speed": 4.0}], tmp_path, {"fields": 0}, 30.0, "disc-oblique")
     study.study([{"speed": 5.0}], tmp_path, {"fields": 0}, 30.0)
-    used = {folder.name: run.read_scene(folder) for folder in (tmp_path / "runs").iterdir()}
+    used = {folder.name: results.read_scene(folder) for folder in (tmp_path / "runs").iterdir()}
     assert used["speed=4.0"]["friction_static"] == 0.7 and used["speed=5.0"]["friction_static"] == 0

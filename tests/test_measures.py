@@ -4,7 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from orchestrate import bench, costs, run, scene, skipping, stress_map, study
+from orchestrate import run, scene
+from orchestrate.studies import bench, costs, skipping, stress_map, study
 
 
 def rows(**columns) -> pd.DataFrame:
@@ -60,7 +61,7 @@ def test_skipping_changes_no_answer(tmp_path, monkeypatch, capsys):
 def test_what_is_left_out_is_not_called_skipped(tmp_path, without, said):
     """`skipped` in the summary tells what a run really skipped."""
     settings = {"accuracy": 0.2, "height": 1e-3, "end_time": 5e-4}
-    full, left_out = (run.run(scene.load("disc-normal"), settings | {"without": word, "fields": 0}, tmp_path / word, pictures=False)
+    full, left_out = (run.run(scene.load("disc-normal"), settings | {"without": word, "fields": 0}, tmp_path / word)
                       for word in ("none", without))
     assert said in full.summary["skipped"] and said not in left_out.summary["skipped"]
     assert left_out.summary["energy_drift"] < 1e-9
@@ -68,7 +69,7 @@ def test_what_is_left_out_is_not_called_skipped(tmp_path, without, said):
 
 def test_phases_add_up_to_the_wall_time(tmp_path):
     """phase_seconds is the whole wall time, and `other` is not negative beyond the clock's 10 ms."""
-    end = run.run(scene.load("disc-normal"), {"accuracy": 0.1, "fields": 0}, tmp_path / "a", pictures=False).summary
+    end = run.run(scene.load("disc-normal"), {"accuracy": 0.1, "fields": 0}, tmp_path / "a").summary
     assert sum(end["phase_seconds"].values()) == pytest.approx(end["wall_seconds"], abs=1e-9) and end["phase_seconds"]["other"] > -0.02
     assert set(end["phase_seconds"]) == set(costs.PHASES)
     assert end["residual_evaluations"] >= end["newton_iterations"] and 1e6 < end["peak_memory"] < 1e9

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from orchestrate import figures, movie, run, vtu
+from orchestrate import results, vtu
 from orchestrate.__main__ import main
+from orchestrate.report import figures, movie
 
 FFMPEG = """#!/bin/sh
 # keeps the raw frames that it gets, in the file that the last argument names
@@ -138,7 +139,7 @@ def test_body_between_two_snapshots(finished_folder):
 
 def test_frames_differ_in_time_and_nothing_else(finished_folder):
     """From frame to frame the time, the marks on both force curves and the diameter move; axes and colour scale stay."""
-    result = run.RunResult(finished_folder, {}, reused=True)
+    result = results.RunResult(finished_folder, {}, reused=True)
     history = result.history
     history["friction_force"] = -0.3 * history["normal_force"]
     motion = movie.Motion(finished_folder / "fields.pvd", half=True)

@@ -8,9 +8,10 @@ import pandas as pd
 import pytest
 
 import fake_freefem
-from orchestrate import paper, run, scene
+from orchestrate import run, scene
 from orchestrate.__main__ import main
-from orchestrate.paper import AGREES, DIFFERS, OPEN, PARTLY
+from orchestrate.report import paper, report
+from orchestrate.report.paper import AGREES, DIFFERS, OPEN, PARTLY
 
 FIND = {find.__name__: find for _, _, find in paper.STATEMENTS}
 
@@ -130,7 +131,7 @@ def test_a_missing_case_stops_it(tmp_path, capsys):
 def test_only_results_of_the_present_scenes_and_code_count(fake, tmp_path, monkeypatch, change):
     """A case of other code, of another scene, without its picture, that ended by its time limit, or unreadable, is as good as missing."""
     place = tmp_path / "disc-normal"
-    run.run(scene.load("disc-normal"), {"speed": 4} if change == "scene" else {}, out=place)
+    report.draw(run.run(scene.load("disc-normal"), {"speed": 4} if change == "scene" else {}, out=place))
     path = place / "summary.json"
     if change == "code":
         path.write_text(path.read_text().replace(run.code_hash(), "other"))

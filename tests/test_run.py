@@ -6,19 +6,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from orchestrate import freefem, mesh, run, scene
+from orchestrate import freefem, mesh, results, run, scene
 from orchestrate.describe import describe
 from orchestrate.failure import BadInput, Failure, NotInstalled, Unreadable
 
 
-def go(out: Path, overrides: dict | None = None, **options) -> run.RunResult:
-    return run.run(scene.load("disc-normal"), {"fields": 0} | (overrides or {}), out, **{"pictures": False, "estimate": False} | options)
+def go(out: Path, overrides: dict | None = None, **options) -> results.RunResult:
+    return run.run(scene.load("disc-normal"), {"fields": 0} | (overrides or {}), out, **{"estimate": False} | options)
 
 
 def test_finished_run_is_complete(fake, tmp_path):
     """A finished run has the whole folder, a summary with provenance, and leaves no staging folder."""
-    result = go(tmp_path / "out", {"fields": 2}, pictures=True)
-    assert {"scene.toml", "history.csv", "summary.json", "log.txt", "mesh.msh", "fields.pvd", "fields", "figures"} == {
+    result = go(tmp_path / "out", {"fields": 2})
+    assert {"scene.toml", "history.csv", "summary.json", "log.txt", "mesh.msh", "fields.pvd", "fields"} == {
         p.name for p in result.folder.iterdir()}
     assert set(result.summary["provenance"]) == {"script", "asked", "git", "code", "freefem", "gmsh", "mesh", "estimate"}
     assert result.summary["status"] == "ok" and not result.reused
@@ -200,10 +200,10 @@ def test_progress_arrives(fake, tmp_path):
 def test_history_is_read_to_the_last_digit(tmp_path):
     """A table of one row is a table too; a ragged one is named."""
     (tmp_path / "history.csv").write_text("t,vy\n0.10000000000000001,-8\n")
-    assert np.array_equal(run.read_history(tmp_path)["t"], [0.1])
+    assert np.array_equal(results.read_history(tmp_path)["t"], [0.1])
     (tmp_path / "history.csv").write_text("t,vy\n0.1,-8\n0.2\n")
     with pytest.raises(Unreadable, match="history.csv cannot be read"):
-        run.read_history(tmp_path)
+        results.read_history(tmp_path)
 
 
 def test_another_scene_puts_the_folder_aside(fake, tmp_path):
@@ -213,7 +213,7 @@ def test_another_scene_puts_the_folder_aside(fake, tmp_path):
         go(out, {"speed": speed})
         (out / "notes.txt").write_text(f"of {speed} m/s")
     assert [(tmp_path / name / "notes.txt").read_text() for name in ("out", "out.1", "out.2")] == ["of 6 m/s", "of 8 m/s", "of 7 m/s"]
-    assert [run.read_summary(tmp_path / name)["provenance"]["asked"]["speed"] for name in ("out", "out.1", "out.2")] == [6, 8, 7]
+    assert [results.read_summary(tmp_path / name)["provenance"]["asked"]["speed"] for name in ("out", "out.1", "out.2")] == [6, 8, 7]
 
 
 def test_the_same_scene_again_keeps_the_files_of_others(fake, tmp_path):

@@ -7,7 +7,8 @@ import sys
 import pandas as pd
 import pytest
 
-from orchestrate import refine, run, stress, study, textbook
+from orchestrate import results, run
+from orchestrate.studies import refine, stress, study, textbook
 from test_cli import is_alive, start, wait_for
 
 POINTS = [{"speed": speed, "dt": dt} for speed in (4.0, 8.0) for dt in (0.0, 1e-4)]
@@ -24,7 +25,7 @@ def test_rows_are_parameters_outcome_and_summary(fake, tmp_path):
     assert rows[["speed", "dt"]].to_dict("records") == [*POINTS, POINTS[0]]
     assert (rows.exit == 0).all() and (rows.message == "").all() and not rows.reused.any()
     assert (rows.impulse == 208.2).all() and (rows.steps == 200).all() and fake.starts() == 4
-    used = [run.read_scene(folder) for folder in (tmp_path / "runs").iterdir()]
+    used = [results.read_scene(folder) for folder in (tmp_path / "runs").iterdir()]
     assert len(used) == 4 and all(scene["mesh_size"] == 0.02 for scene in used)
 
 

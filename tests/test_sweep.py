@@ -14,11 +14,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from orchestrate import parameters, run, study, sweep, sweep_figures
+from orchestrate import parameters, results, run
 from orchestrate.__main__ import main
 from orchestrate.describe import describe
 from orchestrate.failure import BadInput
-from orchestrate.figures import plt
+from orchestrate.report.figures import plt
+from orchestrate.studies import study
+from orchestrate.sweeps import sweep, sweep_figures
 from test_cli import call, is_alive, start, wait_for
 
 COARSE = "[set]\nmesh_size = 0.02\ncontact_mesh_size = 0.01\n"
@@ -149,7 +151,7 @@ def test_table_and_figure(fake, tmp_path, capsys):
     assert (out / "sweep.toml").read_text() == DRAWN and plt.imread(out / "sweep.png").std() > 0
     said = capsys.readouterr().out
     assert "6 of 6 points finished" in said and "ν = 0.3: contact time over speed" in said and "no error bars" in said
-    assert all(run.read_scene(folder)["mesh_size"] == 0.02 for folder in (out / "runs").iterdir())
+    assert all(results.read_scene(folder)["mesh_size"] == 0.02 for folder in (out / "runs").iterdir())
 
 
 @pytest.mark.parametrize("mode, code, returned", [("material", 12, 0), ("step", 11, 0), ("crash", 1, 1)])

@@ -6,10 +6,11 @@ import math
 import pandas as pd
 import pytest
 
-from orchestrate import paper, verify
+from orchestrate import verify
 from orchestrate.__main__ import main
 from orchestrate.failure import Failure
-from orchestrate.verify import Case, Row
+from orchestrate.report import paper
+from verification.case import Case, Row
 
 
 def case(numbers, **given) -> Case:

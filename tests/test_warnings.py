@@ -8,8 +8,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from orchestrate import figures, freefem, measure, parameters, report, run, scene, study, sweep
-from orchestrate.figures import plt
+from orchestrate import freefem, parameters, results, run, scene
+from orchestrate.report import figures, report
+from orchestrate.report.figures import plt
+from orchestrate.studies import study
+from orchestrate.sweeps import sweep
+from verification import measure
 
 COARSE = dict(accuracy=0.1, mesh_size=0.02, contact_mesh_size=0.006, dt=5e-5)
 OBLIQUE = COARSE | dict(angle=60, law="neohookean", friction_static=0.7)
@@ -115,12 +119,12 @@ def test_direct_run_prints_its_warnings(tmp_path):
     process = subprocess.run([program.command, "-nw", "-ne", "-v", "0", "edp/disc-plane.edp", "-accuracy", "0.1", "-penalty", "1e8", "-out", str(tmp_path / "out")],
                              cwd=parameters.ROOT, env=program.environment, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=120)
     said = re.findall(r"^warning +(.*)$", process.stdout, re.MULTILINE)
-    assert len(said) > 1 and said == run.read_summary(tmp_path / "out")["warnings"]
+    assert len(said) > 1 and said == results.read_summary(tmp_path / "out")["warnings"]
 
 
 def test_report_and_figures_show_them(tmp_path):
     """A row each in the report; below each figure, without what to do."""
-    result = run.run(scene.load("disc-normal"), dict(penalty=1e8, accuracy=0.1, fields=0), tmp_path / "out", pictures=False)
+    result = run.run(scene.load("disc-normal"), dict(penalty=1e8, accuracy=0.1, fields=0), tmp_path / "out")
     told, lines = result.summary["warnings"], report.report(result).splitlines()
     assert len(told) > 1 and [line.split(None, 1)[1] for line in lines if line.startswith("  warning ")] == told
     figure, _ = plt.subplots(figsize=(5.2, 3.2))
@@ -137,7 +141,7 @@ def test_tables_have_a_column_of_them(tmp_path, capsys):
     assert sweep.main([str(tmp_path / "soft.toml"), "--out", str(tmp_path / "out")]) == 0
     rows = pd.read_csv(tmp_path / "out/sweep.csv", keep_default_na=False)
     for where, joined in zip(("penalty=100000000.0", "penalty=10000000000.0"), rows.warnings):
-        assert joined == "; ".join(run.read_summary(tmp_path / "out/runs" / where)["warnings"])
+        assert joined == "; ".join(results.read_summary(tmp_path / "out/runs" / where)["warnings"])
     assert rows.warnings[0].startswith("penalty: ") and "penalty in 1" in capsys.readouterr().out
 
 

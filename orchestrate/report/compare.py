@@ -1,0 +1,85 @@
+"""Runs of several scenes side by side: their reports, and one figure of their forces, energies and velocities."""
+
+import argparse
+import sys
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+from .. import scene
+from ..failure import BadInput, Failure
+from ..folder import result_folder
+from ..parameters import ROOT, overrides
+from ..places import shown
+from ..results import RunResult
+from ..run import run
+from . import report
+from .figures import BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE
+
+
+def main(argv: list[str]) -> int:
+    """Runs or reuses every scene, prints the reports, draws DIR/<names>.png. A scene that fails does not keep the others."""
+    parser = argparse.ArgumentParser(prog="python -m orchestrate compare", description=__doc__)
+    parser.add_argument("scenes", metavar="SCENE", nargs="+", help="two or more built-in scenes or TOML files")
+    parser.add_argument("--set", metavar="NAME=VALUE", nargs="+", action="extend", default=[], help="set a parameter in all of them")
+    parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results", help="a folder for a folder of each scene")
+    options = parser.parse_args(argv)
+    scenes, folder = [scene.load(name) for name in options.scenes], result_folder(options.out)
+    if len({each.name for each in scenes}) < max(2, len(scenes)):
+        raise BadInput("compare: two or more different scenes are needed")
+    results, failed = {}, None
+    for each in scenes:
+        try:
+            result = run(each, overrides(options.set), folder / each.name, progress=sys.stderr.isatty())
+            results[each.name] = result
+            report.draw(result)
+            print(report.report(result) + "\n")
+        except Failure as failure:
+            print(f"{each.name}: failed: {failure}\n")
+            failed = failed or failure
+    if len(results) > 1:
+        path = folder / ("-and-".join(results) + ".png")
+        draw(results, path)
+        print(f"compared in {shown(path)}")
+    if failed:
+        raise failed
+    return 0
+
+
+def draw(results: dict[str, RunResult], path: Path) -> None:
+    """Normal force, friction force, total energy and velocities over time, a colour a run; friction only where there is any."""
+    rubs = any(result.history["friction_force"].any() for result in results.values())
+    with plt.rc_context(STYLE):
+        figure, grid = plt.subplots(2, 2, figsize=(8.2, 5.6), sharex=True)
+        (force, drag), (energy, velocity) = grid
+        for (name, result), colour in zip(results.items(), (BLUE, ORANGE, GREEN, PURPLE) * len(results)):
+            h, used = result.history, result.scene
+            t, per = 1e3 * h["t"], "" if "vz" in h else "/m"
+            force.plot(t, 1e-3 * h["normal_force"], color=colour,
+                       label=f"{name}: {LAWS.get(used['law'], used['law'])}, ν = {used['nu']:g}, {result.summary['dofs']} dofs")
+            drag.plot(t, 1e-3 * h["friction_force"] if rubs else h["max_penetration"] * 1e3, color=colour)
+            energy.plot(t, h["kinetic"] + h["elastic"] + h["contact"], color=colour)
+            energy.plot(t, h["elastic"], color=colour, linestyle="--")
+            velocity.plot(t, h["vy"], color=colour, linestyle="--")
+            if np.any(h["vx"]):
+                velocity.plot(t, h["vx"], color=colour)
+                velocity.plot(t, -used["radius"] * h["spin"], color=colour, linestyle=":")
+        for axes in (drag, velocity):
+            axes.axhline(0, color=GREY, linewidth=0.6)
+        force.set(ylabel=f"normal force [kN{per}]", ylim=(0, None))
+        drag.set_ylabel(f"friction force [kN{per}]" if rubs else "largest penetration [mm]")
+        energy.set(ylabel=f"energy [J{per}]", ylim=(0, None), xlabel="time [ms]")
+        _key(energy, {"total": "-", "elastic": "--"})
+        velocity.set(ylabel="velocity [m/s]", xlabel="time [ms]")
+        _key(velocity, {"$v_x$": "-", "$v_y$": "--", r"$-\omega R$": ":"} if rubs else {"$v_y$": "--"})
+        force.margins(x=0)
+        figure.legend(*force.get_legend_handles_labels(), loc="outside upper center", ncols=1)
+        figure.savefig(path)
+        plt.close(figure)
+
+
+def _key(axes: plt.Axes, lines: dict[str, str]) -> None:
+    """What the kinds of line mean, above the panel."""
+    handles = [plt.Line2D([], [], color="black", linestyle=line, label=label) for label, line in lines.items()]
+    axes.legend(handles=handles, loc="lower center", bbox_to_anchor=(0.5, 1), ncols=len(lines), handlelength=1.8)

@@ -1,0 +1,425 @@
+"""Figures of a finished run: energies, contact force, velocity of the centre of mass, deformed shapes; with friction also
+the friction force, what slides and sticks, and the flight, as figures 4 to 6 of the paper."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from textwrap import wrap
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.collections import TriMesh
+from matplotlib.tri import LinearTriInterpolator, Triangulation
+
+from .. import vtu
+from ..parameters import Value
+from ..results import read_history, read_scene
+
+LAWS = {"svk": "St. Venant–Kirchhoff", "neohookean": "neo-Hookean", "incompressible": "incompressible neo-Hookean"}
+BLUE, ORANGE, GREEN, PURPLE, BLACK, GREY = "#0072b2", "#d55e00", "#009e73", "#aa4499", "#222222", "#999999"
+STYLE = {"font.size": 9, "axes.titlesize": 9, "axes.spines.top": False, "axes.spines.right": False,
+         "axes.linewidth": 0.8, "lines.linewidth": 1.4, "legend.frameon": False, "figure.dpi": 100, "savefig.dpi": 150,
+         "figure.constrained_layout.use": True, "figure.constrained_layout.w_pad": 0.08}
+STRESS = "von Mises stress [MPa]"
+SHAPES = 9   # small multiples at most
+DASHED = (0, (4, 2))
+
+
+def draw(folder: Path, warnings: list[str]) -> list[Path]:
+    """Draws all figures of the run in `folder` into folder/figures, with its warnings below; the files. Unreadable where the
+    folder is broken. energies.png is the last: where it is, all are."""
+    history, scene = read_history(folder), read_scene(folder)
+    snapshots = vtu.series(folder / "fields.pvd")
+    target = folder / "figures"
+    target.mkdir(exist_ok=True)
+    touches = history["normal_force"] > 0
+    contact = {name: column[max(0, int(np.argmax(touches)) - 1):] for name, column in history.items()}   # without the flight
+    with plt.rc_context(STYLE):
+        drawn = {"energies": _energies(contact), "velocity": _velocity(contact)}
+        if history["friction_force"].any():
+            drawn |= {"force": _friction(history, scene), "rolling": _rolling(history, scene)}
+        else:
+            drawn["force"] = _force(contact)
+        if snapshots:
+            half = is_half(scene)
+            drawn["shapes"] = _shapes(snapshots, half)
+            if len(snapshots) > 2 and not half:
+                drawn["flight"] = _flight(history, scene, snapshots)
+        for name, figure in reversed(drawn.items()):
+            figure.suptitle(title(scene), fontsize=9)
+            footer(figure, warnings)
+            figure.savefig(target / f"{name}.png")
+            plt.close(figure)
+    return [target / f"{name}.png" for name in drawn]
+
+
+def footer(figure: plt.Figure, warnings: list[str]) -> None:
+    """The warnings of the run, small, below the figure, which grows by their height; without what to do about them."""
+    width, height = figure.get_size_inches()
+    lines = [line for sentence in warnings for line in wrap("! " + sentence.rpartition(": ")[0], int(22 * width), subsequent_indent="  ")]
+    if lines:
+        figure.set_size_inches(width, height + 0.11 * len(lines) + 0.05)
+        figure.supxlabel("\n".join(lines), fontsize=6, color=ORANGE, x=0.01, ha="left")
+
+
+def title(scene: dict[str, Value]) -> str:
+    """Law, nu, speed, the angle where the impact is oblique, and the friction law where there is one."""
+    angle = "" if scene.get("angle", 90) == 90 else f" at {scene['angle']:g}°"
+    text = f"{LAWS.get(scene['law'], scene['law'])}, ν = {scene['nu']:g}, {scene['speed']:g} m/s{angle}"
+    if scene.get("friction_static", 0) > 0:
+        text += (f"\nfriction {scene['friction_static']:g} static, {scene['friction_dynamic']:g} dynamic, "
+                 f"{scene['regularization']}, ε = {scene['slip_velocity']:g} m/s")
+    return text
+
+
+def per_metre(history: dict[str, np.ndarray]) -> str:
+    """Plane strain is per metre of thickness, a ball is not."""
+    return "" if "vz" in history else "/m"
+
+
+def _energies(history: dict[str, np.ndarray]) -> plt.Figure:
+    """Energies [J/m] over time, and below them the error of their balance, relative to the energy at the start.
+
+    Figure 6a: where friction takes energy or gravity gives it the total is not constant, the dashed balance is.
+    """
+    t = 1e3 * history["t"]
+    total = history["kinetic"] + history["elastic"] + history["contact"]
+    start = total[0] or total.max() or 1.0   # at rest: over the largest energy
+    figure, (top, bottom) = plt.subplots(2, sharex=True, figsize=(5.6, 4.4), height_ratios=[3, 1])
+    lines = {"kinetic": (history["kinetic"], BLUE), "elastic": (history["elastic"], ORANGE),
+             "contact": (history["contact"], GREEN)}
+    balance, words = total, "total"
+    if history["friction_work"].any():
+        lines["lost to friction"] = history["friction_work"], PURPLE
+        balance, words = balance + history["friction_work"], words + " + lost"
+    if history["external_work"].any():
+        lines["work of gravity"] = history["external_work"], GREY
+        balance, words = balance - history["external_work"], words + " − work"
+    for name, (values, colour) in lines.items():
+        top.plot(t, values, color=colour, label=name)
+    if words != "total":
+        top.plot(t, total, color=BLACK, linewidth=1.0, label="total")
+    top.plot(t, balance, color=BLACK, linestyle="--", label=words)
+    least = min(values.min() for values, _ in lines.values())
+    top.set(ylabel=f"energy [J{per_metre(history)}]", ylim=(min(0, 1.05 * least), 1.05 * max(total.max(), balance.max())))
+    columns = len(lines) + 1 if len(lines) == 3 else 3
+    top.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncols=columns, handlelength=1.6, columnspacing=1.4)
+    error = np.abs(history["balance"]) / start
+    bottom.semilogy(t, np.where(error > 0, error, np.nan), color=BLACK, linewidth=0.9)
+    bottom.set(xlabel="time [ms]", ylabel="|balance| / $E_0$")
+    bottom.margins(y=0.15)
+    top.margins(x=0)
+    return figure
+
+
+def _force(history: dict[str, np.ndarray]) -> plt.Figure:
+    """Normal force [kN/m] over time."""
+    figure, axes = plt.subplots(figsize=(5.2, 3.2))
+    axes.plot(1e3 * history["t"], 1e-3 * history["normal_force"], color=BLUE)
+    axes.set(xlabel="time [ms]", ylabel=f"normal force [kN{per_metre(history)}]", ylim=(0, None))
+    axes.margins(x=0)
+    return figure
+
+
+def _friction(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
+    """Figure 5: normal and friction force [kN/m] over time; beside them, enlarged, where stick and slip alternate most.
+
+    The broken lines are the coefficients times the normal force: a body of which all points slide one way is on the dynamic one.
+    """
+    t, per = 1e3 * history["t"], per_metre(history)
+    normal, friction = 1e-3 * history["normal_force"], 1e-3 * history["friction_force"]
+    figure, grid = plt.subplots(2, 2, figsize=(7.6, 4.8), sharex="col", width_ratios=[1.7, 1])
+    (force, share), (drag, zoom) = grid
+    force.plot(t, normal, color=BLUE)
+    force.set(ylabel=f"normal force [kN{per}]", ylim=(0, None))
+    for axes in (drag, zoom):
+        axes.axhline(0, color=GREY, linewidth=0.6)
+        for name, line in (("friction_static", ":"), ("friction_dynamic", "--")):
+            for sign in (-1, 1):
+                axes.plot(t, sign * scene[name] * normal, color=BLACK, linestyle=line, linewidth=0.8,
+                          label=f"{scene[name]:g} of the normal force" if sign > 0 else None)
+    drag.plot(t, friction, color=ORANGE)
+    drag.set(xlabel="time [ms]", ylabel=f"friction force [kN{per}]", xlim=(_first_touch(history), t[-1]), ylim=_around(friction, 0.3))
+    drag.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncols=2)
+    first, last = _liveliest(history)
+    inside = slice(first, last + 1)
+    zoom.plot(t, friction, color=ORANGE, linewidth=1.0, marker=".", markersize=3)
+    zoom.set(xlabel="time [ms]", xlim=(t[first], t[last]), ylim=_around(friction[inside], 0.15))
+    zoom.set_title("enlarged: stick and slip")
+    zoom.spines[:].set_visible(True)
+    share.step(t, 100 * history["sliding_fraction"], where="pre", color=PURPLE, linewidth=1.0)
+    share.set(title="share of the load that slides [%]", ylim=(0, 1.08 * max(1.0, 100 * history["sliding_fraction"][inside].max())))
+    share.tick_params(labelbottom=True)
+    for axes in (zoom, share):
+        axes.yaxis.tick_right()
+        axes.spines.right.set_visible(True)
+        axes.spines.left.set_visible(axes is zoom)
+    drag.indicate_inset_zoom(zoom, edgecolor=BLACK, linewidth=0.7)
+    return figure
+
+
+def _first_touch(history: dict[str, np.ndarray]) -> float:
+    """The time [ms] of the last row before the contact, where a flight may have ended."""
+    return 1e3 * history["t"][max(0, int(np.argmax(history["normal_force"] > 0)) - 1)]
+
+
+def _around(values: np.ndarray, margin: float) -> tuple[float, float]:
+    """Limits of an axis around the values, with a margin as a share of their range on either side."""
+    low, high = values.min(), values.max()
+    space = margin * ((high - low) or abs(high) or 1.0)
+    return low - space, high + space
+
+
+def _liveliest(history: dict[str, np.ndarray]) -> tuple[int, int]:
+    """First and last row of the twelfth of the contact, or third of its longest interval where that is less, in which
+    the sliding load [N/m] goes up and down most."""
+    touching = np.flatnonzero(history["normal_force"] > 0)
+    t, sliding = history["t"], history["sliding_fraction"] * history["normal_force"]
+    intervals = np.split(touching, np.flatnonzero(np.diff(touching) > 1) + 1)
+    width = min((t[touching[-1]] - t[touching[0]]) / 12, max(t[each[-1]] - t[each[0]] for each in intervals) / 3)
+    travelled = np.concatenate([[0], np.cumsum(np.abs(np.diff(sliding)))])
+    ends = np.minimum(np.searchsorted(t, t + width), len(t) - 1)
+    lively = travelled[ends] - travelled - np.abs(sliding[ends] - sliding)   # there and back again
+    idle = np.cumsum(history["normal_force"] == 0)
+    lively = np.where(idle[ends] > idle, -1.0, lively)                         # not in the air
+    first = int(np.argmax(lively))
+    return first, max(int(ends[first]), min(first + 1, len(t) - 1))
+
+
+def _velocity(history: dict[str, np.ndarray]) -> plt.Figure:
+    """Velocity of the centre of mass [m/s] over time, a line a component."""
+    t = 1e3 * history["t"]
+    figure, axes = plt.subplots(figsize=(5.2, 3.2))
+    axes.axhline(0, color=GREY, linewidth=0.6)
+    moving = [name for name in ("vx", "vy", "vz") if name in history and history[name].any()]
+    for name, colour in zip(moving, (BLUE, ORANGE, GREEN)):
+        axes.plot(t, history[name], color=colour, label=f"$v_{name[1]}$")
+    axes.set(xlabel="time [ms]", ylabel="velocity of the centre of mass [m/s]")
+    if moving == ["vy"]:
+        axes.set_ylabel("$v_y$ of the centre of mass [m/s]")
+    else:
+        axes.legend()
+    axes.margins(x=0)
+    return figure
+
+
+def _rolling(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
+    """Velocity of the centre and of the rim [m/s], which are equal in rolling, and which share of the load sticks, slides on
+    and slides back. A disc that is set down on the plane: the velocities of a rigid one beside them."""
+    t = 1e3 * history["t"]
+    figure, (top, bottom) = plt.subplots(2, sharex=True, figsize=(5.6, 4.6), height_ratios=[1.6, 1])
+    top.axhline(0, color=GREY, linewidth=0.6)
+    if rigid := _rigid_rolling(history["t"], scene):
+        for values, label in zip(rigid, ("rigid disc", None)):
+            top.plot(t, values, color=BLACK, linestyle="--", linewidth=0.9, label=label)
+    top.plot(t, history["vx"], color=BLUE, label="$v_x$ of the centre")
+    top.plot(t, -scene["radius"] * history["spin"], color=ORANGE, label=r"$-\omega R$ of the rim")
+    top.set_ylabel("velocity [m/s]")
+    top.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncols=3, handlelength=1.6)
+    touches = history["normal_force"] > 0
+    back = np.minimum(history["reverse_fraction"], history["sliding_fraction"])
+    shares = {"sticks": (1 - history["sliding_fraction"], "#56b4e9"), "slides": (history["sliding_fraction"] - back, PURPLE),
+              "slides back": (back, ORANGE)}
+    if not back.any():
+        del shares["slides back"]
+    floor = np.zeros(len(t))
+    for label, (values, colour) in shares.items():
+        values = np.where(touches, 100 * values, 0)
+        bottom.fill_between(t, floor, floor + values, step="pre", color=colour, linewidth=0, label=label)
+        floor = floor + values
+    bottom.set(xlabel="time [ms]", ylabel="share of the load [%]", xlim=(_first_touch(history), t[-1]), ylim=(0, 100))
+    bottom.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncols=3, handlelength=1.0, handleheight=1.0)
+    return figure
+
+
+def _rigid_rolling(t: np.ndarray, scene: dict[str, Value]) -> tuple[np.ndarray, np.ndarray] | None:
+    """v_x and -omega R [m/s] of a rigid disc on the plane, each (steps,): it slides until both are equal, then rolls.
+
+    None where the disc does not start on the plane or other forces than gravity act: with v0 and no spin it slides as
+    v0 - mu_d g t and rolls from v0/(3 mu_d g) on, at 2/3 v0.
+    """
+    given = lambda name: scene.get(name, 0)   # noqa: E731
+    pull = given("friction_dynamic") * given("gravity")
+    if pull <= 0 or given("angle") != 0 or any(map(given, ("height", "body_force_x", "body_force_y"))):
+        return None
+    slip = scene["speed"] + given("spin") * scene["radius"]
+    gained = np.sign(slip) * pull * np.minimum(t, abs(slip) / (3 * pull))
+    return scene["speed"] - gained, 2 * gained - given("spin") * scene["radius"]
+
+
+@dataclass(frozen=True)
+class Pose:
+    """The body at time t [s]: centre of mass (2,), closed outline (n, 2) and a material diameter (m, 2), marked at its first
+    point, in m."""
+
+    t: float
+    centre: np.ndarray
+    outline: np.ndarray
+    diameter: np.ndarray
+
+
+def _flight(history: dict[str, np.ndarray], scene: dict[str, Value], series: list[tuple[float, Path]]) -> plt.Figure:
+    """Figure 4b: the body along its flight with a material diameter that shows how it turns, and the way of its centre.
+
+    A run begins at the touch and ends soon after the contact: before and after it the motion is continued as that of a
+    rigid body (parabola, constant spin), dashed and named so.
+    """
+    row = lambda t: int(np.argmin(np.abs(history["t"] - t)))   # noqa: E731
+    impact = history["vy"][0] < 0 or scene.get("height", 0) > 0
+    if impact:
+        lowest = min(series, key=lambda each: history["y"][row(each[0])])
+        picked = [(series[0], "touch", BLUE), (lowest, "lowest", ORANGE), (series[-1], "end of the run", GREEN)]
+    else:
+        places = np.linspace(0, len(series) - 1, min(5, len(series))).round().astype(int)
+        picked = [(series[k], "", plt.get_cmap("viridis")(0.85 * k / places[-1])) for k in places]
+    figure, axes = plt.subplots(figsize=(6.4, 5.6 if impact else 3.6))
+    run = history["t"] >= series[0][0]
+    axes.plot(history["x"][run], history["y"][run], color=BLACK, linewidth=1.0, label="centre of mass")
+    poses = [_pose(t, path, history) for (t, path), _, _ in picked]
+    for pose, (_, name, colour) in zip(poses, picked):
+        _draw_pose(axes, pose, colour, "-", f"{name}, {1e3 * pose.t:.2f} ms" if name else None)
+        if not name:
+            axes.text(pose.centre[0], pose.outline[:, 1].max(), f"{1e3 * pose.t:.0f} ms", color=colour, ha="center", va="bottom")
+    room = 0.0
+    if impact:
+        _draw_flight(axes, poses[0], -1, row(poses[0].t), history, scene, BLUE)
+        axes.plot([], [], color=BLUE, linestyle=DASHED, label="continued as rigid motion, shape frozen")
+        if history["normal_force"][-1] == 0 and history["vy"][-1] > 0:   # it has left the plane
+            _draw_flight(axes, poses[-1], 1, -1, history, scene, GREEN)
+            at, ahead = row(poses[0].t), np.sign(history["vx"][0]) or 1.0
+            before, after = (np.degrees(np.arctan2(abs(history["vy"][k]), ahead * history["vx"][k])) for k in (at, -1))
+            axes.set_title(f"angle to the plane: {before:.1f}° before, {after:.1f}° after" + " (backwards)" * bool(after > 90))
+        room = 1.2 * scene["radius"]   # for the times beside the outlines
+    left, right = axes.get_xlim()
+    high = axes.get_ylim()[1] + (0 if impact else 0.2 * scene["radius"])
+    axes.axhline(0, color=BLACK, linewidth=0.8)
+    axes.axhspan(-0.3 * scene["radius"], 0, color="#d0d0d0", linewidth=0)
+    axes.set(xlim=(left - room, right + room), ylim=(-0.3 * scene["radius"], high), aspect="equal", xlabel="x [m]", ylabel="y [m]")
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13 if impact else -0.2), ncols=2, handlelength=1.8)
+    return figure
+
+
+def _draw_flight(axes: plt.Axes, pose: Pose, sign: int, row: int, history: dict[str, np.ndarray], scene: dict[str, Value],
+                 colour: str) -> None:
+    """Two more outlines after (sign 1) or before (-1) the pose, in rigid motion with the velocities of history's `row`."""
+    pause = 3 * scene["radius"] / np.hypot(history["vx"][row], history["vy"][row])   # one and a half diameters apart
+    if sign < 0 and scene.get("height", 0) > 0:
+        pause = min(pause, pose.t / 2)                                                # not before the start
+    for k in (1, 2):
+        moved = _fly(pose, sign * k * pause, row, history, scene)
+        _draw_pose(axes, moved, colour, DASHED, None)
+        axes.annotate(f"{1e3 * moved.t:.1f} ms".replace("-", "−"), moved.outline[np.argmax(sign * moved.outline[:, 0])],
+                      (3 * sign, 0), textcoords="offset points", color=colour, ha="left" if sign > 0 else "right", va="center")
+    waits = np.linspace(0, 2 * sign * pause, 50)
+    way = np.array([_fly(pose, wait, row, history, scene).centre for wait in waits])
+    axes.plot(*way.T, color=BLACK, linewidth=0.8, linestyle=":")
+
+
+def _pose(t: float, path: Path, history: dict[str, np.ndarray]) -> Pose:
+    """The deformed outline and the deformed upright diameter of a snapshot of a whole disc, the mark at its top."""
+    snapshot = vtu.read(path)
+    moved = snapshot.points + snapshot.fields["displacement"][:, :2]
+    sides = snapshot.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+    inner = set(map(tuple, sides[:, ::-1]))
+    following = {a: b for a, b in map(tuple, sides) if (a, b) not in inner}   # along the boundary
+    loop = [next(iter(following))]
+    while following[loop[-1]] != loop[0]:
+        loop.append(following[loop[-1]])
+    centre = np.array([np.interp(t, history["t"], history[name]) for name in ("x", "y")])
+    return Pose(t, centre, moved[loop + loop[:1]], diameter(snapshot))
+
+
+def diameter(snapshot: vtu.Snapshot) -> np.ndarray:
+    """The deformed places (m, 2) [m] of the upright material diameter of a whole body, from its top down."""
+    low, high = snapshot.points.min(axis=0), snapshot.points.max(axis=0)
+    x = np.full(41, (low[0] + high[0]) / 2)
+    y = np.linspace(high[1], low[1], 43)[1:-1]   # not quite to the outline, which is a polygon here
+    grid = Triangulation(*snapshot.points.T, snapshot.triangles)
+    moved = snapshot.points + snapshot.fields["displacement"][:, :2]
+    return np.ma.compress_rows(np.ma.stack([LinearTriInterpolator(grid, values)(x, y) for values in moved.T], axis=1))
+
+
+def _fly(pose: Pose, wait: float, row: int, history: dict[str, np.ndarray], scene: dict[str, Value]) -> Pose:
+    """The pose after another `wait` seconds (before, if negative) of rigid flight with the velocities of history's `row`."""
+    velocity = np.array([history["vx"][row], history["vy"][row]])
+    pull = np.array([scene.get("body_force_x", 0), scene.get("body_force_y", 0) - scene.get("gravity", 0)])
+    turned = history["spin"][row] * wait
+    rotation = np.array([[np.cos(turned), -np.sin(turned)], [np.sin(turned), np.cos(turned)]])
+    place = pose.centre + velocity * wait + pull * wait**2 / 2
+    outline, diameter = ((points - pose.centre) @ rotation.T + place for points in (pose.outline, pose.diameter))
+    return Pose(pose.t + wait, place, outline, diameter)
+
+
+def _draw_pose(axes: plt.Axes, pose: Pose, colour, line, label: str | None) -> None:
+    axes.plot(*pose.outline.T, color=colour, linestyle=line, linewidth=1.1, label=label)
+    axes.plot(*pose.diameter.T, color=colour, linewidth=0.7)
+    axes.plot(*pose.diameter[0], color=colour, marker="o", markersize=4)
+
+
+def _shapes(series: list[tuple[float, Path]], half: bool) -> plt.Figure:
+    """The body at up to SHAPES instants above the plane y = 0, coloured by the von Mises stress [MPa]."""
+    picked = [series[k] for k in np.unique(np.linspace(0, len(series) - 1, SHAPES).round().astype(int))]
+    bodies = [deformed(vtu.read(path), half) for _, path in picked]
+    left, right, floor, high = view = limits(bodies)
+
+    columns = min(3, len(bodies))
+    rows = -(-len(bodies) // columns)
+    size = 6.4 / columns
+    figure, grid = plt.subplots(rows, columns, figsize=(6.4 + 0.8, rows * (size * (high - floor) / (right - left) + 0.25) + 0.3),
+                                squeeze=False)
+    for axes in grid.flat:
+        axes.set_axis_off()
+    largest = max(body.stress.max() for body in bodies)
+    for axes, body, (t, _) in zip(grid.flat, bodies, picked):
+        draw_ground(axes, view)
+        picture = draw_body(axes, body, largest)
+        axes.set_title(f"{1e3 * t:.2f} ms", pad=2)
+    figure.colorbar(picture, ax=grid, label=STRESS, shrink=0.7, aspect=30)
+    return figure
+
+
+@dataclass(frozen=True)
+class Body:
+    """The whole deformed body: points (n, 2) in m, triangles (t, 3), von Mises stress (n,) in MPa."""
+
+    points: np.ndarray
+    triangles: np.ndarray
+    stress: np.ndarray
+
+
+def is_half(scene: dict[str, Value]) -> bool:
+    """Whether only the half of the body to the right of its axis was computed."""
+    return scene["symmetry"] == "half"
+
+
+def deformed(snapshot: vtu.Snapshot, half: bool) -> Body:
+    """The body of a snapshot; where half of it was computed, the other half is the mirror image in its left end, the axis."""
+    points = snapshot.points + snapshot.fields["displacement"][:, :2]
+    triangles, stress = snapshot.triangles, 1e-6 * snapshot.fields["von_mises"]
+    if half:
+        triangles = np.vstack([triangles, triangles + len(points)])
+        points, stress = np.vstack([points, points * (-1, 1) + (2 * snapshot.points[:, 0].min(), 0)]), np.concatenate([stress, stress])
+    return Body(points, triangles, stress)
+
+
+def limits(bodies: list[Body]) -> tuple[float, float, float, float]:
+    """Left, right, floor and top [m] of a picture that has room for all bodies and for the ground below y = 0."""
+    low, high = (np.array([end(body.points, axis=0) for body in bodies]) for end in (np.min, np.max))
+    left, right, top = low[:, 0].min(), high[:, 0].max(), 1.04 * high[:, 1].max()
+    margin = 0.03 * (right - left)
+    return left - margin, right + margin, min(low[:, 1].min(), 0) - 0.08 * top, top
+
+
+def draw_ground(axes: plt.Axes, view: tuple[float, float, float, float]) -> None:
+    """The ground below y = 0 in axes with the limits `view` [m]."""
+    left, right, floor, top = view
+    axes.fill_between([left, right], floor, 0, color="#d0d0d0", linewidth=0)
+    axes.axhline(0, color=BLACK, linewidth=0.8)
+    axes.set(xlim=(left, right), ylim=(floor, top), aspect="equal")
+
+
+def draw_body(axes: plt.Axes, body: Body, largest: float) -> TriMesh:
+    """The body coloured by its stress, on a scale from 0 to `largest` MPa."""
+    return axes.tripcolor(*body.points.T, body.triangles, body.stress, shading="gouraud", cmap="viridis", vmin=0, vmax=largest)

@@ -1,0 +1,173 @@
+"""A film of a scene: the deforming body coloured by its stress above the ground, and the contact force over time under it."""
+
+import argparse
+import logging
+import os
+import subprocess
+import sys
+from contextlib import suppress
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.animation import FFMpegWriter, PillowWriter
+from matplotlib.colors import to_rgb
+from matplotlib.patheffects import withStroke
+from PIL import Image
+from tqdm import tqdm
+
+from .. import scene, vtu
+from ..failure import BadInput, NotInstalled, Unreadable
+from ..parameters import ROOT, overrides, whole
+from ..places import shown
+from ..results import RunResult
+from ..run import run
+from .figures import BLACK, BLUE, GREY, ORANGE, STRESS, STYLE, Body, deformed, diameter, draw_body, draw_ground, is_half, limits, per_metre, title
+
+SECONDS = 8.0     # of the film
+MOST = 400        # frames, 50 a second: players show a faster GIF slower
+DPI = 110
+logging.getLogger("matplotlib.animation").setLevel(logging.ERROR)   # what ffmpeg says is said in one line
+
+
+def main(argv: list[str]) -> int:
+    """Runs or reuses the scene with a snapshot a frame in DIR and writes DIR/<scene>.mp4 (or .gif), or reuses the film too."""
+    parser = argparse.ArgumentParser(prog="python -m orchestrate movie", description=__doc__)
+    parser.add_argument("scene", metavar="SCENE", help="a built-in scene or the path of a TOML file")
+    parser.add_argument("--set", metavar="NAME=VALUE", nargs="+", action="extend", default=[], help="set a parameter")
+    parser.add_argument("--frames", metavar="N", type=whole, default=100, help="number of frames (default: 100), and of snapshots of the run")
+    parser.add_argument("--format", choices=("mp4", "gif"), help="default: mp4 where there is ffmpeg, otherwise gif")
+    parser.add_argument("--out", metavar="DIR", type=Path, help="the result folder (default: results/movies/SCENE)")
+    options = parser.parse_args(argv)
+    if not 2 <= options.frames <= MOST:
+        raise BadInput(f"--frames: {options.frames} is out of range (accepted: 2 to {MOST})")
+    if options.format == "mp4" and not FFMpegWriter.isAvailable():
+        raise NotInstalled("ffmpeg not found, which writes mp4; run: sudo apt-get install ffmpeg; or take --format gif")
+    form = options.format or ("mp4" if FFMpegWriter.isAvailable() else "gif")
+    given, progress = scene.load(options.scene), sys.stderr.isatty()
+    result = run(given, overrides(options.set) | {"fields": options.frames}, options.out or ROOT / "results/movies" / given.name,
+                 progress=progress)
+    film = result.folder / f"{given.name}.{form}"
+    done = result.reused and film.exists() and film.stat().st_mtime >= (result.folder / "summary.json").stat().st_mtime
+    if not done:
+        write(film, result, options.frames, progress)
+    print(shown(film))
+    return 0
+
+
+def write(film: Path, result: RunResult, frames: int, progress: bool = False) -> None:
+    """Writes `frames` frames, evenly spaced from the touch to the end, of SECONDS seconds together; complete or not at all."""
+    motion = Motion(result.folder / "fields.pvd", is_half(result.scene))
+    with plt.rc_context(STYLE | {"figure.constrained_layout.use": False}):   # the axes stay where they are
+        stage = Stage(result, motion)
+        part = film.with_suffix(f".part{film.suffix}")
+        writer = (FFMpegWriter if film.suffix == ".mp4" else GifWriter)(fps=frames / SECONDS)
+        try:
+            writer.setup(stage.figure, part, DPI)
+            for t in tqdm(np.linspace(motion.times[0], motion.times[-1], frames), desc=film.name, leave=False, disable=not progress):
+                stage.show(t)
+                writer.grab_frame()
+            writer.finish()
+            os.replace(part, film)
+        except (BrokenPipeError, subprocess.CalledProcessError):
+            raise NotInstalled("ffmpeg could not write the film: it lacks H.264, or the disk is full; take --format gif") from None
+        finally:
+            if isinstance(writer, FFMpegWriter):
+                with suppress(Exception):
+                    writer.finish()   # where something stopped us: ffmpeg ends before its file goes
+            part.unlink(missing_ok=True)
+            plt.close(stage.figure)
+
+
+class GifWriter(PillowWriter):
+    """One palette for all frames, so that no colour changes from frame to frame: that of the stress, greys, and those of the curves."""
+
+    def finish(self) -> None:
+        fade = np.linspace(0, 1, 14)[:, None]
+        curves = [fade * to_rgb("white") + (1 - fade) * to_rgb(colour) for colour in (BLUE, ORANGE)]
+        colours = np.vstack([plt.get_cmap("viridis")(np.linspace(0, 1, 200))[:, :3], np.linspace(0, 1, 28)[:, None] * np.ones(3), *curves])
+        palette = Image.new("P", (1, 1))
+        palette.putpalette((255 * colours).round().astype(int).ravel().tolist())
+        self._frames = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in self._frames]
+        super().finish()
+
+
+class Motion:
+    """The snapshots of a run, and the body at any time between them, where places and stresses are linear in time.
+
+    `times` (s,) in s from the touch to the end; `bodies`, one a time; `diameters` (s, m, 2) in m, None where half a body was computed.
+    """
+
+    def __init__(self, pvd: Path, half: bool):
+        series = vtu.series(pvd)
+        if not series:
+            raise Unreadable(f"{pvd} is missing or empty; delete its folder and run again")
+        snapshots = [vtu.read(path) for _, path in series]
+        self.times = np.array([t for t, _ in series])
+        self.bodies = [deformed(snapshot, half) for snapshot in snapshots]
+        self.diameters = None if half else np.array([diameter(snapshot) for snapshot in snapshots])
+
+    def at(self, t: float) -> tuple[Body, np.ndarray | None]:
+        """The body and its diameter (m, 2) at time t [s]."""
+        place = np.interp(t, self.times, np.arange(len(self.times)))
+        low, high, share = int(np.floor(place)), int(np.ceil(place)), place % 1
+        before, after = self.bodies[low], self.bodies[high]
+        body = Body((1 - share) * before.points + share * after.points, before.triangles, (1 - share) * before.stress + share * after.stress)
+        if self.diameters is None:
+            return body, None
+        return body, (1 - share) * self.diameters[low] + share * self.diameters[high]
+
+
+class Stage:
+    """The figure of all frames: axes, colours and curves are drawn once, `show` moves the rest to a time."""
+
+    def __init__(self, result: RunResult, motion: Motion):
+        self.motion = motion
+        view = left, right, floor, top = limits(motion.bodies)
+        width = min(6.0, 4.8 * (right - left) / (top - floor))      # of the upper panel [inch]
+        height, below = width * (top - floor) / (right - left), 1.6
+        whole = np.array([width + 2.0, height + below + 2.05])
+        self.figure = plt.figure(figsize=whole)
+        panel = lambda x, y, w, h: self.figure.add_axes((*np.array([x, y]) / whole, *np.array([w, h]) / whole))   # noqa: E731
+        self.above, bar = panel(0.85, below + 1.3, width, height), panel(width + 1.0, below + 1.3, 0.16, height)
+        self.figure.suptitle(title(result.scene), fontsize=9, y=1 - 0.12 / whole[1])
+        draw_ground(self.above, view)
+        self.above.set(xlabel="x [m]", ylabel="y [m]")
+        self.largest = np.quantile([body.stress for body in motion.bodies], 0.999) or 1.0   # one spot does not darken all the rest
+        self.picture = draw_body(self.above, motion.bodies[0], self.largest)
+        self.figure.colorbar(self.picture, cax=bar, label=STRESS, extend="max")
+        self.marks = []
+        if motion.diameters is not None:   # shows how the body turns
+            outlined = [withStroke(linewidth=2.5, foreground=BLACK)]
+            self.marks = [self.above.plot([], [], color="white", linewidth=1.2, path_effects=outlined)[0],
+                          self.above.plot([], [], color="white", marker="o", markersize=5, markeredgecolor=BLACK)[0]]
+        self._draw_force(panel(0.85, 0.55, width, below), result.history)
+
+    def _draw_force(self, axes: plt.Axes, history: dict[str, np.ndarray]) -> None:
+        """Normal force, and friction force where there is any [kN/m], over the time of the film."""
+        inside = history["t"] >= self.motion.times[0]
+        self.t = 1e3 * history["t"][inside]
+        forces = {"normal": BLUE, "friction": ORANGE} if history["friction_force"].any() else {"normal": BLUE}
+        self.forces = {name: 1e-3 * history[f"{name}_force"][inside] for name in forces}
+        axes.axhline(0, color=GREY, linewidth=0.6)
+        for name, colour in forces.items():
+            axes.plot(self.t, self.forces[name], color=colour, label=name)
+        axes.margins(x=0.005)
+        axes.set(xlabel="time [ms]", ylabel=f"contact force [kN{per_metre(history)}]")
+        self.now = axes.axvline(self.t[0], color=BLACK, linewidth=0.8)
+        self.dots = {name: axes.plot([], [], "o", color=colour, markersize=5, clip_on=False)[0] for name, colour in forces.items()}
+        if len(forces) > 1:
+            axes.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=2, borderaxespad=0)
+
+    def show(self, t: float) -> None:
+        """Everything that moves, at time t [s]."""
+        body, line = self.motion.at(t)
+        self.picture.remove()
+        self.picture = draw_body(self.above, body, self.largest)
+        if self.marks:
+            self.marks[0].set_data(*line.T)
+            self.marks[1].set_data(*line[:1].T)
+        self.above.set_title(f"t = {1e3 * t:.2f} ms")
+        self.now.set_xdata([1e3 * t] * 2)
+        for name, dot in self.dots.items():
+            dot.set_data([1e3 * t], [np.interp(1e3 * t, self.t, self.forces[name])])

@@ -1,0 +1,119 @@
+"""What a finished run is told in: its key figures, beside the published numbers of the same scene."""
+
+import sys
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..parameters import Value
+from ..places import shown
+from ..results import RunResult
+
+REFERENCE = Path(__file__).resolve().parent / "reference"
+
+LEFT_OUT_AT_ZERO = ("friction_work", "rebound_vx", "spin", "sliding_time", "sticking_time", "reverse_slip_time", "unsolved_jumps")
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A row of the report: a key of summary.json, its name for the reader, the factor from SI and the unit shown."""
+
+    key: str
+    label: str
+    unit: str = ""
+    factor: float = 1.0
+    digits: str = ".4g"
+
+    def text(self, value: float) -> str:
+        return f"{self.factor * value:{self.digits}} {self.unit}".rstrip()
+
+    def beside(self, number: dict) -> str:
+        """A published number, its error bar where it has one, and where it comes from."""
+        error = f" ± {self.factor * number['error']:.1g}" if "error" in number else ""
+        source = "; ".join(number[key] for key in ("source", "note") if key in number)
+        return f"{self.factor * number['value']:{self.digits}}{error} ({source})"
+
+
+def rows(per_metre: bool) -> list[Quantity]:
+    """The key figures; in plane strain forces, impulses and energies are per metre of thickness."""
+    per = "/m" if per_metre else ""
+    return [
+        Quantity("contact_time", "contact time", "ms", 1e3),
+        Quantity("thresholded_contact_time", "  above 1 % of the peak", "ms", 1e3),
+        Quantity("contact_intervals", "contact intervals", digits=".0f"),
+        Quantity("peak_force", "peak force", f"kN{per}", 1e-3),
+        Quantity("impulse", "impulse", f"N s{per}", digits=".5g"),
+        Quantity("rebound_vx", "rebound velocity, x", "m/s"),
+        Quantity("rebound_vy", "rebound velocity, y", "m/s"),
+        Quantity("spin", "spin", "rad/s"),
+        Quantity("sliding_time", "load slides for", "ms", 1e3),
+        Quantity("reverse_slip_time", "  of it backwards", "ms", 1e3),
+        Quantity("sticking_time", "load sticks for", "ms", 1e3),
+        Quantity("energy_initial", "energy at the start", f"J{per}"),
+        Quantity("vibration_energy", "left in vibration", f"J{per}"),
+        Quantity("friction_work", "lost to friction", f"J{per}"),
+        Quantity("energy_drift", "energy drift", "of the start", digits=".1e"),
+        Quantity("max_penetration", "largest penetration", "mm", 1e3, ".3g"),
+        Quantity("min_jacobian", "smallest det F", digits=".3f"),
+        Quantity("min_stretch", "smallest stretch", digits=".3f"),
+        Quantity("min_ellipticity", "smallest ellipticity", "mu"),
+        Quantity("ellipticity_lost_time", "ellipticity lost from", "ms", 1e3),
+        Quantity("ellipticity_lost_x", "  there X =", "mm", 1e3),
+        Quantity("ellipticity_lost_y", "  there Y =", "mm", 1e3),
+        Quantity("breakdown_time", "det F <= 0 from", "ms", 1e3),
+        Quantity("breakdown_x", "  there X =", "mm", 1e3),
+        Quantity("breakdown_y", "  there Y =", "mm", 1e3),
+        Quantity("unsolved_jumps", "unsolved jumps", "steps of points in a jump of the friction law", digits=".0f"),
+        Quantity("resumed_at", "resumed at", "ms", 1e3),
+        Quantity("steps", "steps", digits=".0f"),
+        Quantity("dofs", "degrees of freedom", digits=".0f"),
+        Quantity("wall_seconds", "wall time", "s", digits=".2f"),
+    ]
+
+
+def references(script: str, scene: dict[str, Value]) -> dict[str, list[dict]]:
+    """Published numbers whose conditions this scene meets: by key of summary.json, each {value, [error], source, [note]}."""
+    found: dict[str, list[dict]] = {}
+    for path in sorted(REFERENCE.glob("*.toml")):
+        for run in tomllib.loads(path.read_text()).get("run", []):
+            if run["script"] == script and all(scene.get(name) == value for name, value in run["when"].items()):
+                for key, number in run["numbers"].items():
+                    found.setdefault(key, []).append(number | {k: run[k] for k in ("source", "note") if k in run})
+    return found
+
+
+def draw(result: RunResult) -> None:
+    """The figures of the run into its folder, unless they are there; a picture is no reason to lose a run: what hinders it is a line on stderr."""
+    if result.reused and (result.folder / "figures/energies.png").exists():
+        return
+    try:
+        from . import figures   # matplotlib: only where something is drawn
+        figures.draw(result.folder, result.summary["warnings"])
+    except Exception as error:
+        print(f"ffimpact: the figures could not be drawn: {error!r}", file=sys.stderr)
+
+
+def report(result: RunResult) -> str:
+    """The key figures of a run as a table of text, what was skipped, and where the pictures are."""
+    summary, scene = result.summary, result.scene
+    script = summary["provenance"]["script"]
+    known = references(script, scene) if summary["provenance"].get("gmsh") else {}   # a mesh of the user's is another body
+    place = shown(result.folder)
+    lines = [f"{place}: " + ("finished earlier, same scene and code" if result.reused else "finished"),
+             f"{scene['law']}, nu = {scene['nu']:g}, {scene['speed']:g} m/s, angle {scene['angle']:g} degrees, "
+             f"penalty {scene['penalty']:g}" + (f", friction {scene['friction_static']:g} static, {scene['friction_dynamic']:g} dynamic"
+                                                if scene.get("friction_static") else "")]
+    for quantity in rows(per_metre=not script.startswith("ball")):
+        value = summary.get(quantity.key)
+        if value is None or (abs(value) < 1e-9 and quantity.key in LEFT_OUT_AT_ZERO):
+            continue
+        beside = [quantity.beside(number) for number in known.get(quantity.key, [])] or [""]
+        lines.append(f"  {quantity.label:<24}{quantity.text(value):<18}{beside[0]}".rstrip())
+        lines += [f"  {'':<42}{more}" for more in beside[1:]]
+    lines += [f"  {'warning':<24}{sentence}" for sentence in summary["warnings"]]
+    if summary.get("skipped"):
+        lines.append(f"  {'skipped':<24}{', '.join(summary['skipped'])}")
+    pictures = sorted((result.folder / "figures").glob("*.png"))
+    if pictures:
+        lines.append(f"  {'figures':<24}" + f"{place}/figures/{{{','.join(p.stem for p in pictures)}}}.png")
+    return "\n".join(lines)

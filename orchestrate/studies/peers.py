@@ -1,0 +1,63 @@
+"""Other programs on the same disc (verification/peers/*_disc.py): found where they are installed, run one process at a time.
+
+NGSolve: `pip install ngsolve==6.2.2608`, in this Python or in the one that $NGSOLVE_PYTHON names. GetFEM: Debian's python3-getfem,
+in /usr/bin/python3 or in $GETFEM_PYTHON. Nothing else needs them.
+"""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from functools import cache, partial
+from pathlib import Path
+from signal import SIGKILL
+
+from .. import mesh
+from ..freefem import die_with_parent
+from ..parameters import ROOT, Value
+
+PYTHONS = {"ngsolve": ("NGSOLVE_PYTHON", sys.executable), "getfem": ("GETFEM_PYTHON", "/usr/bin/python3")}
+INSTALL = {"ngsolve": "pip install ngsolve==6.2.2608", "getfem": "apt-get install python3-getfem"}
+ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+RADIUS = 0.05               # m, of disc-normal and the peers' default
+
+
+@cache
+def find(program: str) -> str | None:
+    """The Python that imports `program` (ngsolve or getfem), None where there is none."""
+    variable, usual = PYTHONS[program]
+    python = os.environ.get(variable, usual)
+    try:
+        found = subprocess.run([python, "-c", f"import {program}"], capture_output=True, timeout=60).returncode == 0
+    except (OSError, subprocess.TimeoutExpired):
+        return None
+    return python if found else None
+
+
+def run(program: str, form: str, mesh_size: float, contact_mesh_size: float, dt: float, limit: float = 600,
+        **flags: Value) -> tuple[dict | None, str]:
+    """(what the peer prints, "") or (None, the reason there is nothing).
+
+    program: ngsolve or getfem; form: plain, tuned or (NGSolve) tuned-realcompile; sizes [m], step dt [s], limit [s].
+    Further flags by the names of the peers: law, nu, speed, penalty, young, density, tolerance, history.
+    """
+    python = find(program)
+    if not python:
+        return None, f"{program} is not installed ({INSTALL[program]})"
+    flags |= {"form": form, "dt": dt, "mesh_size": mesh_size, "contact_mesh_size": contact_mesh_size}
+    with tempfile.TemporaryDirectory() as folder:
+        if program == "getfem":     # on our mesh; netgen makes its own with the same sizes
+            flags["mesh"] = str(Path(folder) / "mesh.msh")
+            mesh.write(mesh.disc(RADIUS, mesh_size, contact_mesh_size, half=True), Path(flags["mesh"]))
+        words = [word for name, value in flags.items() for word in (f"--{name.replace('_', '-')}", str(value))]
+        try:
+            done = subprocess.run([python, ROOT / f"verification/peers/{program}_disc.py", *words], env=os.environ | ONE_THREAD,
+                                  cwd=folder, capture_output=True, text=True, timeout=limit,
+                                  preexec_fn=partial(die_with_parent, os.getpid(), SIGKILL))
+        except subprocess.TimeoutExpired:
+            return None, f"no end after {limit:g} s: killed"
+    said, complaint = done.stdout.strip().splitlines(), done.stderr.strip().splitlines()
+    if done.returncode != 0 or not said:
+        return None, f"exit code {done.returncode}: {complaint[-1] if complaint else 'no output'}"
+    return json.loads(said[-1]), ""

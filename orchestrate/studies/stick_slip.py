@@ -1,0 +1,136 @@
+"""For which slip velocity, contact stiffness and Poisson's ratio does the oblique disc slide first and stick in the last
+third of the contact with its energy constant, and stay 4.5 ms, as the paper tells (section 3.1)? It states none of the
+three, nor from where its angle pi/3 is measured: from the plane it is 60 degrees here, from the normal 30."""
+
+import argparse
+import itertools
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+from matplotlib.patches import Rectangle
+
+from ..failure import Unreadable
+from ..folder import result_folder
+from ..parameters import ROOT
+from ..places import shown
+from ..report.figures import BLACK, LAWS, STYLE
+from ..results import read_history
+from . import study
+
+AXES = {"slip_velocity": (0.03, 0.3, 1.0, 3.0), "penalty": (1e8, 1e9, 1e10), "nu": (0.3, 0.4, 0.45), "angle": (60.0, 30.0)}
+LAW = {"svk": {"degree": 1, "mesh_size": 0.01, "contact_mesh_size": 0.005, "breakdown": "continue", "accuracy": 0.0025},   # as the paper ran it
+       "neohookean": {"accuracy": 0.005}}
+SCENE, BASE = "disc-oblique", {"fields": 0}
+PAPER = 4.5e-3, 0.02        # contact time [s] and how near counts as met
+LIMIT = 300.0               # seconds a run may take
+QUIET = 0.05                # share of the friction work in the last third that counts as constant energy
+THIRDS = ("first", "second", "last")
+
+
+def main(argv: list[str]) -> int:
+    """Runs the grid, prints the share of sliding in each third of the contact, draws the map; 0 whatever is found."""
+    parser = argparse.ArgumentParser(prog="python -m orchestrate stick-slip", description=__doc__)
+    parser.add_argument("--quick", action="store_true", help="a corner of the grid")
+    parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/stick-slip", help="the result folder")
+    options = parser.parse_args(argv)
+    out = result_folder(options.out)
+    axes = {name: values[-2:] for name, values in AXES.items()} if options.quick else AXES
+    points = grid(axes)
+    rows = study.study(points, out, BASE, LIMIT, SCENE)
+    rows = pd.concat([rows, pd.DataFrame([thirds(study.place(out, point)) for point in points])], axis=1)
+    rows["order"] = as_told(rows)
+    rows["quiet"] = rows.work_last <= QUIET
+    rows["time"] = (rows.contact_time / PAPER[0] - 1).abs() <= PAPER[1]
+    study.save(rows, out / "stick-slip.csv")
+    draw(rows, axes, out / "stick-slip.png")
+    print(report(rows))
+    print(f"\n{shown(out)}/stick-slip.{{csv,png}}")
+    return 0
+
+
+def grid(axes: dict[str, tuple[float, ...]]) -> list[study.Point]:
+    """Every combination, for both laws."""
+    return [{"law": law} | LAW[law] | dict(zip(axes, values)) for law in LAW for values in itertools.product(*axes.values())]
+
+
+def thirds(folder: Path) -> dict[str, float]:
+    """Mean share of the normal load on sliding points in each third of the contact time, and the share of the friction
+    work that is done in the last third; nan for a run that failed."""
+    try:
+        history = read_history(folder)
+    except Unreadable:
+        return dict.fromkeys((*THIRDS, "work_last"), np.nan)
+    end, dt = history["t"], history["dt"]
+    touching = history["normal_force"] > 0
+    if not touching.any():
+        return dict.fromkeys((*THIRDS, "work_last"), np.nan)
+    start, stop = (end - dt)[touching][0], end[touching][-1]
+    edges = start + (stop - start) * np.array([0, 1 / 3, 2 / 3, 1])
+    sliding = np.where(touching, history["sliding_fraction"], 0.0)
+    slid = np.interp(edges, end, np.cumsum(sliding * dt))
+    shares = np.diff(slid) / np.diff(edges)
+    work = np.interp(edges, end, history["friction_work"])
+    total = work[-1] - work[0]
+    return dict(zip(THIRDS, shares)) | {"work_last": (work[-1] - work[-2]) / total if total > 0 else np.nan}
+
+
+def as_told(rows: pd.DataFrame) -> pd.Series:
+    """The paper's order: mostly sliding in both first thirds, mostly sticking in the last."""
+    return (rows["first"] > 0.5) & (rows["second"] > 0.5) & (rows["last"] < 0.5)
+
+
+def report(rows: pd.DataFrame) -> str:
+    """A table of all runs, and how many meet the order, the contact time and both."""
+    formats = {"law": "", "angle": "g", "nu": "g", "penalty": ".0e", "slip_velocity": "g", "contact_time": ".5f", "first": ".2f",
+               "second": ".2f", "last": ".2f", "work_last": ".2f", "breakdown_time": ".5f", "exit": ".0f"}
+    for name in ("breakdown_time",):
+        if name not in rows:
+            rows[name] = np.nan
+    lines = [study.table(rows, formats), "",
+             "first, second, last: share of the normal load that slides in each third of the contact; "
+             "work_last: share of the friction work in the last third", ""]
+    for (law, angle), group in rows.groupby(["law", "angle"], sort=False):
+        lines.append(f"{LAWS[law]}, {angle:g} degrees from the plane: of {len(group)} runs {group['order'].sum()} slide first and "
+                     f"stick in the last third, {group['quiet'].sum()} lose at most {100 * QUIET:g} % of the friction work in it, "
+                     f"{group['time'].sum()} last {1e3 * PAPER[0]:g} ms within {100 * PAPER[1]:g} %, "
+                     f"{(group['order'] & group['quiet'] & group['time']).sum()} do all three; {(group.exit != 0).sum()} failed")
+    return "\n".join(lines)
+
+
+def draw(rows: pd.DataFrame, axes: dict[str, tuple[float, ...]], path: Path) -> None:
+    """A panel a law, angle and nu: cells over slip velocity and penalty, coloured by the contact time, with the three shares in
+    per cent; framed where the paper's order is met."""
+    low, high = 1e3 * rows.contact_time.min(), 1e3 * rows.contact_time.max()
+    with plt.rc_context(STYLE):
+        cases = list(itertools.product(axes["angle"], axes["nu"]))
+        figure, grid = plt.subplots(len(cases), len(LAW), figsize=(8.6, 1.4 * len(cases) + 0.8), squeeze=False,
+                                    sharex=True, sharey=True)
+        for column, law in enumerate(LAW):
+            for panel, (angle, nu) in zip(grid[:, column], cases):
+                here = rows[(rows.law == law) & (rows.nu == nu) & (rows.angle == angle)].set_index(["penalty", "slip_velocity"])
+                cells = np.array([[here.loc[(k, e), "contact_time"] for e in axes["slip_velocity"]] for k in axes["penalty"]])
+                picture = panel.imshow(1e3 * cells, vmin=low, vmax=high, cmap="viridis", origin="lower", aspect="auto")
+                for i, k in enumerate(axes["penalty"]):
+                    for j, e in enumerate(axes["slip_velocity"]):
+                        row = here.loc[(k, e)]
+                        text = "failed" if row.exit else " ".join(f"{100 * row[name]:.0f}" for name in THIRDS)
+                        panel.text(j, i, text, ha="center", va="center", fontsize=7,
+                                   color="white" if 1e3 * row.contact_time < (low + high) / 2 else "black")
+                        if row["order"]:
+                            panel.add_patch(Rectangle((j - 0.48, i - 0.46), 0.96, 0.92, fill=False, color="#d55e00", linewidth=2))
+                panel.set_title(f"{LAWS[law]}{', coarse P1 mesh' if law == 'svk' else ''}, {angle:g}°, ν = {nu:g}")
+                panel.set_xticks(range(len(axes["slip_velocity"])), [f"{e:g}" for e in axes["slip_velocity"]])
+                panel.set_yticks(range(len(axes["penalty"])), [f"$10^{{{np.log10(k):.0f}}}$" for k in axes["penalty"]])
+                for side in panel.spines.values():
+                    side.set_visible(False)
+        for panel in grid[-1]:
+            panel.set_xlabel("slip velocity ε [m/s]")
+        for panel in grid[:, 0]:
+            panel.set_ylabel("k [Pa/m]")
+        figure.colorbar(picture, ax=grid, label="contact time [ms]", shrink=0.6)
+        figure.suptitle("Share of the normal load that slides in each third of the contact [%]; framed: slides first, sticks last",
+                        fontsize=9, color=BLACK)
+        figure.savefig(path)
+        plt.close(figure)

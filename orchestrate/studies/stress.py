@@ -1,0 +1,140 @@
+"""Hard parameter sets on a coarse mesh: each must end with its energy balance closed, or say why it cannot."""
+
+import argparse
+import itertools
+import random
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import LogNorm
+
+from ..folder import result_folder
+from ..parameters import ROOT, whole
+from ..places import shown
+from ..report.figures import LAWS, STYLE
+from . import study
+
+AXES = {"law": ("svk", "neohookean"), "nu": (0.0, 0.3, 0.45, 0.49), "speed": (0.5, 4.0, 10.0), "penalty": (1e9, 1e10, 1e12),
+        "exponent": (1.0, 1.5, 2.0), "dt": (0.0, 2e-5, 1e-4)}   # dt = 0: adaptive
+BASE = {"mesh_size": 0.0125, "contact_mesh_size": 0.005, "accuracy": 1.25e-3, "fields": 0}   # the accuracy: of the adaptive step
+CLOSED = 1e-8               # largest energy drift of a finished run
+LIMIT = 120.0               # seconds a run may take
+READ = ("energy_drift", "max_penetration", "wall_seconds", "newton_iterations", "steps")   # of the summaries
+KINDS = ("closed", "open", "no step", "breakdown", "other")   # outcomes, in the words of the table
+LETTERS = {"open": ("o", "balance open"), "no step": ("s", "no convergence, or chatter (exit 11)"),
+           "breakdown": ("b", "material broke down (exit 12)"), "other": ("!", "anything else")}   # in the figure
+
+
+def main(argv: list[str]) -> int:
+    """Runs the sets, prints the outcomes; 0 if every set does what is required of it, else 1."""
+    parser = argparse.ArgumentParser(prog="python -m orchestrate stress", description=__doc__)
+    parser.add_argument("--quick", metavar="N", type=whole, help="N of the sets, always the same ones")
+    parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/stress", help="the result folder")
+    options = parser.parse_args(argv)
+    points = [dict(zip(AXES, values)) for values in itertools.product(*AXES.values())]
+    if options.quick is not None:
+        points = random.Random(0).sample(points, min(max(options.quick, 1), len(points)))
+    rows = study.study(points, result_folder(options.out), BASE, LIMIT)
+    rows = rows.reindex(columns=rows.columns.union(READ, sort=False))   # also where every run crashed
+    rows["outcome"] = rows.apply(outcome, axis=1)
+    study.save(rows, options.out / "stress.csv")
+    draw(rows, options.out / "stress.png")
+    print(report(rows))
+    print(f"\n{shown(result_folder(options.out))}/stress.{{csv,png}}")
+    return 0 if holds(rows).all() else 1
+
+
+def outcome(row: pd.Series) -> str:
+    """One of KINDS."""
+    if row.exit == 0:
+        return "closed" if row.energy_drift <= CLOSED else "open"
+    return {11: "no step", 12: "breakdown"}.get(row.exit, "other")
+
+
+def holds(rows: pd.DataFrame) -> pd.Series:
+    """What is required: exit 0 with a closed balance, or exit 11 or 12 with a message."""
+    return (rows.outcome == "closed") | (rows.outcome.isin(("no step", "breakdown")) & (rows.message != ""))
+
+
+def report(rows: pd.DataFrame) -> str:
+    """Counts of the outcomes, the extremes, every set that did not finish, and the verdict."""
+    counts = rows.groupby(["law", "nu", "speed"]).outcome.value_counts().unstack(fill_value=0)
+    counts = counts.reindex(columns=KINDS, fill_value=0).reset_index()
+    counts["worst drift"] = rows.groupby(["law", "nu", "speed"]).energy_drift.max().values
+    lines = [study.table(counts, {"law": "", "nu": "g", "speed": "g"} | dict.fromkeys(KINDS, "d") | {"worst drift": ".1e"}), ""]
+    ended = rows[rows.exit == 0]
+    if len(ended):
+        lines += [_extreme(ended, "energy_drift", "worst energy drift", ".1e"),
+                  _extreme(ended, "max_penetration", "deepest penetration [m]", ".2g"),
+                  _extreme(rows, "wall_seconds", "slowest [s]", ".1f")]
+    lines += [f"exit {row.exit}: {_name(row)}: {row.message}" for _, row in rows[rows.exit != 0].iterrows()]
+    lines += [f"balance open, {row.energy_drift:.1e}: {_name(row)}" for _, row in rows[rows.outcome == "open"].iterrows()]
+    good, drift = holds(rows), ended.energy_drift
+    lines += ["", f"{len(rows)} sets: {len(ended)} finished, {(drift <= CLOSED).sum()} of them with an energy drift of at most "
+              f"{CLOSED:g}, {(drift <= CLOSED / 10).sum()} of at most {CLOSED / 10:g}",
+              f"requirement {'holds' if good.all() else f'FAILS for {(~good).sum()} sets'}: exit 0 with a drift of at most "
+              f"{CLOSED:g}, or exit 11 or 12 with a message"]
+    return "\n".join(lines)
+
+
+def _extreme(rows: pd.DataFrame, column: str, label: str, form: str) -> str:
+    row = rows.loc[rows[column].idxmax()]
+    return f"{label + ':':<26}{row[column]:{form}} ({_name(row)})"
+
+
+def _name(row: pd.Series) -> str:
+    return ", ".join(f"{name} {_short(name, row[name])}" for name in AXES)
+
+
+def _short(name: str, value) -> str:
+    """A value as it is read best; dt = 0 is adaptive."""
+    return "adaptive" if name == "dt" and value == 0 else f"{value:g}" if isinstance(value, float) else value
+
+
+def draw(rows: pd.DataFrame, path: Path) -> None:
+    """A map of all sets: a panel a law and nu, in it speed and dt across, exponent and penalty up, Newton iterations
+    a step as colour; sets that did not end with a closed balance are grey and have a letter."""
+    rows = rows.assign(effort=rows.newton_iterations / rows.steps)
+    norm = LogNorm(1, 32)
+    with plt.rc_context(STYLE):
+        figure, grid = plt.subplots(2, 4, figsize=(10.4, 6), sharex=True, sharey=True)
+        for axes, (law, nu) in zip(grid.flat, itertools.product(AXES["law"], AXES["nu"])):
+            panel = rows[(rows.law == law) & (rows.nu == nu)]
+            _map(axes, panel, norm)
+            axes.set_title(f"{LAWS[law]}, ν = {nu:g}")
+        bar = figure.colorbar(ScalarMappable(norm, "viridis"), ax=grid, label="Newton iterations a step", aspect=40,
+                              ticks=[1, 2, 4, 8, 16, 32], format="%d", extend="max")
+        bar.minorticks_off()
+        figure.supxlabel("time step [µs], by speed", fontsize=9)
+        figure.supylabel("penalty, by exponent", fontsize=9)
+        figure.suptitle("; ".join(f"{letter}: {meaning}" for letter, meaning in LETTERS.values()) + "; empty: not run", fontsize=8)
+        figure.savefig(path)
+        plt.close(figure)
+
+
+def _map(axes: plt.Axes, panel: pd.DataFrame, norm: LogNorm) -> None:
+    """A cell a set; lines between the groups."""
+    columns = list(itertools.product(AXES["speed"], AXES["dt"]))
+    lines = list(itertools.product(AXES["exponent"], AXES["penalty"]))
+    image = np.full((len(lines), len(columns)), np.nan)
+    for row in panel.itertuples():
+        line, column = lines.index((row.exponent, row.penalty)), columns.index((row.speed, row.dt))
+        if row.outcome == "closed":
+            image[line, column] = row.effort
+        else:
+            axes.add_patch(plt.Rectangle((column - 0.5, line - 0.5), 1, 1, color="#d0d0d0"))
+            axes.text(column, line, LETTERS[row.outcome][0], ha="center", va="center_baseline", weight="bold")
+    axes.imshow(image, norm=norm, cmap="viridis", aspect="auto", origin="lower")
+    for edge in (2.5, 5.5):
+        axes.axhline(edge, color="white", linewidth=2)
+        axes.axvline(edge, color="white", linewidth=2)
+    small = {"fontsize": 6.5, "linespacing": 1.5}
+    steps = {dt: f"{1e6 * dt:g}" if dt else "auto" for dt in AXES["dt"]}
+    axes.set_xticks(range(9), [steps[dt] + f"\n{speed:g} m/s" * (dt == AXES["dt"][1]) for speed, dt in columns], **small)
+    axes.set_yticks(range(9), [f"m = {m:g}   " * (k == AXES["penalty"][1]) + f"$10^{{{np.log10(k):.0f}}}$" for m, k in lines],
+                    **small)
+    axes.tick_params(length=0)
+    axes.spines[:].set_visible(False)

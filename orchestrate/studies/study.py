@@ -1,0 +1,199 @@
+"""Studies: many runs of one scene, one FreeFem++ a core at most; whatever a run comes to becomes a row of a table."""
+
+import hashlib
+import multiprocessing
+import os
+import signal
+import time
+from collections import Counter, deque
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from multiprocessing.connection import Connection, wait
+from pathlib import Path
+
+import pandas as pd
+from tqdm import tqdm
+
+from .. import estimate as estimates, freefem, run, scene, stopping
+from ..failure import Busy, Failure, TooLong, Unreadable
+from ..parameters import Value, decisive
+from ..results import read_json
+
+CORES = len(os.sched_getaffinity(0))
+TOO_LONG = TooLong("").code   # of a run that its time limit ended
+STOPS = (signal.SIGTERM, signal.SIGHUP, signal.SIGINT)
+tqdm.monitor_interval = 0   # no thread beside us: we fork
+LONGEST = 200               # characters of a folder's name
+BULK, CONTACT = 8e-3, 2.5e-3   # m: the sizes of mesh factor 1 of the studies on the disc of radius 0.05 m
+Point = dict[str, Value]    # the parameters that tell this run from the others of the study
+
+
+def study(points: list[Point], folder: Path, base: Point, limit: float, name: str = "disc-normal", cores: int = CORES,
+          estimate: bool = False) -> pd.DataFrame:
+    """A row for each of `points`, in their order: its parameters, exit, message, warnings (joined by "; "), reused, and
+    the numbers of its summary.
+
+    Every run is the scene `name` with `base` and the point's parameters on top, in folder/runs/, and may take `limit`
+    seconds; `cores` of them run at a time; with `estimate` each estimates its error (estimated_error: the largest promised one). What is there already is not run again: finished runs, and failures of the same scene and code. A run
+    that fails is a row like any other, with its exit code and message; NotInstalled, without FreeFem++, is raised.
+    Several studies may share a folder: what one is running, the others leave to it. A number of the summary that has the
+    name of a parameter of the point (spin) is called <name>_end.
+    """
+    places = [place(folder, point) for point in points]
+    tasks = {where: scene.load(name).override(base | point) for where, point in zip(places, points)}
+    found = {where: outcome for where, wanted in tasks.items() if (outcome := there(where, wanted, estimate))}
+    to_do = {where: wanted for where, wanted in tasks.items() if where not in found}
+    if to_do:
+        freefem.find()
+        (folder / "runs").mkdir(parents=True, exist_ok=True)   # here: a run takes away what it had to make if it is interrupted
+    with tqdm(desc="runs", total=len(tasks), initial=len(found), disable=None, leave=False) as line:
+        for where, outcome in _outcomes(to_do, limit, cores, estimate):
+            found[where] = outcome
+            line.update()
+    return pd.DataFrame([point | {f"{name}_end" if name in point else name: value for name, value in found[where].items()}
+                         for where, point in zip(places, points)])
+
+
+def place(folder: Path, point: Point) -> Path:
+    """The result folder of a point of the study in `folder`, named after its parameters; where that is too long for a name by its hash."""
+    name = ",".join(f"{name}={value}" for name, value in point.items()) or "run"
+    if len(name) > LONGEST:
+        name = f"{name[:LONGEST - 20]},{hashlib.sha256(name.encode()).hexdigest()[:16]}"
+    return folder / "runs" / name
+
+
+def _outcomes(tasks: dict[Path, scene.Scene], limit: float, cores: int, estimate: bool) -> Iterator[tuple[Path, dict]]:
+    """(folder, outcome) as they are ready, a process each; leaving this in any way ends them and their FreeFem++."""
+    context = multiprocessing.get_context("fork")
+    waiting, running = deque(tasks), {}
+    try:
+        while waiting or running:
+            while waiting and len(running) < cores:
+                where = waiting.popleft()
+                receiver, sender = context.Pipe(duplex=False)
+                process = context.Process(target=_work, args=(sender, os.getpid(), limit, where, tasks[where], estimate))
+                signal.pthread_sigmask(signal.SIG_BLOCK, STOPS)      # a handler inside the fork would be lost
+                process.start()
+                signal.pthread_sigmask(signal.SIG_UNBLOCK, STOPS)
+                sender.close()
+                running[receiver] = where, process
+            for receiver in wait(running):
+                where, process = running.pop(receiver)
+                try:
+                    outcome = receiver.recv()
+                except EOFError:
+                    process.join()
+                    outcome = _row(1, f"its process ended with exit code {process.exitcode}", False, {})
+                if outcome:
+                    yield where, outcome
+                else:               # another study is at it: see later what came of it
+                    waiting.append(where)
+                    time.sleep(0.3)
+    finally:
+        for _, process in running.values():
+            process.terminate()
+        for _, process in running.values():
+            process.join()
+
+
+def _work(sender: Connection, parent: int, limit: float, folder: Path, wanted: scene.Scene, estimate: bool) -> None:
+    """One point in a process of its own."""
+    def too_long(number):
+        raise TooLong(f"no end after {limit:g} s: killed")
+    signal.signal(signal.SIGINT, signal.SIG_IGN)         # Ctrl-C is for the parent, who then ends us
+    stopping.on(signal.SIGTERM, stopping.leave)          # run() tidies up on the way out
+    stopping.on(signal.SIGALRM, too_long)                # likewise
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, STOPS)
+    freefem.die_with_parent(parent, signal.SIGTERM)
+    signal.setitimer(signal.ITIMER_REAL, limit)
+    sender.send(_outcome(folder, wanted, estimate))
+
+
+def there(folder: Path, wanted: scene.Scene, estimate: bool = False) -> dict | None:
+    """The outcome that is in `folder` already: a finished run, or a failure that FreeFem++ would only repeat."""
+    if failed := _failed_before(wanted, folder):
+        return _row(failed["exit_code"], str(failed.get("message")), True, failed)
+    try:
+        result = run.reusable(wanted, folder, estimate=estimate)
+    except Failure:                                      # will be said by the run
+        return None
+    return result and _row(0, result.summary["message"], True, result.summary)
+
+
+def _outcome(folder: Path, wanted: scene.Scene, estimate: bool) -> dict | None:
+    """Exit code, message, whether it was there already, and the numbers of the summary, as far as the run came; None
+    where another run is at it."""
+    if found := there(folder, wanted, estimate):
+        return found
+    try:
+        result = run.run(wanted, out=folder, estimate=estimate)
+        return _row(0, result.summary["message"], result.reused, result.summary)
+    except Busy:
+        return None
+    except Failure as failure:
+        record = read_json(failure.folder / "failure.json") if failure.folder else {}
+        return _row(failure.code, str(failure), False, record)
+    except OSError as error:                             # a full disk
+        return _row(Unreadable("").code, f"{error.filename or folder}: {error.strerror}", False, {})
+
+
+def _row(code: int, message: str, reused: bool, summary: dict) -> dict:
+    if estimated := summary.get("estimated_error"):
+        summary = summary | {"estimated_error": estimates.largest(estimated)}
+    numbers = {name: value for name, value in summary.items() if type(value) in (int, float) and name != "exit_code"}
+    return {"exit": code, "message": message, "warnings": "; ".join(summary.get("warnings", [])), "reused": reused} | numbers
+
+
+def _failed_before(wanted: scene.Scene, folder: Path) -> dict | None:
+    """The record of the same scene's failure with the same code: FreeFem++ would say the same again."""
+    for place in (folder, folder.with_name(folder.name + ".failed")):
+        record = read_json(place / "failure.json")
+        if record.get("exit_code") in (11, 12) and (record.get("provenance") or {}).get("code") == run.code_hash():
+            if record["provenance"].get("asked") == decisive(wanted.values):
+                return record
+    return None
+
+
+def warned(warnings: Iterable[str]) -> str:
+    """How many runs have which warning, from the warnings of each, joined by "; "; empty where none has any."""
+    every = list(warnings)
+    counts = Counter(sentence.split(":")[0] for joined in every for sentence in joined.split("; ") if sentence)
+    return f"{', '.join(f'{name} in {count}' for name, count in counts.most_common())} of {len(every)} runs" if counts else ""
+
+
+def table(frame: pd.DataFrame, formats: dict[str, str]) -> str:
+    """The columns named in `formats` (column: format, such as ".3f"; "" as it is) as a table of text in markdown."""
+    cells = [[cell(value, form) for value in frame[name]] for name, form in formats.items()]
+    widths = [max(map(len, [name, *column])) for name, column in zip(formats, cells)]
+    lines = [list(formats), ["-" * (width - 1) + ":" for width in widths], *zip(*cells)]
+    return "\n".join("| " + " | ".join(f"{cell:>{width}}" for cell, width in zip(line, widths)) + " |" for line in lines)
+
+
+def cell(value, form: str) -> str:
+    """A value as text in a format; nothing where there is no value."""
+    return "" if pd.isna(value) else format(value, form)
+
+
+def save(frame: pd.DataFrame, path: Path) -> None:
+    """Writes a tidy CSV, a row a run."""
+    with complete(path) as part:
+        frame.to_csv(part, index=False)
+
+
+def page(path: Path | None, title: str, command: str, text: str) -> None:
+    """Writes a report as a page of docs/, where a path is given; it says which command wrote it."""
+    if path:
+        with complete(path) as part:
+            part.write_text(f"# {title}\nWritten by `{command}`.\n\n{text}\n")
+
+
+@contextmanager
+def complete(path: Path) -> Iterator[Path]:
+    """A name to write to, which takes the name `path` in the end: a reader or a second writer never sees half a file."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_name(f"part-{os.getpid()}-{path.name}")
+    try:
+        yield part
+        os.replace(part, path)
+    finally:
+        part.unlink(missing_ok=True)

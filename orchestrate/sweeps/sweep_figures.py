@@ -1,0 +1,375 @@
+"""The figure of a sweep, and what it shows in words. [figure] of a sweep file is one of
+
+    kind = "lines"      x, y (one name or several), by: y over x, a line for each value of `by`, with error bars (default)
+    kind = "map"        x, y, colour, by: a panel for each value of `by`; level, band: where colour = level +- band
+    kind = "histories"  y (a column of history.csv), panel, by: y over time, a panel a value of `panel`, a line a value of `by`
+
+x, y of a map, by and panel are parameters that vary and together tell all points apart; the y of lines and colour are numbers
+that are collected. The x of lines is logarithmic where its values span a decade and are spaced so.
+"""
+
+import itertools
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+from matplotlib.ticker import LogLocator, NullLocator
+
+from .. import parameters
+from ..describe import describe
+from ..failure import BadInput
+from ..report import report
+from ..report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE
+from ..results import read_history
+from ..studies import study
+
+KINDS = {"lines": ("x", "y", "by"), "map": ("x", "y", "colour", "by", "level", "band"), "histories": ("y", "panel", "by")}
+WORDS = {"nu": "ν", "penalty": "k"}
+COLOURS, MARKERS = (BLUE, ORANGE, GREEN, PURPLE, GREY), "osd^v"
+
+
+def check(given: dict, points: list[dict], collected: list[str]) -> dict:
+    """The [figure] of a sweep, completed; empty if none was given. BadInput where it cannot be drawn or would mix points up."""
+    if not given:
+        return {}
+    kind, varied = given.get("kind", "lines"), list(points[0])
+    if kind not in list(KINDS):
+        raise BadInput(f"figure: kind '{kind}' is not known (accepted: {'|'.join(KINDS)})")
+    for key in given:
+        if key not in ("kind", *KINDS[kind]):
+            raise BadInput(f"figure: {key}: no such entry for {kind} (accepted: {', '.join(KINDS[kind])})")
+    figure = {"kind": kind, "by": None, "panel": None, "level": None, "band": 0.0} | given
+    if kind != "map" and isinstance(figure.get("y"), str):
+        figure["y"] = [figure["y"]]
+    axes, results = {"lines": (("x",), ("y",)), "map": (("x", "y"), ("colour",)), "histories": ((), ("y",))}[kind]
+    for key in axes:
+        _name(key, figure.get(key), varied)
+    for key in ("by", "panel"):
+        if figure[key] is not None:
+            _name(key, figure[key], varied)
+    accepted = describe()["columns"] if kind == "histories" else collected
+    for key in results:
+        names = figure.get(key) if key == "y" else [figure.get(key)]
+        if not isinstance(names, list) or not names:
+            raise BadInput(f"figure: {key} is missing (accepted: one or several of {', '.join(accepted)})")
+        for name in names:
+            _name(key, name, accepted)
+    used = [figure[key] for key in (*axes, "by", "panel") if figure[key] is not None]
+    if len(set(used)) < len(used) or len({tuple(point[name] for name in used) for point in points}) < len(points):
+        raise BadInput(f"figure: {', '.join(used) or 'nothing'} does not tell the points apart (accepted: different names for "
+                       f"{', '.join((*axes, *(key for key in ('by', 'panel') if key in KINDS[kind])))}, that together do; {', '.join(varied)} vary)")
+    if kind == "map":
+        _check_map(figure, points)
+    return figure
+
+
+def _name(key: str, name, accepted: list[str]) -> None:
+    if not isinstance(name, str) or name not in accepted:
+        raise BadInput(f"figure: {key} {'is missing' if name is None else f'= {name!r}'} (accepted: {', '.join(accepted)})")
+
+
+def _check_map(figure: dict, points: list[dict]) -> None:
+    """A map has two axes of numbers, at least two on each, and a sound level."""
+    for key in ("x", "y"):
+        values = {point[figure[key]] for point in points}
+        if len(values) < 2 or any(isinstance(value, str) for value in values):
+            raise BadInput(f"figure: {key} = '{figure[key]}' (accepted for a map: a parameter with at least two numbers)")
+    for key in ("level", "band"):
+        value = figure[key]
+        if value is not None and (type(value) not in (int, float) or not 0 <= value < 1e300):
+            raise BadInput(f"figure: {key} = {value} (accepted: a number from 0 on)")
+    if figure["level"] is not None and min(point[figure["y"]] for point in points) <= 0:
+        raise BadInput(f"figure: y = '{figure['y']}' has values up to 0 (accepted with a level: above 0)")
+
+
+def draw(sweep, rows: pd.DataFrame, out: Path) -> None:
+    """Draws DIR/sweep.png, if the sweep has a figure."""
+    if not sweep.figure:
+        return
+    with plt.rc_context(STYLE):
+        figure = {"lines": _lines, "map": _map, "histories": _histories}[sweep.figure["kind"]](sweep, rows, out)
+        figure.suptitle(sweep.title, fontsize=9, color=BLACK)
+        with study.complete(out / "sweep.png") as part:
+            figure.savefig(part)
+        plt.close(figure)
+
+
+def findings(sweep, rows: pd.DataFrame, out: Path) -> list[str]:
+    """What the figure shows, in words: trends over x, the set that meets a level, the distances of histories."""
+    if not sweep.figure:
+        return []
+    kind = sweep.figure["kind"]
+    if kind == "lines":
+        if not pd.api.types.is_numeric_dtype(rows[sweep.figure["x"]]):
+            return []
+        return [trend(group, sweep.figure["x"], y, words) for y in sweep.figure["y"]
+                for words, group in _groups(sweep, rows, "by")]
+    if kind == "map":
+        return [line for words, group in _groups(sweep, rows, "by") for line in _set(sweep.figure, words, group)]
+    return [f"{panel}: ".removeprefix(": ") + f"relative L2 difference of {y.replace('_', ' ')}, {a} and {b}: {100 * value:.1f} %"
+            + (f" (mesh and step change {100 * bar:.1f} %)" if sweep.refine else "")
+            for panel, y, a, b, value, bar in distances(sweep, rows, out)]
+
+
+def label(name: str) -> str:
+    """The words and the unit of a parameter or a number of the summary, for an axis."""
+    parameter, words = parameters.table().get(name), WORDS.get(name, name.replace("_", " "))
+    unit = _unit(name).strip() or (parameter.unit if parameter and not _quantity(name) else "")
+    return words if unit in ("-", "", "of the start") else f"{words} [{unit}]"
+
+
+def _quantity(name: str) -> report.Quantity | None:
+    return {quantity.key: quantity for quantity in report.rows(per_metre=True)}.get(name)
+
+
+def _factor(name: str) -> float:
+    """From SI to the unit that `_unit` gives."""
+    quantity = _quantity(name)
+    return quantity.factor if quantity else 1.0
+
+
+def _unit(name: str) -> str:
+    """The unit of a number of the summary, with a space in front."""
+    quantity = _quantity(name)
+    return f" {quantity.unit}" if quantity and quantity.unit else ""
+
+
+def _value(name: str, value) -> str:
+    """A value of a parameter in words, with its unit."""
+    if isinstance(value, str):
+        return LAWS.get(value, value)
+    unit = parameters.table()[name].unit
+    return f"{WORDS.get(name, name.replace('_', ' '))} = {value:g}" + f" {unit}" * (unit != "-")
+
+
+def _groups(sweep, rows: pd.DataFrame, key: str) -> Iterator[tuple[str, pd.DataFrame]]:
+    """(words, rows) for each value of the parameter that [figure] names as `key`; all rows where it names none."""
+    name = sweep.figure[key]
+    if name is None:
+        yield "", rows
+        return
+    for value, group in rows.groupby(name, sort=False):
+        yield _value(name, value), group
+
+
+# ---- lines
+
+def _lines(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
+    x, names = sweep.figure["x"], sweep.figure["y"]
+    figure, grid = plt.subplots(len(names), figsize=(6.4, 3.9 if len(names) == 1 else 2.6 * len(names)), sharex=True, squeeze=False)
+    for axes, y in zip(grid[:, 0], names):
+        for (words, group), colour, marker in zip(_groups(sweep, rows, "by"), itertools.cycle(COLOURS), itertools.cycle(MARKERS)):
+            group = group.sort_values(x)
+            there = group.exit == 0
+            errors = _factor(y) * bars(group[there], y)
+            axes.errorbar(group[x][there], _factor(y) * group[y][there], None if np.isnan(errors).all() else errors, color=colour, marker=marker,
+                          markersize=3, linewidth=1.1, elinewidth=0.9, capsize=1.5, label=words or None)
+            if not there.all():
+                axes.plot(group[x][~there], np.full((~there).sum(), 0.03), marker="x", linestyle="", markersize=4, color=colour,
+                          transform=axes.get_xaxis_transform(), label=f"{words}: the run failed".removeprefix(": "))
+        axes.set_ylabel(label(y))
+        axes.grid(alpha=0.3)
+        if _is_logarithmic(rows[x]):
+            axes.set_xscale("log")
+            axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+            axes.xaxis.set_major_formatter("{x:g}")
+            axes.xaxis.set_minor_locator(NullLocator())
+    grid[-1, 0].set_xlabel(label(x))
+    if grid[0, 0].get_legend_handles_labels()[0]:
+        grid[0, 0].legend()
+    return figure
+
+
+def _is_logarithmic(values: pd.Series) -> bool:
+    """Whether five values or more span a decade and are spaced evenly in their logarithm rather than linearly."""
+    if not pd.api.types.is_numeric_dtype(values) or (values <= 0).any() or values.nunique() < 5 or values.max() < 10 * values.min():
+        return False
+    spread = lambda steps: steps.std() / steps.mean()   # noqa: E731
+    ordered = np.sort(values.unique())
+    return spread(np.diff(np.log(ordered))) < spread(np.diff(ordered))
+
+
+@dataclass(frozen=True)
+class Trend:
+    """How y goes with x: first and last value, typical error of a point (nan without), how many of the steps between neighbours
+    go against the trend, how many of those by more than one and than two error bars of the step, the largest of them, the
+    typical error bar of a step, and the typical step."""
+
+    first: float
+    last: float
+    typical: float
+    steps: int
+    against: int
+    beyond: int
+    established: int
+    largest: float
+    bar: float
+    step: float
+
+    @property
+    def falls(self) -> bool:
+        """Whether y falls with x."""
+        return self.last < self.first
+
+
+def bars(group: pd.DataFrame, y: str) -> np.ndarray:
+    """Error bars of the points of a curve (n,): the larger of a point's own and the root mean square of all, as one difference of
+    two runs can be small by chance; nan without [refine]."""
+    if f"{y}_error" not in group:
+        return np.full(len(group), np.nan)
+    own = group[f"{y}_error"].to_numpy(dtype=float)
+    finite = own[np.isfinite(own)]
+    return np.fmax(own, np.sqrt(np.mean(finite**2))) if len(finite) else own
+
+
+def steps_against(group: pd.DataFrame, x: str, y: str) -> Trend | None:
+    """The trend of the finished points of `group`, SI units; None for fewer than three. The error bar of a step is the sum of its
+    ends' in squares."""
+    there = group[(group.exit == 0) & group[y].notna()].sort_values(x)
+    if len(there) < 3:
+        return None
+    values, errors = there[y].to_numpy(), bars(there, y)
+    steps = np.hypot(errors[1:], errors[:-1])
+    against = np.diff(values) * (1 if values[-1] < values[0] else -1)
+    return Trend(values[0], values[-1], float(np.min(errors)), len(against), int((against > 0).sum()), int((against > steps).sum()),
+                 int((against > 2 * steps).sum()), float(against.max()), float(np.median(steps)), float(np.median(np.abs(against))))
+
+
+def trend(group: pd.DataFrame, x: str, y: str, words: str) -> str:
+    """The same in words."""
+    name = f"{words}: " * bool(words) + f"{y.replace('_', ' ')} over {x.replace('_', ' ')}"
+    found, factor, unit = steps_against(group, x, y), _factor(y), _unit(y)
+    if not found:
+        return f"{name}: too few points for a trend"
+    size = abs(group[group.exit == 0][y]).mean()
+    text = (f"{name}: {'falls' if found.falls else 'rises'} from {factor * found.first:.5g} to {factor * found.last:.5g}{unit}; of {found.steps} "
+            f"steps {found.against} {'rise' if found.falls else 'fall'}")
+    if np.isnan(found.typical):
+        return text + " (no error bars: no [refine], or no finished refined run)"
+    text += f", {found.beyond} of them by more than their error bar, {found.established} by more than twice that"
+    if found.largest > 0:
+        text += f"; the largest by {factor * found.largest:.2g}{unit} ({100 * found.largest / size:.2f} %)"
+    return text + f"; error of a point {factor * found.typical:.2g}{unit} ({100 * found.typical / size:.2f} %, rms)"
+
+
+# ---- maps
+
+def _map(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
+    wanted = sweep.figure
+    x, y, colour = (wanted[key] for key in ("x", "y", "colour"))
+    groups = list(_groups(sweep, rows, "by"))
+    figure, grid = plt.subplots(1, len(groups), figsize=(1.2 + 3.4 * len(groups), 3.6), sharey=True, squeeze=False)
+    values = _factor(colour) * rows[colour]
+    low, high = values.min(), values.max()
+    for axes, (words, group) in zip(grid[0], groups):
+        table = group.pivot(index=y, columns=x, values=colour) * _factor(colour)
+        cells = np.where(group.pivot(index=y, columns=x, values="exit") == 0, table, np.nan)   # evenly spaced, whatever the values
+        picture = axes.imshow(cells, origin="lower", aspect="auto", cmap="viridis", vmin=low, vmax=high)
+        for (row, column), value in np.ndenumerate(cells):
+            axes.text(column, row, "failed" if np.isnan(value) else f"{value:#.3g}", ha="center", va="center", fontsize=7,
+                      color="black" if np.isnan(value) or value > (low + high) / 2 else "white")
+        if wanted["level"] is not None:
+            level, band = (_factor(colour) * wanted[key] for key in ("level", "band"))
+            axes.contour(cells, levels=[level], colors=[ORANGE], linewidths=2)
+            if band:
+                axes.contour(cells, levels=[level - band, level + band], colors=[ORANGE], linewidths=1, linestyles="--")
+        axes.set_xticks(range(len(table.columns)), [f"{value:g}" for value in table.columns])
+        axes.set_yticks(range(len(table.index)), [f"{value:.2g}" for value in table.index])
+        axes.set(title=words, xlabel=label(x))
+        axes.spines[:].set_visible(False)
+    grid[0, 0].set_ylabel(label(y))
+    figure.colorbar(picture, ax=grid, label=label(colour))
+    return figure
+
+
+def level_set(figure: dict, group: pd.DataFrame) -> dict[float, list[tuple[float, float]]]:
+    """For each value of x the ranges of y in which colour meets its level within the band and the error bar; between the points
+    interpolated in the logarithm of y."""
+    x, y, colour = (figure[key] for key in ("x", "y", "colour"))
+    found, band = {}, figure["band"] + _typical(group, colour)
+    for value, column in group[group.exit == 0].groupby(x):
+        column = column.sort_values(y)
+        fine = np.geomspace(column[y].iloc[0], column[y].iloc[-1], 2001)
+        inside = np.abs(np.interp(np.log(fine), np.log(column[y]), column[colour]) - figure["level"]) <= band
+        edges = np.flatnonzero(np.diff(np.concatenate([[0], inside.astype(int), [0]]))).reshape(-1, 2)
+        found[value] = [(float(fine[first]), float(fine[last - 1])) for first, last in edges]
+    return found
+
+
+def _typical(group: pd.DataFrame, name: str) -> float:
+    """The typical error bar of a column, 0 without [refine]."""
+    errors = bars(group[group.exit == 0], name)
+    return float(np.nanmin(errors)) if np.isfinite(errors).any() else 0.0
+
+
+def _set(figure: dict, words: str, group: pd.DataFrame) -> list[str]:
+    """The level set in words, a line for each value of x."""
+    if figure["level"] is None:
+        return []
+    x, y, colour = (figure[key] for key in ("x", "y", "colour"))
+    lines = [f"{words}: " * bool(words) + f"{colour.replace('_', ' ')} = {_factor(colour) * figure['level']:g} ± "
+             f"{_factor(colour) * figure['band']:g}{_unit(colour)} is met, within an error bar of {_factor(colour) * _typical(group, colour):.2g}"
+             f"{_unit(colour)}, for"]
+    for value, ranges in level_set(figure, group).items():
+        lines.append(f"  {_value(x, value)}: " + (f"{label(y)} " + spans(ranges) if ranges else f"no {label(y)}"))
+    return lines
+
+
+def spans(ranges: list[tuple[float, float]]) -> str:
+    """Ranges of numbers in words."""
+    return ", ".join(f"{first:.2g} to {last:.2g}" for first, last in ranges)
+
+
+# ---- histories
+
+def _histories(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
+    panels, names = list(_groups(sweep, rows, "panel")), sweep.figure["y"]
+    figure, grid = plt.subplots(len(names), len(panels), figsize=(1 + 3.4 * len(panels), 0.6 + 2.8 * len(names)), squeeze=False)
+    for k, (title, part) in enumerate(panels):
+        for axes, y in zip(grid[:, k], names):
+            for (words, group), colour, line in zip(_groups(sweep, part, "by"), itertools.cycle(COLOURS), itertools.cycle(("-", "--"))):
+                for _, row in group[group.exit == 0].iterrows():
+                    t, values = _history(sweep, row, out, y, refined=bool(sweep.refine))
+                    axes.plot(1e3 * t, 1e-3 * values if "force" in y else values, color=colour, linestyle=line, label=words)
+            axes.set(xlabel="time [ms]", title=title)
+            axes.margins(x=0)
+            axes.grid(alpha=0.3)
+            if k == 0:
+                axes.set_ylabel(f"{y.replace('_', ' ')}" + " [kN/m]" * ("force" in y))
+    if grid[0, 0].get_legend_handles_labels()[0]:
+        grid[0, 0].legend()
+    return figure
+
+
+def _history(sweep, row: pd.Series, out: Path, y: str, refined: bool) -> tuple[np.ndarray, np.ndarray]:
+    """(t, values) of a point's run; forces, which are means of a step, at the middle of the step."""
+    point = row[sweep.axes].to_dict() | (sweep.refine if refined else {})
+    history = read_history(study.place(out, point))
+    if y not in history:
+        raise BadInput(f"figure: y = '{y}' (accepted: {', '.join(history)})")
+    return (history["t"] - history["dt"] / 2 if y.endswith("_force") else history["t"]), history[y]
+
+
+def distances(sweep, rows: pd.DataFrame, out: Path) -> Iterator[tuple[str, str, str, str, float, float]]:
+    """(panel, y, a, b, distance, error): ||y_b - y_a|| / ||y_a|| over time, of each line b and the first one a; error: the largest
+    such distance of a run and its refined run, nan without [refine]."""
+    refined = bool(sweep.refine)
+    for panel, part in _groups(sweep, rows, "panel"):
+        runs = [(words, row) for words, group in _groups(sweep, part, "by") for _, row in group[group.exit == 0].iterrows()]
+        for y, (b, row) in itertools.product(sweep.figure["y"], runs[1:]):
+            a, first = runs[0]
+            bars = [distance(_history(sweep, each, out, y, True), _history(sweep, each, out, y, False))
+                    for each in (first, row) if refined]
+            yield panel, y, a, b, distance(*(_history(sweep, each, out, y, refined) for each in (first, row))), max(bars, default=np.nan)
+
+
+def distance(first: tuple[np.ndarray, np.ndarray], second: tuple[np.ndarray, np.ndarray]) -> float:
+    """||second - first|| / ||first|| in L2 over time; both are zero outside their times; nan where the first is zero."""
+    t = np.union1d(first[0], second[0])
+    if not first[1].any():
+        return np.nan
+    a, b = (np.interp(t, *each, left=0, right=0) for each in (first, second))
+    return float(np.sqrt(np.trapezoid((b - a) ** 2, t) / np.trapezoid(a**2, t)))

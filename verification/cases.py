@@ -1,0 +1,55 @@
+"""All cases of `make verify`, with the tolerances that were fixed before they were run."""
+
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+
+from orchestrate.report.report import REFERENCE
+
+from .case import Case, Row
+from .hertz import cylinder, ellipse
+from .impact import bars, rigids
+from .manufactured import in_space, in_time
+from .measure import disc
+from .rigid_disc import oblique
+from .rod import rods
+from .sliding_block import block
+
+
+def independent(folder: Path) -> Iterator[Row]:
+    """disc-normal over `accuracy`, against the converged values of NGSolve and GetFEM (reference/converged.toml)."""
+    peers = tomllib.loads((REFERENCE / "converged.toml").read_text())["run"][0]
+    for accuracy in (0.02, 0.005, 0.0025, 0.00125, 0.0006):
+        found = disc(folder, accuracy=accuracy, **peers["when"]).summary
+        for key, words in (("contact_time", "contact time"), ("impulse", "impulse"), ("rebound_vy", "rebound")):
+            yield Row(words, accuracy, found[key], peers["numbers"][key]["value"])
+
+
+CASES = (
+    Case("V1 space", "manufactured motions at large strain, L² error of the displacement", "element size", 0.15, in_space,
+         by_order=True, note="Both laws on the unit square and on the disc with curved elements, energy-momentum steps so small "
+                             "that only the error in space is seen."),
+    Case("V1 time", "manufactured motions at large strain, L² error of the displacement", "time step", 0.15, in_time,
+         by_order=True, note="A motion that P2 holds exactly, so that only the error in time is seen."),
+    Case("V4", "bar on a wall: contact 2L/c, stress ρcv, restitution 1", "element size / length", 0.01, bars,
+         note="v/c = 8·10⁻⁴, steps of half an element's transit. A second-order scheme smears the front over h^(2/3): the order "
+              "to expect. The stress is the mean of the middle 80 % of the contact."),
+    Case("V5", "clamped rod against a wall: contact in [1, 2], stress 1/2, period 3, energy 1/8", "element size / length", 0.01,
+         rods, note="Compressed by 5·10⁻⁵, let go, scaled back to the linear rod; the finite strain leaves 5·10⁻⁵ in the energy."
+                    " Penalty 1000 E/L. Mean stress: impulse over contact time; middle: t in [1.1, 1.9]."),
+    Case("V6", "cylinder pressed on a plane: Hertz", "element size / b", 0.02, cylinder, beside=ellipse,
+         note="b/R = 0.005, neo-Hookean, ν = 0.3, penalty 10 E*/h; b and p₀ are those of the ellipse fitted to the tractions at "
+              "the contact points."),
+    Case("V8", "rigid body on the penalty: depth and contact time", "time step [s]", 0.01, rigids,
+         note="E = 10¹² Pa; the depth is the largest at the steps. m = 1.5 and 2 besides m = 1."),
+    Case("V9", "stiff block: sliding to a stop, starting to slide, creeping", "time step [s]", 0.01, block,
+         note="The slip velocity goes with the step. The block starts in the equilibrium of a rigid one; its weight shortens "
+              "it by 0.5 % of the penetration, it vibrates, and its normal load with it: by that the start and the creep are off "
+              "once the step resolves it."),
+    Case("V10", "stiff oblique disc: sliding throughout, rolling", "penalty × radius / E", 0.03, oblique,
+         note="With the measured restitution. A stiff penalty leaves the disc's own compliance, which springs back along the "
+              "plane; a soft one lets it sink in (0.8 % of its radius at the softest), which shortens the lever of friction."),
+    Case("V12", "normal impact against NGSolve and GetFEM", "accuracy", 0.005, independent,
+         note="Their converged values, written independently on the same equations. The contact time scatters with mesh and step, by up "
+              "to 1.5 % on the coarser ones."),
+)

@@ -1,0 +1,72 @@
+"""Runs the FreeFEM scripts beside it, which print lines "name value", and the disc scene as users do without
+Python. For the tests and for `make verify`."""
+
+import os
+import re
+import signal
+import subprocess
+from dataclasses import dataclass
+from functools import cache, partial
+from pathlib import Path
+
+import numpy as np
+
+from orchestrate import freefem, results
+from orchestrate.failure import Failure
+from orchestrate.parameters import ROOT, Value
+
+SCRIPTS = Path(__file__).resolve().parent
+LINE = re.compile(r"^([a-zA-Z]\w*) (\S+)$", re.MULTILINE)
+LIMIT = 120                 # s
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """A finished run of a scene: its summary and the columns of its history."""
+
+    summary: dict
+    history: dict[str, np.ndarray]
+
+
+def measure(script: str, **given: Value | Path) -> dict[str, float]:
+    """What verification/<script>.edp prints with these flags; every call once. Failure if it does not finish."""
+    return _measured(script, _flags(given))
+
+
+def disc(folder: Path, **given: Value | Path) -> Outcome:
+    """edp/disc-plane.edp with these flags, run into `folder`."""
+    _start("edp/disc-plane.edp", (*_flags(given), "-out", str(folder)), ROOT)
+    return Outcome(results.read_summary(folder), results.read_history(folder))
+
+
+def _flags(given: dict[str, Value | Path]) -> tuple[str, ...]:
+    return tuple(word for name, value in given.items() for word in (f"-{name}", str(value)))
+
+
+@cache
+def _measured(script: str, flags: tuple[str, ...]) -> dict[str, float]:
+    said = _start(f"{script}.edp", flags, SCRIPTS)   # includes start from the folder that FreeFem++ is started in
+    values = dict(LINE.findall(said))
+    if values.pop("done", None) != "1":
+        raise Failure(f"{script}: did not finish: {_end(said)}")
+    return {name: float(value) for name, value in values.items()}
+
+
+def _start(script: str, flags: tuple[str, ...], folder: Path) -> str:
+    """What FreeFem++ prints; Failure unless it ends with exit code 0 in LIMIT seconds."""
+    program = freefem.find()
+    try:
+        process = subprocess.run([program.command, "-nw", "-ne", "-v", "0", script, *flags], cwd=folder, env=program.environment,
+                                 stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                                 errors="replace", timeout=LIMIT,
+                                 preexec_fn=partial(freefem.die_with_parent, os.getpid(), signal.SIGKILL))
+    except subprocess.TimeoutExpired:
+        raise Failure(f"{script}: no end after {LIMIT} s: killed") from None
+    if process.returncode != 0:
+        raise Failure(f"{script}: exit code {process.returncode}: {_end(process.stdout)}   (flags {' '.join(flags)})")
+    return process.stdout
+
+
+def _end(said: str) -> str:
+    """The last words of FreeFem++, on one line."""
+    return " ".join(said.split())[-300:]

@@ -1,0 +1,43 @@
+"""V9: a stiff block on the plane (sliding-block.edp): sliding to a stop, starting to slide on an incline, creeping below that."""
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+
+from .case import Row
+from .measure import measure
+
+GRAVITY = 10
+BLOCK = dict(young=1e9, nu=0.3, penalty=1e9, gravity=GRAVITY, radius=0.005)
+MASS = 1722 * 0.1 * 0.01   # kg/m
+# speed over the slip velocity at which phi of the regularization is a share of 1
+CREEP = {"linear": lambda share: share, "sqrt": lambda share: share / math.sqrt(1 - share**2), "tanh": math.atanh, "linear-printed": lambda share: 2 * share}
+
+
+def stop_time(speed: float, dynamic: float) -> float:
+    """s until a block at `speed` has stopped."""
+    return speed / (dynamic * GRAVITY)
+
+
+def stop_way(speed: float, dynamic: float) -> float:
+    """m that it slides until then."""
+    return speed**2 / (2 * dynamic * GRAVITY)
+
+
+def block(folder: Path) -> Iterator[Row]:
+    """A block at 1 m/s stops; on an incline it starts to slide at tan alpha = mu_e, and below it creeps. The slip velocity goes
+    with the step."""
+    top = math.atan(1.05 * 0.7)
+    for dt in (8e-3, 4e-3, 2e-3, 1e-3):
+        found = measure("sliding-block", speed=1, angle=0, end_time=0.24, friction_static=0.7, friction_dynamic=0.5,
+                        slip_velocity=dt, dt=dt, **BLOCK)
+        yield Row("stop: time", dt, found["stop"], stop_time(1, 0.5), 1)
+        yield Row("stop: way", dt, found["distance"], stop_way(1, 0.5))
+        yield Row("stop: friction work", dt, found["work"], MASS / 2)
+        found = measure("sliding-block", speed=0, angle=math.degrees(top), end_time=0.6, friction_static=0.7,
+                        friction_dynamic=0.4, slip_velocity=0.02 * dt, dt=dt, **BLOCK)
+        yield Row("starts to slide: tan α", dt, found["breakaway"], 0.7)
+        for law in ("linear", "sqrt", "tanh"):
+            found = measure("sliding-block", speed=0, angle=math.degrees(math.atan(0.6 * 0.9)), end_time=0.2, friction_static=0.6,
+                            friction_dynamic=0.6, regularization=law, slip_velocity=dt, dt=dt, **BLOCK)
+            yield Row(f"creep: {law}", dt, found["creep"], CREEP[law](0.9))

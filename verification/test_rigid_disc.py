@@ -1,0 +1,54 @@
+"""V10: a stiff disc hits the plane obliquely: the rigid limit, with the measured restitution e."""
+
+import math
+
+import pytest
+
+from .rigid_disc import STIFF, leaves
+
+RADIUS = STIFF["radius"]
+
+
+def impact(disc, friction: float, angle: float, **given):
+    """The summary of an impact, its speeds along and across the plane before it, and e."""
+    found = disc(**STIFF | dict(penalty=1e10, angle=angle, friction_static=friction, friction_dynamic=friction) | given).summary
+    along, across = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+    assert found["energy_drift"] < 1e-8
+    return found, along, across, found["rebound_vy"] / across
+
+
+@pytest.mark.parametrize("law, regularization, friction, angle", [
+    ("neohookean", "linear", 0.2, 30), ("svk", "linear", 0.3, 20), ("neohookean", "sqrt", 0.2, 20), ("svk", "tanh", 0.2, 20)])
+def test_disc_that_slides_throughout(disc, law, regularization, friction, angle):
+    """Beyond v_t/v_n = 3 mu (1 + e) the disc slides all the time: it loses mu (1 + e) v_n along the plane and turns
+    forward (clockwise, negative, for a motion to +x) with 2 mu (1 + e) v_n / R, within 3 %."""
+    found, along, across, e = impact(disc, friction, angle, law=law, regularization=regularization)
+    lost = friction * (1 + e) * across / along
+    centre, rim = leaves(lost)
+    assert 1 > 3.2 * lost
+    assert found["rebound_vx"] / along - 1 == pytest.approx(centre - 1, rel=0.03)
+    assert found["spin"] == pytest.approx(-rim * along / RADIUS, rel=0.03)
+    assert found["sticking_time"] < 0.03 * found["contact_time"]
+
+
+@pytest.mark.parametrize("law", ["neohookean", "svk"])
+@pytest.mark.parametrize("angle", [45, 60, 75])
+def test_disc_that_rolls(disc, law, angle):
+    """Below that the disc leaves rolling: with 2/3 of its speed along the plane, and the spin that belongs to it."""
+    found, along, across, e = impact(disc, 0.2, angle, law=law)
+    lost = 0.2 * (1 + e) * across / along
+    centre, rim = leaves(lost)
+    assert 1 < 0.95 * 3 * lost
+    assert found["rebound_vx"] == pytest.approx(centre * along, rel=0.03)
+    assert found["spin"] == pytest.approx(-rim * along / RADIUS, rel=0.03)
+    assert found["sliding_time"] < 0.9 * found["contact_time"]
+
+
+def test_rolling_is_the_limit_of_a_rigid_disc(disc):
+    """A disc whose compliance counts beside the penalty's springs back along the plane and leaves, at 60 degrees,
+    turning faster than it rolls; the difference falls with the stiffness of the penalty, to within 0.3 % of rolling."""
+    slips = []
+    for penalty in (1e11, 1e10, 2e9):
+        found, along, _, _ = impact(disc, 0.2, 60, law="neohookean", penalty=penalty)
+        slips.append((found["rebound_vx"] + RADIUS * found["spin"]) / along)
+    assert slips[0] < -0.01 and abs(slips[0]) > 3 * abs(slips[1]) and abs(slips[2]) < 0.003, slips
