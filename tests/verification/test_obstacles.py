@@ -3,7 +3,7 @@
 import pytest
 
 CURVED = ["circle", "bowl"]
-CORNERS = ["block", "container", "concave", "convex"]
+CORNERS = ["block", "container", "concave", "convex", "star"]
 SHAPES = ["plane", "inclined", *CURVED, *CORNERS]
 
 
