@@ -54,6 +54,11 @@ def test_only_slots_within_reach_have_rows(found):
     assert found["size"] == 1 and found["fixed"] == 0
 
 
+def test_slots_within_reach_are_found_wherever_the_body_goes(found):
+    """On a way to and fro, against obstacles that move to and fro: those whose gap is below the reach, and no others."""
+    assert found["none"] == 0 and found["missed"] == 0 and found["most"] < found["slots"]
+
+
 def test_rows_of_planes_are_built_once(measure):
     """Planes alone, one of them moving: constant rows, those of the trace for y = 0, and exact places."""
     planes = measure("obstacle-planes")
