@@ -52,6 +52,7 @@ def test_only_slots_within_reach_have_rows(found):
     assert found["within"] == found["expected"] and 0 < found["within"] < found["slots"]
     assert found["touching"] > 0.01 and found["placeNear"] < 1e-14 and found["stray"] == 0
     assert found["size"] == 1 and found["fixed"] == 0
+    assert 1 <= found["way"] < 1.5   # of the largest motion, a bound
 
 
 def test_slots_within_reach_are_found_wherever_the_body_goes(found):
