@@ -25,6 +25,7 @@ NEVER = 3                    # the label of what nothing reaches
 ROUND = 0.5                  # largest element size on a circle or ellipse, over its smaller semi-axis
 FINEST = 20_000              # points on a loop at most where it is asked what touches
 COARSEST = 400
+SAMPLED = 0.25               # a step between points at which an element size is asked for, over that size
 BETWEEN = 0.2                # from body to body in the reference configuration, over the largest extent
 
 Rule = Callable[[dict[str, Value]], dict]    # describe: what the scripts make of a disc on a plane
@@ -123,26 +124,32 @@ def _sizes(k: int, ask: Asker) -> Sizes:
         bulk = float(ask.answer([body], body.outline.half_thickness, **given)["used"]["mesh_size"])
     except BadInput as error:
         raise BadInput(f"body.{k + 1}.{error} (of a disc as thick as '{body.name}')") from None
-    mine = [one for one in ask.met if k in (one.first, one.second)]
-    partners = [[ask.scene.bodies[j] for j in (one.first, one.second) if j >= 0] for one in mine]
-    hits = [ask.answer(bodies, one.radius) for bodies, one in zip(partners, mine)]
-    contact = body.contact_mesh_size or min([bulk, *(float(hit["used"]["contact_mesh_size"]) for hit in hits)])
-    spacing = body.outline.length / np.clip(2 * body.outline.length / contact, COARSEST, FINEST)
+    hits = [_hit(body, k, one, ask) for one in ask.met if k in (one.first, one.second)]
+    contact = body.contact_mesh_size or min([bulk, *(size for size, *_ in hits)])
+    near = np.vstack([np.empty((0, 2)), *(points for _, points, _ in hits)])
+    return Sizes(bulk, min(bulk, contact), near, max([0.0, *(slack for *_, slack in hits)]))
+
+
+def _hit(body: Body, k: int, one: Meeting, ask: Asker) -> tuple[float, np.ndarray, float]:
+    """Where body k touches at a meeting: the element size there, points (n, 2) of its outline, and half their distance [m]."""
+    bodies = [ask.scene.bodies[j] for j in (one.first, one.second) if j >= 0]
+    straight = ask.answer(bodies, one.radius)
+    arc, size = straight["touch_arc"], float(straight["used"]["contact_mesh_size"])
+    spacing = body.outline.length / np.clip(2 * body.outline.length / size, COARSEST, FINEST)
     points = np.vstack([loop.sampled(spacing) for loop in body.outline.loops])
-    near = [np.empty((0, 2))]
-    for one, bodies, hit in zip(mine, partners, hits):
-        slide = ask.answer(bodies, one.radius, slides=True)["touch_arc"] - hit["touch_arc"]
-        near.append(_near(body, k, one, hit["touch_arc"], slide * one.radius, points))
-    return Sizes(bulk, contact, np.vstack(near), spacing / 2)
+    near = _near(body, k, one, arc, points)
+    wider = len(near) * spacing / (2 * arc * one.radius)          # than the contact of a disc: flat faces
+    slide = (ask.answer(bodies, one.radius, slides=True)["touch_arc"] - arc) * one.radius
+    if slide > 0:
+        near = points[nearest(points, near) <= slide]
+    return size * max(1.0, wider), near, spacing / 2
 
 
-def _near(body: Body, k: int, one: Meeting, touch_arc: float, slide: float, points: np.ndarray) -> np.ndarray:
-    """Those of the points of body k where it touches at a meeting: the gap is no larger than that of a disc of the pair's radius at
-    touch_arc from its lowest point; and those that a contact reaches that moves on by `slide`."""
-    turned = one.outlines[0 if k == one.first else 1]
-    gaps = one.gaps(k, carried(body.outline, turned, points))
-    near = points[gaps <= gaps.min() + one.radius * (1 - np.cos(min(touch_arc, np.pi / 2)))]
-    return points[nearest(points, near) <= slide] if slide > 0 else near
+def _near(body: Body, k: int, one: Meeting, touch_arc: float, points: np.ndarray) -> np.ndarray:
+    """Those of the points of body k where the gap at the meeting is no larger than that of a disc of the pair's radius at touch_arc
+    from its lowest point."""
+    gaps = one.gaps(k, carried(body.outline, one.outlines[0 if k == one.first else 1], points))
+    return points[gaps <= gaps.min() + one.radius * (1 - math.cos(min(touch_arc, math.pi / 2)))]
 
 
 def carried(outline: Outline, moved: Outline, points: np.ndarray) -> np.ndarray:
@@ -206,14 +213,15 @@ def mesh_body(outline: Outline, sizes: Sizes, labels: list[int]) -> mesh.Mesh:
 def nodes_on(loop: Loop, sizes: Sizes) -> np.ndarray:
     """Vertices (n, 2) on a loop, counter-clockwise: its corners, and between them steps ds with the integral of ds / size constant."""
     largest = np.inf if loop.semi_axes is None else ROUND * loop.semi_axes.min()
-    spacing = loop.lengths.sum() / np.clip(2 * loop.lengths.sum() / sizes.contact, COARSEST, FINEST)
     nodes = []
-    for piece, length in enumerate(loop.lengths):
-        s = np.linspace(0, 1, max(2, int(np.ceil(length / spacing))) + 1)
-        points = loop.at(piece, s)
-        density = 1 / np.minimum(sizes.at(points), largest)
-        steps = (density[1:] + density[:-1]) / 2 * np.linalg.norm(np.diff(points, axis=0), axis=1)
-        passed = np.concatenate([[0.0], np.cumsum(steps)])
+    for piece in range(len(loop.corners)):
+        s, size = np.array([0.0, 1.0]), np.array([])
+        while len(size) < len(s):                # halved until the size, which is Lipschitz, is known between points too
+            size = np.minimum(sizes.at(loop.at(piece, s)), largest)
+            step = np.linalg.norm(np.diff(loop.at(piece, s), axis=0), axis=1)
+            coarse = step > SAMPLED * np.minimum(size[1:], size[:-1])
+            s = np.sort(np.concatenate([s, (s[1:] + s[:-1])[coarse] / 2]))
+        passed = np.concatenate([[0.0], np.cumsum(step * (1 / size[1:] + 1 / size[:-1]) / 2)])
         count = max(1, round(passed[-1]))
         nodes.append(loop.at(piece, np.interp(passed[-1] * np.arange(count) / count, passed, s)))
     return np.vstack(nodes)
@@ -238,7 +246,7 @@ def _grade(field, loops: list[np.ndarray], curves: tuple[list[int], ...], sizes:
         size = sizes.bulk * np.sqrt(0.5)**level
         distance, source = field.add("Distance"), field.add("Threshold")
         field.setNumbers(distance, "CurvesList", lines[fineness == level])
-        field.setNumber(distance, "Sampling", 2)
+        field.setNumber(distance, "Sampling", 5)   # points on a line; of 2 gmsh makes none
         for name, value in dict(InField=distance, SizeMin=size * unit, SizeMax=sizes.bulk * unit, DistMin=0,
                                 DistMax=max(sizes.bulk - size, 1e-9 * sizes.bulk) / GROWTH * unit).items():
             field.setNumber(source, name, value)

@@ -69,7 +69,7 @@ def read(tables: list[dict], top: dict, folder: Path) -> list[Body]:
 
 def _body(path: str, given: dict, top: dict, folder: Path) -> Body:
     shapes = "|".join(SHAPES)
-    if not isinstance(given, dict) or "shape" not in given:
+    if "shape" not in given:
         raise BadInput(f"{path}.shape: is missing (accepted: {shapes})")
     if not isinstance(given["shape"], str) or given["shape"] not in SHAPES:
         raise BadInput(f"{path}.shape: '{given['shape']}' is not known (accepted: {shapes})")

@@ -93,7 +93,7 @@ def read(given: dict, folder: Path, name: str) -> Multibody:
     if not all_bodies:
         raise BadInput("body: is missing (accepted: one table [[body]] or more)")
     rigid = listed(given, "obstacle")
-    all_obstacles = obstacles.read([{key: value for key, value in one.items() if key not in OWN} if isinstance(one, dict) else one for one in rigid])
+    all_obstacles = obstacles.read([{key: value for key, value in one.items() if key not in OWN} for one in rigid])
     index = _names(all_bodies, all_obstacles)
     contact_table = Table("contact", given.get("contact", {}), (*CONTACT, "pair"))
     contact = {key: contact_table.parameter(key, _rule(key)) for key in CONTACT}
@@ -140,7 +140,7 @@ def _exceptions(contact: Table, index: dict[str, int]) -> dict[tuple[int, int], 
     for k, given in enumerate(listed({"contact.pair": contact.given.get("pair", [])}, "contact.pair"), 1):
         path = f"contact.pair.{k}"
         for key in set(CONTACT) - set(OWN):
-            if isinstance(given, dict) and key in given:
+            if key in given:
                 raise BadInput(f"{path}.{key}: '{given[key]}' holds for the whole scene (accepted: in [contact]; here {', '.join(OWN)})")
         table = Table(path, given, ("bodies", *OWN))
         both = _partners(path, table.given.get("bodies"), index)

@@ -41,7 +41,7 @@ def read(tables: list[dict]) -> list[Obstacle]:
 
 
 def _obstacle(path: str, given: dict) -> Obstacle:
-    if not isinstance(given, dict) or given.get("kind") not in KINDS:
+    if given.get("kind") not in tuple(KINDS):
         raise BadInput(f"{path}.kind: '{given.get('kind', '')}' is not known (accepted: {'|'.join(KINDS)})")
     kind = given["kind"]
     table = Table(path, given, ("name", "kind", "velocity", *KINDS[kind]))

@@ -81,6 +81,9 @@ def listed(given: dict, key: str) -> list[dict]:
     tables = given.get(key, [])
     if not isinstance(tables, list):
         raise BadInput(f"{key}: '{tables}' is no list of tables (accepted: [[{key}]])")
+    for k, table in enumerate(tables, 1):
+        if not isinstance(table, dict):
+            raise BadInput(f"{key}.{k}: '{table}' is no table (accepted: [[{key}]])")
     return tables
 
 
