@@ -61,6 +61,8 @@ def _meeting(scene: Multibody, first: int, second: int) -> Meeting:
     outlines, velocity = _at(body, other, t, pull), start + pull * t
     gaps = outlines[1].gap(outlines[0].points)
     normal = normal_of(outlines[1], outlines[0].points[gaps.argmin()])
+    if not met:                                                # what lets them meet later may turn them in any direction
+        return Meeting(first, second, outlines, float(np.linalg.norm(velocity)), 0.0, float(np.linalg.norm(pull)), 0.0, float(radius))
     return Meeting(first, second, outlines, *_parts(velocity, normal), *_parts(pull, normal), float(radius))
 
 
