@@ -1,0 +1,73 @@
+"""Polylines as obstacles: which chains are accepted, and their signed distance."""
+
+import numpy as np
+import pytest
+
+from orchestrate import polyline
+from orchestrate.failure import BadInput
+
+SQUARE = [[0, 0], [0, 1], [1, 1], [1, 0]]        # clockwise
+POINTS = np.random.default_rng(1).uniform(-2, 3, (2000, 2))
+
+
+def distance(vertices, closed, rounding=0.0, points=POINTS):
+    return polyline.gap(points, polyline.numbers(np.array(vertices, float), closed, rounding))
+
+
+def square(points, rounding=0.0):
+    """Closed form of the block [0, 1] x [0, 1]."""
+    q = abs(points - 0.5) - 0.5
+    return np.hypot(*np.maximum(q, 0).T) + np.minimum(q.max(axis=1), 0) - rounding
+
+
+def test_clockwise_is_a_block_and_counter_clockwise_a_container():
+    """The free side is to the left of the direction of travel; rounding takes from it in both."""
+    assert distance(SQUARE, True, 0.1) == pytest.approx(square(POINTS, 0.1), abs=1e-14)
+    assert distance(SQUARE[::-1], True, 0.1) == pytest.approx(-square(POINTS) - 0.1, abs=1e-14)
+
+
+def test_open_chains_go_straight_on_beyond_their_ends():
+    """Two vertices are a plane, whatever their distance; three are a quadrant, with its corner in or out."""
+    x, y = POINTS.T
+    assert distance([[0, 0.5], [1e-3, 0.5]], False) == pytest.approx(y - 0.5, abs=1e-12)
+    corner = np.where((x < 0) & (y < 0), -np.hypot(x, y), np.minimum(x, y))
+    assert distance([[0, 1], [0, 0], [1, 0]], False) == pytest.approx(corner, abs=1e-14)
+    assert distance([[1, 0], [0, 0], [0, 1]], False) == pytest.approx(-corner, abs=1e-14)
+
+
+def test_numbers_are_those_of_the_scripts():
+    assert polyline.numbers(np.array([[0, 1], [2, 3]]), False, 0.5) == (0, 0.5, 0, 1, 2, 3)
+
+
+@pytest.mark.parametrize("vertices, closed", [
+    (SQUARE, True), (SQUARE[::-1], True), ([[0, 0], [1, 0]], False), ([[0, 0], [1, 0], [2, 0], [2, 1]], False),
+    ([[0, 1], [0, 0], [1, 0], [1, 1]], False),                           # a bucket with parallel walls
+    ([[0, 0], [1, 0], [1, 1], [2, 1], [2, 0], [3, 0]], False)])          # a bump on a floor: both ends on one line
+def test_chains_that_are_accepted(vertices, closed):
+    polyline.check("obstacle.1", np.array(vertices, float), closed, 0.0)
+
+
+@pytest.mark.parametrize("vertices, closed, rounding, message", [
+    ([[0, 0]], False, 0, "obstacle.1.vertices: 1 given (accepted: 2 or more points [x, y])"),
+    ([[0, 0], [1, 0]], True, 0, "obstacle.1.vertices: 2 given (accepted: 3 or more points [x, y] of a closed chain)"),
+    ([[0, 0], [np.nan, 0]], False, 0, "obstacle.1.vertices.2: is not finite (accepted: numbers [x, y])"),
+    (SQUARE, True, -0.1, "obstacle.1.rounding: -0.1 is out of range (accepted: from 0)"),
+    (SQUARE, True, np.nan, "obstacle.1.rounding: nan is out of range (accepted: from 0)"),
+    ([[0, 0], [1, 0], [1, 0]], False, 0, "obstacle.1.vertices.3: [1, 0] is the vertex before it again (accepted: each vertex once)"),
+    ([[0, 0], [0, 0]], False, 0, "obstacle.1.vertices.2: [0, 0] is the vertex before it again (accepted: each vertex once)"),
+    ([*SQUARE, [0, 0]], True, 0, "obstacle.1.vertices.5: [0, 0] is the first vertex again (accepted: a closed chain without it)"),
+    ([[0, 0], [1, 0], [0.5, 0]], False, 0,
+     "obstacle.1.vertices.2: the chain turns back on itself at [1, 0] (accepted: corners of less than 180 degrees)"),
+    ([[0, 0], [1, 1], [1, 0], [0, 1]], True, 0,
+     "obstacle.1.vertices: side 1 and side 3 meet at [0.5, 0.5] (accepted: a chain that does not cross or touch itself)"),
+    ([[0, 0], [0.2, 1], [0.8, 1], [1, 0], [0.8, -0.5]], False, 0,
+     "obstacle.1.vertices: side 1 and side 4 meet at [-1, -5] (accepted: a chain that does not cross or touch itself; "
+     "an open one goes straight on beyond its ends)"),
+    ([[0, 0], [1, 0], [1, 1], [0.5, 1], [0.5, 0], [0.2, 0]], False, 0,
+     "obstacle.1.vertices: side 1 and side 4 meet at [0.5, 0] (accepted: a chain that does not cross or touch itself; "
+     "an open one goes straight on beyond its ends)")])
+def test_chains_that_are_not_accepted(vertices, closed, rounding, message):
+    """One line that names the table and the key, the value and what is accepted."""
+    with pytest.raises(BadInput) as error:
+        polyline.check("obstacle.1", np.array(vertices, float), closed, rounding)
+    assert str(error.value) == message
