@@ -10,7 +10,8 @@ from .multibody import Multibody, gap_between, normal_of
 from .obstacles import Obstacle
 from .outlines import Outline, cross
 
-STEPS = 60                   # what has not met by then flies apart
+STEPS = 200                  # what has not met by then does not
+FAR = 1e6                    # of the smaller thickness: a gap that does not close again
 MET = 1e-3                   # of the smaller thickness: a gap that counts as closed
 
 
@@ -54,7 +55,7 @@ def _meeting(scene: Multibody, first: int, second: int) -> Meeting:
         gap = _gap(*_at(body, other, t, pull))
         met = gap <= MET * radius
         speed, rate = np.linalg.norm(start + pull * t) + turning, np.linalg.norm(pull)
-        if met or speed + rate == 0:
+        if met or speed + rate == 0 or gap > FAR * radius:
             break
         t += 2 * gap / (speed + math.sqrt(speed**2 + 2 * rate * gap))       # speed t + rate t^2 / 2 = gap
     t = t if met else 0.0

@@ -13,13 +13,14 @@ import numpy as np
 
 from . import mesh
 from .approach import Meeting, meetings
-from .bodies import Body
+from .bodies import MATERIAL, Body
 from .describe import describe
 from .failure import BadInput
 from .mesh import FREE, GROWTH
-from .multibody import OWN, Multibody, Pair
+from .multibody import CONTACT, OWN, Multibody, Pair
 from .outlines import Loop, Outline
 from .parameters import Value
+from .tables import to_toml
 
 NEVER = 3                    # the label of what nothing reaches
 ROUND = 0.5                  # largest element size on a circle or ellipse, over its smaller semi-axis
@@ -51,18 +52,21 @@ class Sizes:
 @dataclass(frozen=True)
 class Assembly:
     """`mesh` holds all bodies, `regions` (t,) their numbers, `centres` (bodies, 2) where their centres of area are in it; `data` is
-    the text of scene.dat; `values` are all parameters of run and contact, nothing left open."""
+    the text of scene.dat; `values` are all parameters of run and contact, nothing left open, and `used` the tables of the scene with
+    them in it: read again, they make this very assembly."""
 
     mesh: mesh.Mesh
     regions: np.ndarray
     centres: np.ndarray
     data: str
     values: dict[str, Value]
+    used: dict
 
     def write(self, folder: Path) -> None:
-        """mesh.msh and scene.dat."""
+        """mesh.msh, scene.dat and scene.toml."""
         write_mesh(self.mesh, self.regions, folder / "mesh.msh")
         (folder / "scene.dat").write_text(self.data)
+        (folder / "scene.toml").write_text(to_toml(self.used))
 
 
 def assemble(scene: Multibody, rule: Rule = describe) -> Assembly:
@@ -70,10 +74,12 @@ def assemble(scene: Multibody, rule: Rule = describe) -> Assembly:
     disc of the pair's radius that hits a plane."""
     ask = Asker(scene, meetings(scene), rule)
     values = scene.values | contact_values(scene.bodies, scene.contact, ask, "contact")
-    meshes = [body.mesh or mesh_body(body.outline, _sizes(k, ask), _labels(scene, k)) for k, body in enumerate(scene.bodies)]
+    pairs = [pair_values(pair, ask, values) for pair in scene.pairs]
+    sizes = [None if body.mesh else _sizes(k, ask) for k, body in enumerate(scene.bodies)]
+    meshes = [body.mesh or mesh_body(body.outline, sizes[k], _labels(scene, k)) for k, body in enumerate(scene.bodies)]
     centres = side_by_side([np.array([one.points.min(axis=0), one.points.max(axis=0)]) for one in meshes])
     together, regions = stack(meshes, centres)
-    return Assembly(together, regions, centres, data_file(scene, centres, ask, values), values)
+    return Assembly(together, regions, centres, data_file(scene, centres, pairs), values, used_tables(scene, sizes, values, pairs))
 
 
 # ---- what the scene leaves open
@@ -114,6 +120,32 @@ def contact_values(bodies: list[Body], contact: dict[str, Value], ask: Asker, pa
         raise BadInput(f"{path}.friction_dynamic: {found['friction_dynamic']:g} is larger than friction_static {found['friction_static']:g} "
                        f"(accepted: 0 to friction_static)")
     return found
+
+
+def pair_values(pair: Pair, ask: Asker, values: dict[str, Value]) -> dict[str, Value]:
+    """All that a pair may have of its own: what it does not say is as settled for the scene, and open again where it depends on what
+    the pair says."""
+    bodies = [ask.scene.bodies[k] for k in (pair.first, pair.second) if k >= 0]
+    open_again = {"friction_dynamic", *(["penalty"] if "exponent" in pair.values else [])}
+    inherited = {name: (ask.scene.contact if name in open_again else values)[name] for name in OWN}
+    own = contact_values(bodies, inherited | pair.values, ask, pair.path)
+    return {name: own[name] for name in OWN}
+
+
+def used_tables(scene: Multibody, sizes: list[Sizes | None], values: dict[str, Value], pairs: list[dict[str, Value]]) -> dict:
+    """The tables of a scene with everything as used; what obstacles say of contact stands in [[contact.pair]]."""
+    def names(pair: Pair) -> list[str]:
+        return [(scene.bodies[k] if k >= 0 else scene.obstacles[-1 - k]).name for k in (pair.first, pair.second)]
+    bodies = []
+    for given, body, size in zip(scene.given["body"], scene.bodies, sizes):
+        used = {"name": body.name} | given | {key: getattr(body, key) for key in MATERIAL}
+        used |= {"mesh_size": size.bulk, "contact_mesh_size": size.contact} if size else {"file": str((scene.folder / given["file"]).resolve())}
+        bodies.append(used)
+    obstacles = [{"name": one.name} | {key: value for key, value in given.items() if key not in OWN}
+                 for given, one in zip(scene.given.get("obstacle", []), scene.obstacles)]
+    contact = {key: values[key] for key in CONTACT} | {"pair": [{"bodies": names(pair)} | own for pair, own in zip(scene.pairs, pairs)]}
+    top = {"title": scene.title} | {key: values[key] for key in scene.values}
+    return top | {"body": bodies, "obstacle": obstacles, "contact": contact}
 
 
 def _sizes(k: int, ask: Asker) -> Sizes:
@@ -288,7 +320,7 @@ def write_mesh(together: mesh.Mesh, regions: np.ndarray, path: Path) -> None:
 
 # ---- scene.dat
 
-def data_file(scene: Multibody, centres: np.ndarray, ask: Asker, values: dict[str, Value]) -> str:
+def data_file(scene: Multibody, centres: np.ndarray, pairs: list[dict[str, Value]]) -> str:
     """The text of scene.dat, words and numbers (SI, radians):
         ffimpact-bodies 1
         bodies N       name law young nu density  centreX centreY  placeX placeY angle  vx vy spin     a line a body
@@ -303,17 +335,8 @@ def data_file(scene: Multibody, centres: np.ndarray, ask: Asker, values: dict[st
               for body, centre in zip(scene.bodies, centres)]
     lines += [("circles", len(circles)), *circles, ("obstacles", len(scene.obstacles))]
     lines += [(one.kind, len(one.numbers), *one.numbers, *one.velocity) for one in scene.obstacles]
-    lines += [("pairs", len(scene.pairs)), *(_pair_line(pair, ask, values) for pair in scene.pairs)]
+    lines += [("pairs", len(pairs)), *((pair.first, pair.second, *own.values()) for pair, own in zip(scene.pairs, pairs))]
     return "".join(" ".join(map(_token, line)) + "\n" for line in lines)
-
-
-def _pair_line(pair: Pair, ask: Asker, values: dict[str, Value]) -> tuple:
-    """A line of pairs: what the pair does not say is as settled for the scene, and auto anew where it depends on what the pair says."""
-    bodies = [ask.scene.bodies[k] for k in (pair.first, pair.second) if k >= 0]
-    open_again = {"friction_dynamic", *(["penalty"] if "exponent" in pair.values else [])}
-    inherited = {name: (ask.scene.contact if name in open_again else values)[name] for name in OWN}
-    own = contact_values(bodies, inherited | pair.values, ask, pair.path)
-    return pair.first, pair.second, *(own[name] for name in OWN)
 
 
 def _token(value) -> str:

@@ -149,7 +149,7 @@ def _outline(table: Table) -> Outline:
 
 def _polygon(table: Table) -> Outline:
     """The polygon with its holes; BadInput where it crosses itself, or a hole is not inside it and apart from the others."""
-    outer, holes = table.polygon("vertices"), table.polygons("holes")
+    outer, holes = table.points("vertices"), table.polygons("holes")
     named = [(f"{table.path}.vertices", outer), *((f"{table.path}.holes.{k}", hole) for k, hole in enumerate(holes, 1))]
     for path, corners in named:
         _simple(path, corners)

@@ -108,7 +108,7 @@ def read(given: dict, folder: Path, name: str) -> Multibody:
 
 
 def _rule(key: str) -> Parameter:
-    return PAIRING if key == "pairing" else parameters.table()[key]
+    return parameters.table().get(key, PAIRING)
 
 
 def _names(all_bodies: list[Body], all_obstacles: list[Obstacle]) -> dict[str, int]:
@@ -187,8 +187,10 @@ def gap_between(first: Outline, second: Outline) -> float:
 
 def gap_to_obstacle(outline: Outline, obstacle: Obstacle) -> float:
     """The distance of an outline from an obstacle, negative where they overlap."""
-    nearest = outline.area_centre - obstacle.gap(outline.area_centre[None]) * normal_of(obstacle, outline.area_centre)
-    return float(min(obstacle.gap(outline.points).min(), outline.gap(nearest[None])[0]))   # the latter: one inside the body
+    centre, least = outline.area_centre, obstacle.gap(outline.points).min()
+    nearest = centre - obstacle.gap(centre[None]) * normal_of(obstacle, centre)
+    is_of_it = obstacle.gap(nearest[None])[0] < 1e-4 * outline.half_thickness    # not where the distance has no gradient
+    return float(min(least, outline.gap(nearest[None])[0]) if is_of_it else least)    # the former: an obstacle inside the body
 
 
 def normal_of(other: Outline | Obstacle, point: np.ndarray) -> np.ndarray:

@@ -1,6 +1,7 @@
 """Tables of a scene's TOML file ([[body]], [contact] ...) read with one clear line for whatever is wrong in them."""
 
 import difflib
+import json
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -48,22 +49,29 @@ class Table:
         self._wanted(key, default, f"[x, y], each {low:g} to {high:g}")
         return _pair(self.at(key), self.given.get(key, default), low, high)
 
-    def polygon(self, key: str) -> np.ndarray:
-        """At least three points [x, y], (n, 2) in m."""
-        self._wanted(key, None, "three points [x, y] or more")
-        return _polygon(self.at(key), self.given[key])
+    def points(self, key: str, least: int = 3) -> np.ndarray:
+        """At least so many points [x, y], (n, 2) in m."""
+        self._wanted(key, None, f"{least} points [x, y] or more")
+        return _points(self.at(key), self.given[key], least)
 
     def polygons(self, key: str) -> list[np.ndarray]:
         """A list of polygons, [] where there is none."""
         given = self.given.get(key, [])
         if not isinstance(given, list):
             raise BadInput(f"{self.at(key)}: '{given}' is no list of polygons (accepted: [[[x, y], ...], ...])")
-        return [_polygon(f"{self.at(key)}.{k}", one) for k, one in enumerate(given, 1)]
+        return [_points(f"{self.at(key)}.{k}", one, 3) for k, one in enumerate(given, 1)]
 
     def word(self, key: str, words: tuple[str, ...]) -> str:
         """One of the words; required."""
         self._wanted(key, None, "|".join(words))
         return self.parameter(key, Parameter(key, "word", "", "-", "", words=words))
+
+    def flag(self, key: str, default: bool) -> bool:
+        """true or false."""
+        given = self.given.get(key, default)
+        if not isinstance(given, bool):
+            raise BadInput(f"{self.at(key)}: '{given}' is neither true nor false (accepted: true|false)")
+        return given
 
     def text(self, key: str, default: str) -> str:
         given = self.given.get(key, default)
@@ -87,6 +95,22 @@ def listed(given: dict, key: str) -> list[dict]:
     return tables
 
 
+def to_toml(table: dict, path: str = "") -> str:
+    """The text of a TOML file of tables, lists of tables and values, numbers with all their digits."""
+    values = {key: value for key, value in table.items() if not _tables(value)}
+    text = "".join(f"{key} = {json.dumps(value, ensure_ascii=False)}\n" for key, value in values.items())
+    for key, value in table.items():
+        for one in _tables(value):
+            head = f"[{_at(path, key)}]" if isinstance(value, dict) else f"[[{_at(path, key)}]]"
+            text += f"\n{head}\n{to_toml(one, _at(path, key))}"
+    return text
+
+
+def _tables(value) -> list[dict]:
+    """The tables that a value is or lists."""
+    return [value] if isinstance(value, dict) else value if isinstance(value, list) and value and isinstance(value[0], dict) else []
+
+
 def _at(path: str, key: str) -> str:
     return f"{path}.{key}" if path else key
 
@@ -101,7 +125,7 @@ def _pair(path: str, given, low: float, high: float) -> np.ndarray:
     return np.array([replace(_real(low, high), name=f"{path}.{k}").check(value) for k, value in enumerate(given, 1)])
 
 
-def _polygon(path: str, given) -> np.ndarray:
-    if not isinstance(given, list) or len(given) < 3:
-        raise BadInput(f"{path}: '{given}' is no polygon (accepted: three points [x, y] or more)")
+def _points(path: str, given, least: int) -> np.ndarray:
+    if not isinstance(given, list) or len(given) < least:
+        raise BadInput(f"{path}: '{given}' is too little (accepted: {least} points [x, y] or more)")
     return np.array([_pair(f"{path}.{k}", point, -LONGEST, LONGEST) for k, point in enumerate(given, 1)])

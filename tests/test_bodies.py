@@ -268,6 +268,19 @@ def test_pairs_inherit_from_contact():
 
 
 @pytest.mark.parametrize("name", multibody.built_in())
+def test_the_scene_as_used_is_the_same_scene(name, tmp_path):
+    """scene.toml, which has everything that was left open, makes the same mesh, data and values, byte for byte."""
+    first, second = tmp_path / "first", tmp_path / "second"
+    for folder, source in ((first, name), (second, str(first / "scene.toml"))):
+        folder.mkdir()
+        built = assembly.assemble(multibody.load(source))
+        assert "auto" not in built.values.values()
+        built.write(folder)
+    for file in ("mesh.msh", "scene.dat", "scene.toml"):
+        assert (first / file).read_text() == (second / file).read_text(), file
+
+
+@pytest.mark.parametrize("name", multibody.built_in())
 def test_built_in_scenes_are_assembled(name):
     """Every scene that comes with the program makes a sound mesh of its bodies."""
     scene = multibody.load(name)
@@ -355,7 +368,7 @@ POLYGONS = [
     ({"vertices": [[0, 0], [2, 0], [2, 1], [1, 0], [0, 1]]}, "body.1.vertices: the side from vertex 1 to 2 meets the side from vertex 3 to 4"),
     ({"vertices": [[0, 0], [2, 0], [1, 0]]}, "body.1.vertices: the side from vertex 1 to 2 meets the side from vertex 2 to 3"),
     ({"vertices": [*SQUARE, [0, 0]]}, "body.1.vertices: vertices 5 and 1 coincide (accepted: each vertex once, the polygon closes itself)"),
-    ({"vertices": SQUARE[:2]}, "body.1.vertices: '[[0, 0], [1, 0]]' is no polygon (accepted: three points [x, y] or more)"),
+    ({"vertices": SQUARE[:2]}, "body.1.vertices: '[[0, 0], [1, 0]]' is too little (accepted: 3 points [x, y] or more)"),
     ({"vertices": SQUARE, "holes": [[[2, 2], [3, 2], [3, 3]]]}, "body.1.holes.1: is not inside body.1.vertices (accepted: holes that neither cross nor touch the outline)"),
     ({"vertices": SQUARE, "holes": [[[0.5, 0.5], [2, 0.5], [0.5, 0.6]]]}, "body.1.holes.1: is not inside body.1.vertices"),
     ({"vertices": SQUARE, "holes": [[[0, 0.5], [0.5, 0.5], [0.5, 0.6]]]}, "body.1.holes.1: is not inside body.1.vertices"),
@@ -436,6 +449,42 @@ def test_entries_are_set_by_name():
 def test_names_that_reach_nothing_are_named(name, words):
     with pytest.raises(BadInput) as caught:
         multibody.set_entry(SCENE | {"obstacle": [FLOOR]}, name, 1)
+    assert words in str(caught.value)
+
+
+# ---- obstacles
+
+OBSTACLES = [
+    ({"kind": "plane", "point": [1, 2], "normal": [0, 1e-200]}, "plane 4 1.0 2.0 0.0 1.0", [[0, 2.5], [0, 1]], [0.5, -1]),
+    ({"kind": "circle", "centre": [1, 0], "radius": 2}, "circle 3 1.0 0.0 2.0", [[4, 4], [1, 1]], [3, -1]),
+    ({"kind": "bowl", "centre": [1, 0], "radius": 2}, "bowl 3 1.0 0.0 2.0", [[4, 4], [1, 1]], [-3, 1]),
+    ({"kind": "polyline", "vertices": [[0, 0], [2, 0]], "rounding": 0.1}, "polyline 6 0.0 0.1 0.0 0.0 2.0 0.0", [[1, 1], [1, -1]], [0.9, -1.1]),
+    ({"kind": "polyline", "vertices": [[0, 0], [0, 1], [1, 1], [1, 0]], "closed": True}, "polyline 10 1.0 0.0 0.0 0.0 0.0 1.0 1.0 1.0 1.0 0.0", [[0.5, 0.75], [3, 1]], [-0.25, 2]),
+]
+
+
+@pytest.mark.parametrize("entries, words, points, gaps", OBSTACLES)
+def test_obstacles_are_their_numbers_and_gaps(entries, words, points, gaps):
+    """An obstacle's line in scene.dat, its velocity behind its numbers; its gap is the signed distance, negative inside."""
+    far = with_body(shape="disc", radius=0.01, position=[0.5, 5] if entries["kind"] != "bowl" else [1, 0]) | {"obstacle": [entries | {"velocity": [0.5, -0.25]}]}
+    scene = read(far)
+    assert f"\n{words} 0.5 -0.25\n" in assembly.assemble(scene).data
+    assert scene.obstacles[0].gap(np.array(points, dtype=float)) == pytest.approx(gaps)
+
+
+@pytest.mark.parametrize("entries, words", [
+    ({"kind": "cone"}, "obstacle.1.kind: 'cone' is not known (accepted: plane|circle|bowl|polyline)"),
+    ({}, "obstacle.1.kind: is missing (accepted: plane|"),
+    ({"kind": "plane", "point": [0, 0]}, "obstacle.1.normal: is missing (accepted: [x, y]"),
+    ({"kind": "bowl", "centre": [0, 0]}, "obstacle.1.radius: is missing"),
+    ({"kind": "bowl", "center": [0, 0]}, "obstacle.1.center: '[0, 0]' belongs to no such key; did you mean centre? (accepted: name, kind, velocity, centre, radius)"),
+    ({"kind": "polyline", "vertices": [[0, 0]]}, "obstacle.1.vertices: '[[0, 0]]' is too little (accepted: 2 points [x, y] or more)"),
+    ({"kind": "polyline", "vertices": [[0, 0], [1, 0], [1, 0]]}, "obstacle.1.vertices.3: [1, 0] is the vertex before it again"),
+    ({"kind": "polyline", "vertices": [[0, 0], [1, 0]], "closed": "yes"}, "obstacle.1.closed: 'yes' is neither true nor false (accepted: true|false)"),
+])
+def test_obstacles_that_are_none_are_named(entries, words):
+    with pytest.raises(BadInput) as caught:
+        read(with_body(shape="disc", radius=0.1, position=[0, 9]) | {"obstacle": [entries]})
     assert words in str(caught.value)
 
 
