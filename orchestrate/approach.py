@@ -49,7 +49,7 @@ def _meeting(scene: Multibody, first: int, second: int) -> Meeting:
     pull = np.zeros(2) if second >= 0 else force               # two bodies fall alike
     start = body.velocity - other.velocity
     radius = min([body.outline.half_thickness, *([other.outline.half_thickness] if second >= 0 else [])])
-    turning = sum(abs(one.spin) * np.linalg.norm(one.outline.points, axis=1).max() for one in (body, other) if isinstance(one, Body))
+    turning = sum(abs(one.spin) * one.outline.reach for one in (body, other) if isinstance(one, Body))
     t, met = 0.0, False
     for _ in range(STEPS):
         gap = _gap(*_at(body, other, t, pull))
@@ -83,4 +83,8 @@ def _at(body: Body, other: Body | Obstacle, t: float, pull: np.ndarray) -> tuple
 
 
 def _gap(first: Outline, second: Outline | Obstacle) -> float:
-    return gap_between(first, second) if isinstance(second, Outline) else float(second.gap(first.points).min())
+    """The gap; of two bodies far apart that of the circles around them, which is no larger."""
+    if not isinstance(second, Outline):
+        return float(second.gap(first.points).min())
+    away, around = np.linalg.norm(first.area_centre - second.area_centre), first.reach + second.reach
+    return float(away - around) if away > 2 * around else gap_between(first, second)

@@ -24,7 +24,7 @@ from .tables import to_toml
 
 NEVER = 3                    # the label of what nothing reaches
 ROUND = 0.5                  # largest element size on a circle or ellipse, over its smaller semi-axis
-FINEST = 20_000              # points on a loop at most where it is asked what touches
+FINEST = 4000                # points on a loop at most where it is asked what touches
 COARSEST = 400
 SAMPLED = 0.25               # a step between points at which an element size is asked for, over that size
 BETWEEN = 0.2                # from body to body in the reference configuration, over the largest extent
@@ -170,7 +170,7 @@ def _hit(body: Body, k: int, one: Meeting, ask: Asker) -> tuple[float, np.ndarra
     spacing = body.outline.length / np.clip(2 * body.outline.length / size, COARSEST, FINEST)
     points = np.vstack([loop.sampled(spacing) for loop in body.outline.loops])
     near = _near(body, k, one, arc, points)
-    wider = len(near) * spacing / (2 * arc * one.radius)          # than the contact of a disc: flat faces
+    wider = (len(near) - 1) * spacing / (2 * arc * one.radius)    # than the contact of a disc: flat faces
     slide = (ask.answer(bodies, one.radius, slides=True)["touch_arc"] - arc) * one.radius
     if slide > 0:
         near = points[nearest(points, near) <= slide]

@@ -237,9 +237,9 @@ def _key(place: dict | list, step: str, path: str, name: str) -> str | int:
 
 
 def _toml_value(value):
-    """Text as TOML reads it, where it does."""
+    """Text as TOML reads it, where it does; numbers and arrays of numpy as plain ones."""
     if not isinstance(value, str):
-        return value
+        return value.tolist() if isinstance(value, np.generic | np.ndarray) else value
     try:
         return tomllib.loads(f"value = {value}")["value"] if "\n" not in value else value
     except tomllib.TOMLDecodeError:

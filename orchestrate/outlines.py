@@ -118,6 +118,11 @@ class Outline:
         """Width and height."""
         return np.ptp(self.loops[0].polygon, axis=0)
 
+    @cached_property
+    def reach(self) -> float:
+        """Distance of its farthest point from the centre of its area."""
+        return float(np.linalg.norm(self.loops[0].polygon - self.area_centre, axis=1).max())
+
     @property
     def half_thickness(self) -> float:
         """What stands for the radius of a body that is no disc: half its smaller extent, or 2 area / length where that is less
