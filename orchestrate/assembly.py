@@ -144,7 +144,7 @@ def used_tables(scene: Multibody, sizes: list[Sizes | None], values: dict[str, V
     obstacles = [{"name": one.name} | {key: value for key, value in given.items() if key not in OWN}
                  for given, one in zip(scene.given.get("obstacle", []), scene.obstacles)]
     contact = {key: values[key] for key in CONTACT} | {"pair": [{"bodies": names(pair)} | own for pair, own in zip(scene.pairs, pairs)]}
-    top = {"title": scene.title} | {key: values[key] for key in scene.values}
+    top = {"title": scene.title, "script": scene.script} | {key: values[key] for key in scene.values}
     return top | {"body": bodies, "obstacle": obstacles, "contact": contact}
 
 

@@ -186,7 +186,8 @@ def _mesh(table: Table, folder: Path) -> mesh.Mesh:
             found = mesh.read(Path(file.name))
             if (found.labels == mesh.AXIS).any():
                 raise BadInput(f"mesh: '{name}' has edges with the label {mesh.AXIS} of a symmetry axis (accepted: whole bodies, labels 1: may touch, 3 and more: never touch)")
-            describe({"mesh": file.name})
+            size = float(np.ptp(found.points, axis=0).max()) if len(found.points) else 0.0
+            describe({"mesh": file.name, "radius": size / 2 if SHORTEST < size < LONGEST else 1.0})
     except BadInput as error:
         raise BadInput(f"{table.path}.file: {str(error).removeprefix('mesh: ')}") from None
     return found

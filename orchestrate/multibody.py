@@ -33,6 +33,7 @@ SCENES = scene.SCENES / "multibody"
 RUN = ("gravity", "body_force_x", "body_force_y", "degree", "integrator", "dt", "accuracy", "accuracy_of", "tolerance", "breakdown",
        "chatter", "end_time", "fields", "checkpoint_every", "without")
 OWN = ("penalty", "exponent", "friction_static", "friction_dynamic", "slip_velocity")      # a pair may have its own
+SCRIPT = Parameter("script", "word", "bodies", "-", "the FreeFEM script", words=("bodies",))
 PAIRING = Parameter("pairing", "word", "closest-point", "-", "how two bodies see each other", words=("closest-point", "pairwise"))
 CONTACT = (*OWN, "regularization", "friction_transition", "pairing")
 TOUCHING = 1e-9              # of a body's thickness: an overlap up to it is round-off
@@ -50,11 +51,12 @@ class Pair:
 
 @dataclass(frozen=True)
 class Multibody:
-    """`given` is the file, `contact` every parameter of contact, `values` every parameter of a run, both with what is left open
+    """`script` is a file edp/<script>.edp, `given` the tables of the file, `contact` every parameter of contact, `values` every parameter of a run, both with what is left open
     (auto, 0) as it is."""
 
     name: str
     title: str
+    script: str
     given: dict
     folder: Path
     bodies: list[Body]
@@ -101,7 +103,7 @@ def read(given: dict, folder: Path, name: str) -> Multibody:
     for both, pair in _exceptions(contact_table, index).items():
         pairs[both] = replace(pair, values=pairs[both].values | pair.values) if both in pairs else pair
     values = {key: table.parameter(key, parameters.table()[key]) for key in RUN}
-    found = Multibody(name, table.text("title", name), given, folder, all_bodies, all_obstacles, contact,
+    found = Multibody(name, table.text("title", name), table.parameter("script", SCRIPT), given, folder, all_bodies, all_obstacles, contact,
                       [pairs[both] for both in sorted(pairs)], values)
     _apart(found)
     return found

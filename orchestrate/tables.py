@@ -11,6 +11,7 @@ from .failure import BadInput
 from .parameters import Parameter, Value
 
 LONGEST = 1e9                # m, m/s: beyond the largest of anything
+MOST = 2000                  # points of a polygon or a chain: each of its sides is held against all others
 SHORTEST = 1e-9              # m
 
 
@@ -128,4 +129,6 @@ def _pair(path: str, given, low: float, high: float) -> np.ndarray:
 def _points(path: str, given, least: int) -> np.ndarray:
     if not isinstance(given, list) or len(given) < least:
         raise BadInput(f"{path}: '{given}' is too little (accepted: {least} points [x, y] or more)")
+    if len(given) > MOST:
+        raise BadInput(f"{path}: {len(given)} points (accepted: {least} to {MOST})")
     return np.array([_pair(f"{path}.{k}", point, -LONGEST, LONGEST) for k, point in enumerate(given, 1)])

@@ -141,10 +141,35 @@ def test_a_body_may_be_a_mesh_file(tmp_path):
     assert built.data.splitlines()[3:5][0] == "circles 1"
 
 
+def test_a_body_may_be_a_file_of_gmsh(tmp_path):
+    """A plate with a round hole and a named curve: the hole is a circle, edges that are not of `contact` never touch."""
+    with mesh.gmsh_session() as gmsh:
+        occ = gmsh.model.occ
+        occ.cut([(2, occ.addRectangle(1, 1, 0, 4, 2))], [(2, occ.addDisk(2, 2, 0, 0.5, 0.5))])
+        occ.synchronize()
+        lowest = [tag for _, tag in gmsh.model.getEntitiesInBoundingBox(0.9, 0.9, -1, 5.1, 1.1, 1, dim=1)]
+        gmsh.model.addPhysicalGroup(1, lowest, name="contact")
+        gmsh.model.addPhysicalGroup(2, [tag for _, tag in gmsh.model.getEntities(2)])
+        gmsh.option.setNumber("Mesh.MeshSizeMax", 0.2)
+        gmsh.model.mesh.generate(2)
+        gmsh.write(str(tmp_path / "plate.msh"))
+    scene = read(with_body(shape="mesh", file="plate.msh", position=[0, 0]), tmp_path)
+    outline, hole = scene.bodies[0].outline, math.pi / 4
+    assert [loop.radius for loop in outline.loops] == [None, pytest.approx(0.5, rel=1e-9)]
+    assert outline.area == pytest.approx(8 - hole, rel=1e-9)
+    assert outline.loops[1].centre == pytest.approx([2 - (8 * 3 - hole * 2) / (8 - hole), 0], abs=1e-9)
+    m = assembly.assemble(scene).mesh
+    assert np.linalg.norm(np.diff(m.points[m.edges[m.labels == 1]], axis=1), axis=2).sum() == pytest.approx(4)
+    assert set(m.labels) == {1, 3} and areas(m).min() > 0
+
+
 def test_mesh_files_that_cannot_be_used_are_named(tmp_path):
     """Half a body, a file that is no mesh and one that is not there: the entry, the file and what is accepted."""
     mesh.write(mesh.disc(0.05, 0.02, 0.01, True), tmp_path / "half.msh")
     (tmp_path / "text.msh").write_text("no mesh")
+    (tmp_path / "empty.msh").write_text("0 0 0\n")
+    (tmp_path / "nan.msh").write_text("3 1 3\n0 0 1\n1 nan 1\n0 1 1\n1 2 3 0\n1 2 1\n2 3 1\n3 1 1\n")
+    (tmp_path / "index.msh").write_text("3 1 3\n0 0 1\n1 0 1\n0 1 1\n1 2 4 0\n1 2 1\n2 3 1\n3 1 1\n")
     for name, words in [("half.msh", r"body.1.file: 'half.msh' has edges with the label 2 of a symmetry axis \(accepted: whole bodies"),
                         ("text.msh", "body.1.file: .* is not a 2D mesh"), ("none.msh", "body.1.file: .*none.msh cannot be read: No such file")]:
         with pytest.raises(BadInput, match=words):
@@ -330,6 +355,7 @@ BAD = [
     ([("contact.pair", [{"bodies": ["disc", "block"], "exponent": 9}])], "contact.pair.1.exponent: 9 is out of range (accepted: 1 to 4)"),
     ([("end_time", -1)], "end_time: -1 is out of range (accepted: 0 to 1e+09)"),
     ([("radius", 1)], "radius: '1' belongs to no such key"),
+    ([("script", "disc-plane")], "script: 'disc-plane' is not known (accepted: bodies)"),
     ([("title", 1)], "title: '1' is no text"),
 ]
 
@@ -369,6 +395,7 @@ POLYGONS = [
     ({"vertices": [[0, 0], [2, 0], [1, 0]]}, "body.1.vertices: the side from vertex 1 to 2 meets the side from vertex 2 to 3"),
     ({"vertices": [*SQUARE, [0, 0]]}, "body.1.vertices: vertices 5 and 1 coincide (accepted: each vertex once, the polygon closes itself)"),
     ({"vertices": SQUARE[:2]}, "body.1.vertices: '[[0, 0], [1, 0]]' is too little (accepted: 3 points [x, y] or more)"),
+    ({"vertices": [[math.cos(k), math.sin(k)] for k in range(2001)]}, "body.1.vertices: 2001 points (accepted: 3 to 2000)"),
     ({"vertices": SQUARE, "holes": [[[2, 2], [3, 2], [3, 3]]]}, "body.1.holes.1: is not inside body.1.vertices (accepted: holes that neither cross nor touch the outline)"),
     ({"vertices": SQUARE, "holes": [[[0.5, 0.5], [2, 0.5], [0.5, 0.6]]]}, "body.1.holes.1: is not inside body.1.vertices"),
     ({"vertices": SQUARE, "holes": [[[0, 0.5], [0.5, 0.5], [0.5, 0.6]]]}, "body.1.holes.1: is not inside body.1.vertices"),
