@@ -185,7 +185,8 @@ def _mesh(table: Table, folder: Path) -> mesh.Mesh:
             file.flush()
             found = mesh.read(Path(file.name))
             if (found.labels == mesh.AXIS).any():
-                raise BadInput(f"mesh: '{name}' has edges with the label {mesh.AXIS} of a symmetry axis (accepted: whole bodies, labels 1: may touch, 3 and more: never touch)")
+                raise BadInput(f"mesh: '{name}' has edges with the label {mesh.AXIS} of a symmetry axis (accepted: whole bodies, "
+                               f"labels {mesh.FREE}: may touch, 3 and more: never touch)")
             size = float(np.ptp(found.points, axis=0).max()) if len(found.points) else 0.0
             describe({"mesh": file.name, "radius": size / 2 if SHORTEST < size < LONGEST else 1.0})
     except BadInput as error:

@@ -51,8 +51,8 @@ class Pair:
 
 @dataclass(frozen=True)
 class Multibody:
-    """`script` is a file edp/<script>.edp, `given` the tables of the file, `contact` every parameter of contact, `values` every parameter of a run, both with what is left open
-    (auto, 0) as it is."""
+    """`script` is a file edp/<script>.edp, `given` the tables of the file, `contact` every parameter of contact, `values` every
+    parameter of a run, both with what is left open (auto, 0) as it is."""
 
     name: str
     title: str

@@ -221,11 +221,12 @@ def test_a_spinning_body_is_fine_where_it_will_touch():
 
 
 def test_a_hole_touches_only_what_is_in_it():
-    """A ring's inner circle has the label 3, with a disc inside it the label 1."""
+    """A ring's inner circle has the label 3, with a disc or an obstacle inside it the label 1."""
     ring = {"shape": "ring", "radius": 1, "inner_radius": 0.8, "position": [0, 0]}
     alone = read(SCENE | {"body": [ring, DISC | {"position": [3, 0]}]})
     filled = read(SCENE | {"body": [ring, DISC | {"position": [0.2, 0]}]})
-    for scene, labels in ((alone, {1, 3}), (filled, {1})):
+    post = read(SCENE | {"body": [ring | {"velocity": [1, 0]}], "obstacle": [{"kind": "circle", "centre": [0.6, 0], "radius": 0.1}]})
+    for scene, labels in ((alone, {1, 3}), (filled, {1}), (post, {1})):
         m = assembly.assemble(scene).mesh
         assert set(m.labels) == labels
         inner = np.hypot(*m.points[m.edges].mean(axis=1).T) < 0.85
