@@ -1,0 +1,90 @@
+"""Where bodies of a scene first touch: they fly as rigid bodies, r = r0 + v t + b t^2 / 2, angle = angle0 + spin t, until the gap closes."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from .bodies import Body
+from .multibody import Multibody, gap_between, normal_of
+from .obstacles import Obstacle
+from .outlines import Outline, cross
+
+STEPS = 200                  # what has not met by then does not
+FAR = 1e6                    # of the smaller thickness: a gap that does not close again
+MET = 1e-3                   # of the smaller thickness: a gap that counts as closed
+
+
+@dataclass(frozen=True)
+class Meeting:
+    """Body `first` and `second` (body k, or -1 - k for obstacle k) when they first touch, or, where they do not, at the start: both
+    as they are then; the parts along and across the normal, positive, of their relative velocity [m/s] and of the constant force
+    between them [m/s2]; the radius that stands for the pair [m]."""
+
+    first: int
+    second: int
+    outlines: tuple[Outline, Outline | Obstacle]
+    closing: float
+    sliding: float
+    pressing: float
+    pulling: float
+    radius: float
+
+    def gaps(self, body: int, points: np.ndarray) -> np.ndarray:
+        """Gaps (n,) from the other one of the points of `body`, as it is at the meeting."""
+        return self.outlines[1 if body == self.first else 0].gap(points)
+
+
+def meetings(scene: Multibody) -> list[Meeting]:
+    """One for each two bodies and each body with each obstacle."""
+    bodies = len(scene.bodies)
+    return [_meeting(scene, i, j) for i in range(bodies) for j in [*range(i + 1, bodies), *(-1 - k for k in range(len(scene.obstacles)))]]
+
+
+def _meeting(scene: Multibody, first: int, second: int) -> Meeting:
+    """Conservative advancement: in each step no point can come nearer than the gap."""
+    body = scene.bodies[first]
+    other = scene.bodies[second] if second >= 0 else scene.obstacles[-1 - second]
+    force = np.array([scene.values["body_force_x"], scene.values["body_force_y"] - scene.values["gravity"]])
+    pull = np.zeros(2) if second >= 0 else force               # two bodies fall alike
+    start = body.velocity - other.velocity
+    radius = min([body.outline.half_thickness, *([other.outline.half_thickness] if second >= 0 else [])])
+    turning = sum(abs(one.spin) * one.outline.reach for one in (body, other) if isinstance(one, Body))
+    t, met = 0.0, False
+    for _ in range(STEPS):
+        gap = _gap(*_at(body, other, t, pull))
+        met = gap <= MET * radius
+        speed, rate = np.linalg.norm(start + pull * t) + turning, np.linalg.norm(pull)
+        if met or speed + rate == 0 or gap > FAR * radius:
+            break
+        t += 2 * gap / (speed + math.sqrt(speed**2 + 2 * rate * gap))       # speed t + rate t^2 / 2 = gap
+    t = t if met else 0.0
+    outlines, velocity = _at(body, other, t, pull), start + pull * t
+    gaps = outlines[1].gap(outlines[0].points)
+    normal = normal_of(outlines[1], outlines[0].points[gaps.argmin()])
+    if not met:                                                # what lets them meet later may turn them in any direction
+        return Meeting(first, second, outlines, float(np.linalg.norm(velocity)), 0.0, float(np.linalg.norm(pull)), 0.0, float(radius))
+    return Meeting(first, second, outlines, *_parts(velocity, normal), *_parts(pull, normal), float(radius))
+
+
+def _parts(vector: np.ndarray, normal: np.ndarray) -> tuple[float, float]:
+    """Its parts along and across a unit vector, positive; what is left of the latter by round-off is none."""
+    along, across = abs(vector @ normal), abs(cross(normal, vector))
+    return float(along), float(across) if across > 1e-6 * along else 0.0
+
+
+def _at(body: Body, other: Body | Obstacle, t: float, pull: np.ndarray) -> tuple[Outline, Outline | Obstacle]:
+    """Both at a time, seen by one who moves with the obstacle, or falls with the bodies."""
+    def flown(one: Body, velocity: np.ndarray) -> Outline:
+        return one.outline.placed(one.position + velocity * t + pull * t**2 / 2, one.angle + one.spin * t)
+    if isinstance(other, Body):
+        return flown(body, body.velocity), flown(other, other.velocity)
+    return flown(body, body.velocity - other.velocity), other
+
+
+def _gap(first: Outline, second: Outline | Obstacle) -> float:
+    """The gap; of two bodies far apart that of the circles around them, which is no larger."""
+    if not isinstance(second, Outline):
+        return float(second.gap(first.points).min())
+    away, around = np.linalg.norm(first.area_centre - second.area_centre), first.reach + second.reach
+    return float(away - around) if away > 2 * around else gap_between(first, second)

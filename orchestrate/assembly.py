@@ -1,0 +1,343 @@
+"""What FreeFEM computes a scene of bodies on: one mesh of all of them, apart from each other, and a data file of words and numbers.
+
+Region k of the mesh is body k, from 0; its edges have the label 1 where the body may touch, another one where nothing reaches. The
+bodies stand side by side along x, not turned, each about its own centre of area; scene.dat says where they are at the start.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from . import mesh
+from .approach import Meeting, meetings
+from .bodies import MATERIAL, Body
+from .describe import describe
+from .failure import BadInput
+from .mesh import FREE, GROWTH
+from .multibody import CONTACT, OWN, Multibody, Pair
+from .outlines import Loop, Outline
+from .parameters import Value
+from .tables import to_toml
+
+NEVER = 3                    # the label of what nothing reaches
+ROUND = 0.5                  # largest element size on a circle or ellipse, over its smaller semi-axis
+FINEST = 4000                # points on a loop at most where it is asked what touches
+COARSEST = 400
+SAMPLED = 0.25               # a step between points at which an element size is asked for, over that size
+BETWEEN = 0.2                # from body to body in the reference configuration, over the largest extent
+
+Rule = Callable[[dict[str, Value]], dict]    # describe: what the scripts make of a disc on a plane
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """Element sizes of a body [m]: in the bulk, and within `near` (its points, as it is in its mesh) on the outline."""
+
+    bulk: float
+    contact: float
+    near: np.ndarray
+    slack: float                # half the distance of points on the outline
+
+    def at(self, points: np.ndarray) -> np.ndarray:
+        """Element sizes (n,): growing linearly with the distance from where the body touches."""
+        if not len(self.near):
+            return np.full(len(points), self.bulk)
+        away = np.maximum(nearest(points, self.near) - self.slack, 0.0)
+        return np.minimum(self.bulk, self.contact + GROWTH * away)
+
+
+@dataclass(frozen=True)
+class Assembly:
+    """`mesh` holds all bodies, `regions` (t,) their numbers, `centres` (bodies, 2) where their centres of area are in it; `data` is
+    the text of scene.dat; `values` are all parameters of run and contact, nothing left open, and `used` the tables of the scene with
+    them in it: read again, they make this very assembly."""
+
+    mesh: mesh.Mesh
+    regions: np.ndarray
+    centres: np.ndarray
+    data: str
+    values: dict[str, Value]
+    used: dict
+
+    def write(self, folder: Path) -> None:
+        """mesh.msh, scene.dat and scene.toml."""
+        write_mesh(self.mesh, self.regions, folder / "mesh.msh")
+        (folder / "scene.dat").write_text(self.data)
+        (folder / "scene.toml").write_text(to_toml(self.used))
+
+
+def assemble(scene: Multibody, rule: Rule = describe) -> Assembly:
+    """Meshes the bodies of a scene and writes down the rest. What the scene leaves open is settled by `rule`, which is asked for a
+    disc of the pair's radius that hits a plane."""
+    ask = Asker(scene, meetings(scene), rule)
+    values = scene.values | contact_values(scene.bodies, scene.contact, ask, "contact")
+    pairs = [pair_values(pair, ask, values) for pair in scene.pairs]
+    sizes = [None if body.mesh else _sizes(k, ask) for k, body in enumerate(scene.bodies)]
+    meshes = [body.mesh or mesh_body(body.outline, sizes[k], _labels(scene, k)) for k, body in enumerate(scene.bodies)]
+    centres = side_by_side([np.array([one.points.min(axis=0), one.points.max(axis=0)]) for one in meshes])
+    together, regions = stack(meshes, centres)
+    return Assembly(together, regions, centres, data_file(scene, centres, pairs), values, used_tables(scene, sizes, values, pairs))
+
+
+# ---- what the scene leaves open
+
+@dataclass(frozen=True)
+class Asker:
+    """Asks the rule for discs that hit a plane as the scene's bodies hit each other: with its largest speeds and forces, along and
+    across the normal."""
+
+    scene: Multibody
+    met: list[Meeting]
+    rule: Rule
+
+    def answer(self, bodies: list[Body], radius: float, slides: bool = False, **more: Value) -> dict:
+        """For a disc of this radius [m] and the softer body's material; straight on unless it `slides`."""
+        along, across, pressing, pulling = (max((getattr(one, name) for one in self.met), default=0.0)
+                                            for name in ("closing", "sliding", "pressing", "pulling"))
+        soft = min(bodies, key=lambda body: body.young)
+        asked = {name: self.scene.values[name] for name in ("accuracy", "accuracy_of", "end_time")}
+        asked |= {"exponent": self.scene.contact["exponent"], "young": soft.young, "nu": soft.nu, "density": soft.density,
+                  "radius": radius, "symmetry": "full", "speed": along, "gravity": pressing}
+        if slides:
+            asked |= {"speed": math.hypot(along, across), "angle": math.degrees(math.atan2(along, across)),
+                      "spin": max(abs(body.spin) for body in bodies), "body_force_x": pulling}
+        return self.rule(asked | more)
+
+
+def contact_values(bodies: list[Body], contact: dict[str, Value], ask: Asker, path: str) -> dict[str, Value]:
+    """`contact` with penalty, friction_dynamic and slip_velocity as numbers: for the softest of the bodies and the smallest radius."""
+    radius = min(body.outline.half_thickness for body in bodies)
+    given = [body.contact_mesh_size for body in bodies]
+    more = {"contact_mesh_size": min(*given, radius)} if min(given) > 0 else {}
+    used = ask.answer(bodies, radius, slides=True, exponent=contact["exponent"], **more)["used"]
+    found = contact | {name: used[name] for name in ("penalty", "slip_velocity") if contact[name] == "auto"}
+    if contact["friction_dynamic"] == "auto":
+        found["friction_dynamic"] = contact["friction_static"]
+    if found["friction_dynamic"] > found["friction_static"]:
+        raise BadInput(f"{path}.friction_dynamic: {found['friction_dynamic']:g} is larger than friction_static {found['friction_static']:g} "
+                       f"(accepted: 0 to friction_static)")
+    return found
+
+
+def pair_values(pair: Pair, ask: Asker, values: dict[str, Value]) -> dict[str, Value]:
+    """All that a pair may have of its own: what it does not say is as settled for the scene, and open again where it depends on what
+    the pair says."""
+    bodies = [ask.scene.bodies[k] for k in (pair.first, pair.second) if k >= 0]
+    open_again = {"friction_dynamic", *(["penalty"] if "exponent" in pair.values else [])}
+    inherited = {name: (ask.scene.contact if name in open_again else values)[name] for name in OWN}
+    own = contact_values(bodies, inherited | pair.values, ask, pair.path)
+    return {name: own[name] for name in OWN}
+
+
+def used_tables(scene: Multibody, sizes: list[Sizes | None], values: dict[str, Value], pairs: list[dict[str, Value]]) -> dict:
+    """The tables of a scene with everything as used; what obstacles say of contact stands in [[contact.pair]]."""
+    def names(pair: Pair) -> list[str]:
+        return [(scene.bodies[k] if k >= 0 else scene.obstacles[-1 - k]).name for k in (pair.first, pair.second)]
+    bodies = []
+    for given, body, size in zip(scene.given["body"], scene.bodies, sizes):
+        used = {"name": body.name} | given | {key: getattr(body, key) for key in MATERIAL}
+        used |= {"mesh_size": size.bulk, "contact_mesh_size": size.contact} if size else {"file": str((scene.folder / given["file"]).resolve())}
+        bodies.append(used)
+    obstacles = [{"name": one.name} | {key: value for key, value in given.items() if key not in OWN}
+                 for given, one in zip(scene.given.get("obstacle", []), scene.obstacles)]
+    contact = {key: values[key] for key in CONTACT} | {"pair": [{"bodies": names(pair)} | own for pair, own in zip(scene.pairs, pairs)]}
+    top = {"title": scene.title, "script": scene.script} | {key: values[key] for key in scene.values}
+    return top | {"body": bodies, "obstacle": obstacles, "contact": contact}
+
+
+def _sizes(k: int, ask: Asker) -> Sizes:
+    """The element sizes of body k: in the bulk for its own thickness, in the contacts as each pair asks for."""
+    body = ask.scene.bodies[k]
+    given = {name: value for name, value in (("mesh_size", body.mesh_size), ("contact_mesh_size", body.contact_mesh_size)) if value}
+    try:
+        bulk = float(ask.answer([body], body.outline.half_thickness, **given)["used"]["mesh_size"])
+    except BadInput as error:
+        raise BadInput(f"body.{k + 1}.{error} (of a disc as thick as '{body.name}')") from None
+    hits = [_hit(body, k, one, ask) for one in ask.met if k in (one.first, one.second)]
+    contact = body.contact_mesh_size or min([bulk, *(size for size, *_ in hits)])
+    near = np.vstack([np.empty((0, 2)), *(points for _, points, _ in hits)])
+    return Sizes(bulk, min(bulk, contact), near, max([0.0, *(slack for *_, slack in hits)]))
+
+
+def _hit(body: Body, k: int, one: Meeting, ask: Asker) -> tuple[float, np.ndarray, float]:
+    """Where body k touches at a meeting: the element size there, points (n, 2) of its outline, and half their distance [m]."""
+    bodies = [ask.scene.bodies[j] for j in (one.first, one.second) if j >= 0]
+    straight = ask.answer(bodies, one.radius)
+    arc, size = straight["touch_arc"], float(straight["used"]["contact_mesh_size"])
+    spacing = body.outline.length / np.clip(2 * body.outline.length / size, COARSEST, FINEST)
+    points = np.vstack([loop.sampled(spacing) for loop in body.outline.loops])
+    near = _near(body, k, one, arc, points)
+    wider = (len(near) - 1) * spacing / (2 * arc * one.radius)    # than the contact of a disc: flat faces
+    slide = (ask.answer(bodies, one.radius, slides=True)["touch_arc"] - arc) * one.radius
+    if slide > 0:
+        near = points[nearest(points, near) <= slide]
+    return size * max(1.0, wider), near, spacing / 2
+
+
+def _near(body: Body, k: int, one: Meeting, touch_arc: float, points: np.ndarray) -> np.ndarray:
+    """Those of the points of body k where the gap at the meeting is no larger than that of a disc of the pair's radius at touch_arc
+    from its lowest point."""
+    gaps = one.gaps(k, carried(body.outline, one.outlines[0 if k == one.first else 1], points))
+    return points[gaps <= gaps.min() + one.radius * (1 - math.cos(min(touch_arc, math.pi / 2)))]
+
+
+def carried(outline: Outline, moved: Outline, points: np.ndarray) -> np.ndarray:
+    """The points carried along with an outline to where it is moved, rigidly."""
+    a, b = outline.loops[0].corners[:2]
+    c, d = moved.loops[0].corners[:2]
+    turn = complex(*(d - c)) / complex(*(b - a))
+    rotation = np.array([[turn.real, -turn.imag], [turn.imag, turn.real]])
+    return c + (points - a) @ rotation.T
+
+
+def nearest(points: np.ndarray, others: np.ndarray, chunk: int = 500, most: int = 2000) -> np.ndarray:
+    """Distances (n,) to the nearest of the others; of many every few only."""
+    others = others[::-(-len(others) // most)]
+    return np.concatenate([np.sqrt(((points[at:at + chunk, None] - others)**2).sum(axis=2).min(axis=1)) for at in range(0, len(points), chunk)])
+
+
+def _labels(scene: Multibody, k: int) -> list[int]:
+    """A label for each loop of body k: nothing reaches a hole that holds no other body and no obstacle."""
+    outer, *holes = scene.bodies[k].placed.loops
+    return [FREE, *(FREE if _holds(scene, k, hole) else NEVER for hole in holes)]
+
+
+def _holds(scene: Multibody, k: int, hole: Loop) -> bool:
+    centre = hole.area_centre
+    farthest = np.linalg.norm(hole.polygon - centre, axis=1).max()
+    bodies = any(hole.gap(other.placed.points[:1])[0] < 0 for j, other in enumerate(scene.bodies) if j != k)
+    return bodies or any(obstacle.gap(centre[None])[0] < farthest for obstacle in scene.obstacles)
+
+
+# ---- meshes
+
+def mesh_body(outline: Outline, sizes: Sizes, labels: list[int]) -> mesh.Mesh:
+    """The mesh of an outline: vertices of circles and ellipses lie on them to rounding, corners are vertices; boundary edges have
+    the body to their left, and the label of their loop."""
+    loops = [nodes_on(loop, sizes) for loop in outline.loops]
+    loops = [nodes if k == 0 else nodes[::-1] for k, nodes in enumerate(loops)]
+    unit = 1 / outline.half_thickness           # gmsh's tolerances are absolute
+    with mesh.gmsh_session() as gmsh:
+        gmsh.option.setNumber("Mesh.Algorithm", 6)
+        for source in ("FromPoints", "FromCurvature", "ExtendFromBoundary"):
+            gmsh.option.setNumber(f"Mesh.MeshSize{source}", 0)
+        tags, curves = zip(*(_loop(gmsh.model, nodes * unit) for nodes in loops))
+        gmsh.model.geo.addPlaneSurface([gmsh.model.geo.addCurveLoop(list(lines)) for lines in curves])
+        gmsh.model.geo.synchronize()
+        _grade(gmsh.model.mesh.field, loops, curves, sizes, unit)
+        gmsh.model.mesh.generate(2)
+        node_tags, coordinates, _ = gmsh.model.mesh.getNodes()
+        _, triangle_tags = gmsh.model.mesh.getElementsByType(2)
+        corner_tags = [gmsh.model.mesh.getNodes(0, tag)[0][0] for tag in np.concatenate(tags)]
+    row = np.empty(int(node_tags.max()) + 1, dtype=int)
+    row[node_tags] = np.arange(len(node_tags))
+    points, corners = coordinates.reshape(-1, 3)[:, :2] / unit, row[np.array(corner_tags, dtype=int)]
+    points[corners] = np.vstack(loops)
+    triangles = mesh.counter_clockwise(points, row[triangle_tags].reshape(-1, 3))
+    ends = np.split(corners, np.cumsum([len(nodes) for nodes in loops])[:-1])
+    edges = np.vstack([np.column_stack([each, np.roll(each, -1)]) for each in ends])
+    return mesh.Mesh(points, triangles, edges, np.repeat(labels, [len(nodes) for nodes in loops]))
+
+
+def nodes_on(loop: Loop, sizes: Sizes) -> np.ndarray:
+    """Vertices (n, 2) on a loop, counter-clockwise: its corners, and between them steps ds with the integral of ds / size constant."""
+    largest = np.inf if loop.semi_axes is None else ROUND * loop.semi_axes.min()
+    nodes = []
+    for piece in range(len(loop.corners)):
+        s, size = np.array([0.0, 1.0]), np.array([])
+        while len(size) < len(s):                # halved until the size, which is Lipschitz, is known between points too
+            size = np.minimum(sizes.at(loop.at(piece, s)), largest)
+            step = np.linalg.norm(np.diff(loop.at(piece, s), axis=0), axis=1)
+            coarse = step > SAMPLED * np.minimum(size[1:], size[:-1])
+            s = np.sort(np.concatenate([s, (s[1:] + s[:-1])[coarse] / 2]))
+        passed = np.concatenate([[0.0], np.cumsum(step * (1 / size[1:] + 1 / size[:-1]) / 2)])
+        count = max(1, round(passed[-1]))
+        nodes.append(loop.at(piece, np.interp(passed[-1] * np.arange(count) / count, passed, s)))
+    return np.vstack(nodes)
+
+
+def _loop(model, nodes: np.ndarray) -> tuple[list[int], list[int]]:
+    """Points and lines of gmsh along a loop, one element a line."""
+    points = [model.geo.addPoint(x, y, 0) for x, y in nodes]
+    lines = [model.geo.addLine(a, b) for a, b in zip(points, [*points[1:], points[0]])]
+    for line in lines:
+        model.geo.mesh.setTransfiniteCurve(line, 2)
+    return points, lines
+
+
+def _grade(field, loops: list[np.ndarray], curves: tuple[list[int], ...], sizes: Sizes, unit: float) -> None:
+    """Element sizes inside: those of the edges on the outline, growing linearly with the distance from them up to the bulk's. Edges
+    of about one length are one source."""
+    length = np.concatenate([np.linalg.norm(np.roll(nodes, -1, axis=0) - nodes, axis=1) for nodes in loops])
+    fineness = np.ceil(2 * np.log2(np.maximum(sizes.bulk / length, 1)) - 1e-9).astype(int)     # from bulk down in steps of sqrt(1/2)
+    lines, sources = np.concatenate(curves), []
+    for level in np.unique(fineness):
+        size = sizes.bulk * np.sqrt(0.5)**level
+        distance, source = field.add("Distance"), field.add("Threshold")
+        field.setNumbers(distance, "CurvesList", lines[fineness == level])
+        field.setNumber(distance, "Sampling", 5)   # points on a line; of 2 gmsh makes none
+        for name, value in dict(InField=distance, SizeMin=size * unit, SizeMax=sizes.bulk * unit, DistMin=0,
+                                DistMax=max(sizes.bulk - size, 1e-9 * sizes.bulk) / GROWTH * unit).items():
+            field.setNumber(source, name, value)
+        sources.append(source)
+    least = field.add("Min")
+    field.setNumbers(least, "FieldsList", sources)
+    field.setAsBackgroundMesh(least)
+
+
+def side_by_side(boxes: list[np.ndarray]) -> np.ndarray:
+    """Centres (bodies, 2) along x, from 0 on, that keep boxes about them [[x0, y0], [x1, y1]] apart by a part of the largest."""
+    between = BETWEEN * max(np.ptp(box, axis=0).max() for box in boxes)
+    centres = [0.0]
+    for before, box in zip(boxes, boxes[1:]):
+        centres.append(centres[-1] + before[1, 0] + between - box[0, 0])
+    return np.column_stack([centres, np.zeros(len(centres))])
+
+
+def stack(meshes: list[mesh.Mesh], centres: np.ndarray) -> tuple[mesh.Mesh, np.ndarray]:
+    """All bodies as one mesh, and the body (t,) of each triangle."""
+    first = np.cumsum([0, *(len(one.points) for one in meshes)])
+    together = mesh.Mesh(np.vstack([one.points + centre for one, centre in zip(meshes, centres)]),
+                         np.vstack([one.triangles + k for one, k in zip(meshes, first)]),
+                         np.vstack([one.edges + k for one, k in zip(meshes, first)]), np.concatenate([one.labels for one in meshes]))
+    return together, np.repeat(np.arange(len(meshes)), [len(one.triangles) for one in meshes])
+
+
+def write_mesh(together: mesh.Mesh, regions: np.ndarray, path: Path) -> None:
+    """FreeFEM's 2D .msh: counts; x y label; v1 v2 v3 region; v1 v2 label; vertices count from 1."""
+    point_labels = np.zeros(len(together.points), dtype=int)
+    for label in np.unique(together.labels)[::-1]:     # where two meet, the contact's
+        point_labels[together.edges[together.labels == label]] = label
+    with open(path, "w") as file:
+        file.write(f"{len(together.points)} {len(together.triangles)} {len(together.edges)}\n")
+        file.writelines(f"{x:.17g} {y:.17g} {label}\n" for (x, y), label in zip(together.points, point_labels))
+        file.writelines(f"{a} {b} {c} {region}\n" for (a, b, c), region in zip(together.triangles + 1, regions))
+        file.writelines(f"{a} {b} {label}\n" for (a, b), label in zip(together.edges + 1, together.labels))
+
+
+# ---- scene.dat
+
+def data_file(scene: Multibody, centres: np.ndarray, pairs: list[dict[str, Value]]) -> str:
+    """The text of scene.dat, words and numbers (SI, radians):
+        ffimpact-bodies 1
+        bodies N       name law young nu density  centreX centreY  placeX placeY angle  vx vy spin     a line a body
+        circles C      body x y radius                                                                  in the mesh
+        obstacles M    kind count p1 ... pcount vx vy
+        pairs K        a b penalty exponent friction_static friction_dynamic slip_velocity              a, b: body, or -1 - obstacle
+    centre: of the area in the mesh; place: where it is at the start."""
+    circles = [(k, *(centre + loop.centre), loop.radius) for k, (body, centre) in enumerate(zip(scene.bodies, centres))
+               for loop in body.outline.loops if loop.radius]
+    lines = [("ffimpact-bodies", 1), ("bodies", len(scene.bodies))]
+    lines += [(body.name, body.law, body.young, body.nu, body.density, *centre, *body.position, body.angle, *body.velocity, body.spin)
+              for body, centre in zip(scene.bodies, centres)]
+    lines += [("circles", len(circles)), *circles, ("obstacles", len(scene.obstacles))]
+    lines += [(one.kind, len(one.numbers), *one.numbers, *one.velocity) for one in scene.obstacles]
+    lines += [("pairs", len(pairs)), *((pair.first, pair.second, *own.values()) for pair, own in zip(scene.pairs, pairs))]
+    return "".join(" ".join(map(_token, line)) + "\n" for line in lines)
+
+
+def _token(value) -> str:
+    return repr(float(value)) if isinstance(value, float) else str(value)

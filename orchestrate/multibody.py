@@ -1,0 +1,248 @@
+"""A scene of one's own, bodies and obstacles in one TOML file: read, checked, and its entries set by dotted names.
+
+    title = "..."
+    young = 7e6                  # law, young, nu, density, mesh_size, contact_mesh_size: of the bodies that say nothing else
+    gravity = 9.81               # [m/s2], along -y; beside it the parameters of a run: end_time, dt, accuracy, fields ...
+    [[body]]                     # see bodies.py
+    [[obstacle]]                 # see obstacles.py; with penalty, exponent, friction_static, friction_dynamic, slip_velocity of its own
+    [contact]                    # penalty, exponent, friction_static, friction_dynamic, slip_velocity, regularization,
+    pairing = "closest-point"    # friction_transition, pairing
+    [[contact.pair]]             # what differs between two of them
+    bodies = ["disc", "floor"]
+    friction_static = 0.3
+"""
+
+import copy
+import itertools
+import re
+import tomllib
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from . import bodies, obstacles, parameters, scene
+from .bodies import MATERIAL, SIZES, Body
+from .failure import BadInput
+from .obstacles import Obstacle
+from .parameters import Parameter, Value
+from .outlines import Outline
+from .tables import SHORTEST, Table, listed
+
+SCENES = scene.SCENES / "multibody"
+RUN = ("gravity", "body_force_x", "body_force_y", "degree", "integrator", "dt", "accuracy", "accuracy_of", "tolerance", "breakdown",
+       "chatter", "end_time", "fields", "checkpoint_every", "without")
+OWN = ("penalty", "exponent", "friction_static", "friction_dynamic", "slip_velocity")      # a pair may have its own
+SCRIPT = Parameter("script", "word", "bodies", "-", "the FreeFEM script", words=("bodies",))
+PAIRING = Parameter("pairing", "word", "closest-point", "-", "how two bodies see each other", words=("closest-point", "pairwise"))
+CONTACT = (*OWN, "regularization", "friction_transition", "pairing")
+TOUCHING = 1e-9              # of a body's thickness: an overlap up to it is round-off
+
+
+@dataclass(frozen=True)
+class Pair:
+    """What differs between two partners: a body is its index from 0, obstacle k is -1 - k. `path` is the table that says so."""
+
+    first: int
+    second: int
+    values: dict[str, Value]
+    path: str
+
+
+@dataclass(frozen=True)
+class Multibody:
+    """`script` is a file edp/<script>.edp, `given` the tables of the file, `contact` every parameter of contact, `values` every
+    parameter of a run, both with what is left open (auto, 0) as it is."""
+
+    name: str
+    title: str
+    script: str
+    given: dict
+    folder: Path
+    bodies: list[Body]
+    obstacles: list[Obstacle]
+    contact: dict[str, Value]
+    pairs: list[Pair]
+    values: dict[str, Value]
+
+    def override(self, given: dict[str, Value]) -> "Multibody":
+        """The same scene with some entries set by their dotted names, and read again."""
+        changed = self.given
+        for name, value in given.items():
+            changed = set_entry(changed, name, value)
+        return read(changed, self.folder, self.name)
+
+
+def built_in() -> list[str]:
+    """Names of the scenes of bodies that come with the program."""
+    return sorted(path.stem for path in SCENES.glob("*.toml"))
+
+
+def load(name: str) -> Multibody:
+    """A built-in scene, or that of a TOML file; BadInput names the file, the entry, its value and what is accepted."""
+    path = SCENES / f"{name}.toml" if name in built_in() else Path(name)
+    _, given = scene.read_toml(path, f"{name}: no such scene (built in: {', '.join(built_in())}; or the path of a TOML file)")
+    try:
+        return read(given, path.parent, path.stem)
+    except BadInput as error:
+        raise BadInput(f"{path}: {error}") if path.parent != SCENES else error from None
+
+
+def read(given: dict, folder: Path, name: str) -> Multibody:
+    """The scene in a file's tables; mesh files are sought from `folder` on. BadInput for whatever is wrong in it."""
+    table = Table("", given, ("title", "script", "body", "obstacle", "contact", *MATERIAL, *SIZES, *RUN))
+    all_bodies = bodies.read(listed(given, "body"), given, folder)
+    if not all_bodies:
+        raise BadInput("body: is missing (accepted: one table [[body]] or more)")
+    rigid = listed(given, "obstacle")
+    all_obstacles = obstacles.read([{key: value for key, value in one.items() if key not in OWN} for one in rigid])
+    index = _names(all_bodies, all_obstacles)
+    contact_table = Table("contact", given.get("contact", {}), (*CONTACT, "pair"))
+    contact = {key: contact_table.parameter(key, _rule(key)) for key in CONTACT}
+    pairs = _own_of_obstacles(rigid, len(all_bodies))
+    for both, pair in _exceptions(contact_table, index).items():
+        pairs[both] = replace(pair, values=pairs[both].values | pair.values) if both in pairs else pair
+    values = {key: table.parameter(key, parameters.table()[key]) for key in RUN}
+    found = Multibody(name, table.text("title", name), table.parameter("script", SCRIPT), given, folder, all_bodies, all_obstacles, contact,
+                      [pairs[both] for both in sorted(pairs)], values)
+    _apart(found)
+    return found
+
+
+def _rule(key: str) -> Parameter:
+    return parameters.table().get(key, PAIRING)
+
+
+def _names(all_bodies: list[Body], all_obstacles: list[Obstacle]) -> dict[str, int]:
+    """Names of bodies and obstacles, each once, and what stands for them in a Pair."""
+    index, where = {}, {}
+    for path, number, one in [*((f"body.{k + 1}", k, one) for k, one in enumerate(all_bodies)),
+                              *((f"obstacle.{k + 1}", -1 - k, one) for k, one in enumerate(all_obstacles))]:
+        if one.name in index:
+            raise BadInput(f"{path}.name: '{one.name}' is the name of {where[one.name]} too (accepted: each name once)")
+        index[one.name], where[one.name] = number, path
+    return index
+
+
+# ---- contact
+
+def _own_of_obstacles(rigid: list[dict], bodies_count: int) -> dict[tuple[int, int], Pair]:
+    """What [[obstacle]] tables say of contact, as exceptions against every body."""
+    pairs = {}
+    for k, given in enumerate(rigid):
+        mine = Table(f"obstacle.{k + 1}", {key: given[key] for key in OWN if key in given}, OWN)
+        own = {key: mine.parameter(key, _rule(key)) for key in mine.given}
+        pairs |= {(body, -1 - k): Pair(body, -1 - k, own, mine.path) for body in range(bodies_count) if own}
+    return pairs
+
+
+def _exceptions(contact: Table, index: dict[str, int]) -> dict[tuple[int, int], Pair]:
+    """The tables [[contact.pair]]."""
+    pairs = {}
+    for k, given in enumerate(listed({"contact.pair": contact.given.get("pair", [])}, "contact.pair"), 1):
+        path = f"contact.pair.{k}"
+        for key in set(CONTACT) - set(OWN):
+            if key in given:
+                raise BadInput(f"{path}.{key}: '{given[key]}' holds for the whole scene (accepted: in [contact]; here {', '.join(OWN)})")
+        table = Table(path, given, ("bodies", *OWN))
+        both = _partners(path, table.given.get("bodies"), index)
+        if both in pairs:
+            raise BadInput(f"{path}.bodies: '{table.given['bodies']}' has a table already (accepted: one a pair)")
+        pairs[both] = Pair(*both, {key: table.parameter(key, _rule(key)) for key in OWN if key in table}, path)
+    return pairs
+
+
+def _partners(path: str, given, index: dict[str, int]) -> tuple[int, int]:
+    """The two of a pair, the body or the first body first."""
+    accepted = f"accepted: two names, one at least of a body, of {', '.join(index)}"
+    if not isinstance(given, list) or len(given) != 2 or not all(isinstance(name, str) for name in given):
+        raise BadInput(f"{path}.bodies: '{'' if given is None else given}' is no pair ({accepted})")
+    for name in given:
+        if name not in index:
+            raise BadInput(f"{path}.bodies: '{name}' is not in the scene ({accepted})")
+    first, second = sorted((index[name] for name in given), key=lambda k: (k < 0, abs(k)))
+    if first == second or first < 0:
+        raise BadInput(f"{path}.bodies: '{given}' cannot touch each other ({accepted})")
+    return first, second
+
+
+# ---- places
+
+def _apart(found: Multibody) -> None:
+    """BadInput where a body overlaps another one or an obstacle at the start."""
+    for (i, body), (j, other) in itertools.combinations(enumerate(found.bodies, 1), 2):
+        _refuse_overlap(f"body.{i}", body, f"body.{j}", other.name, gap_between(body.placed, other.placed))
+    for (i, body), (j, other) in itertools.product(enumerate(found.bodies, 1), enumerate(found.obstacles, 1)):
+        _refuse_overlap(f"body.{i}", body, f"obstacle.{j}", other.name, gap_to_obstacle(body.placed, other))
+
+
+def _refuse_overlap(path: str, body: Body, other_path: str, other: str, gap: float) -> None:
+    if gap < -TOUCHING * body.outline.half_thickness:
+        raise BadInput(f"{path}.position: '{body.name}' overlaps '{other}' ({other_path}) by {-gap:.3g} m at the start "
+                       f"(accepted: apart or touching)")
+
+
+def gap_between(first: Outline, second: Outline) -> float:
+    """The distance of two outlines, negative where they overlap: by how far a point of one is inside the other."""
+    return float(min(first.gap(second.points).min(), second.gap(first.points).min()))
+
+
+def gap_to_obstacle(outline: Outline, obstacle: Obstacle) -> float:
+    """The distance of an outline from an obstacle, negative where they overlap."""
+    centre, least = outline.area_centre, obstacle.gap(outline.points).min()
+    nearest = centre - obstacle.gap(centre[None]) * normal_of(obstacle, centre)
+    is_of_it = obstacle.gap(nearest[None])[0] < 1e-4 * outline.half_thickness    # not where the distance has no gradient
+    return float(min(least, outline.gap(nearest[None])[0]) if is_of_it else least)    # the former: an obstacle inside the body
+
+
+def normal_of(other: Outline | Obstacle, point: np.ndarray) -> np.ndarray:
+    """The gradient (2,) of the distance from another body or an obstacle, the outward normal, to six digits; 0 where there is none."""
+    h = 1e-6 * max(1e-3 * np.abs(point).max(), abs(other.gap(point[None])[0]), SHORTEST)
+    around = other.gap(point + h * np.array([[1, 0], [-1, 0], [0, 1], [0, -1]]))
+    normal = np.round([(around[0] - around[1]) / (2 * h), (around[2] - around[3]) / (2 * h)], 6)
+    return normal / max(np.linalg.norm(normal), 0.5)
+
+
+# ---- entries by name
+
+def set_entry(given: dict, name: str, value: Value | list) -> dict:
+    """The tables of a file with one entry set: "body.2.young", "contact.pair.1.penalty", "body.1.velocity.2"; tables and
+    components of a list are counted from 1. `value` may be text as on a command line. BadInput where there is no such place."""
+    changed = copy.deepcopy(given)
+    place, path = changed, ""
+    *way, last = name.split(".")
+    for step, following in zip(way, [*way[1:], last]):
+        path = f"{path}.{step}" if path else step
+        if isinstance(place, dict) and step not in place and path == "contact":
+            place[step] = {}
+        key = _key(place, step, path, name)
+        if key not in place if isinstance(place, dict) else False:
+            raise BadInput(f"{name}: there is no {path} in the scene (accepted: {', '.join(place)})")
+        place = place[key]
+        if not isinstance(place, dict | list):
+            raise BadInput(f"{name}: {path} is '{place}' and has no entry {following}")
+    place[_key(place, last, name, name)] = _toml_value(value)
+    return changed
+
+
+def _key(place: dict | list, step: str, path: str, name: str) -> str | int:
+    """The key of one step, from 0 in lists."""
+    if not step:
+        raise BadInput(f"{name}: has an empty part (accepted: names and numbers with single dots between them)")
+    if isinstance(place, dict):
+        return step
+    if not re.fullmatch("[0-9]{1,6}", step) or not 1 <= int(step) <= len(place):
+        before = path.removesuffix(f".{step}")
+        numbers = f"{before}.1 to {before}.{len(place)}" if len(place) > 1 else f"{before}.1"
+        raise BadInput(f"{name}: there is no {path} in the scene (accepted: {numbers})")
+    return int(step) - 1
+
+
+def _toml_value(value):
+    """Text as TOML reads it, where it does; numbers and arrays of numpy as plain ones."""
+    if not isinstance(value, str):
+        return value.tolist() if isinstance(value, np.generic | np.ndarray) else value
+    try:
+        return tomllib.loads(f"value = {value}")["value"] if "\n" not in value else value
+    except tomllib.TOMLDecodeError:
+        return value
