@@ -88,3 +88,12 @@ def test_gaps_are_those_of_an_exhaustive_search(measure, tmp_path_factory, degre
             else:
                 assert signed < -reach / 2
     assert near > 10
+
+
+@pytest.mark.parametrize("printed", [0, 1])
+@pytest.mark.parametrize("degree, depth, noise, tilt", CASES)
+def test_pairwise_rows_conserve(measure, degree, depth, noise, tilt, printed):
+    """The pairwise form (14), (15), as a repulsion and as printed: B d = q1 - q0, no force and no moment."""
+    found = measure("pair", degree=degree, depth=depth, noise=noise, tilt=tilt, printed=printed)
+    assert found["pairwise"] > 20 and found["pairwiseNear"] > 0
+    assert found["pairwiseExact"] < ROUND_OFF and found["pairwiseForce"] < ROUND_OFF and found["pairwiseMoment"] < ROUND_OFF
