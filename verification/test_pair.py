@@ -50,7 +50,8 @@ def test_rows_conserve(measure, degree, depth, noise, tilt):
     """B d = q1 - q0; no row carries a force or a moment about the middle configuration, at vertices and kinks as on edges."""
     found = measure("pair", degree=degree, depth=depth, noise=noise, tilt=tilt)
     assert found["randomInside"] > 10 and found["vertices"] > 0 or noise == 0
-    for name in ("random", "turn"):
+    assert found["cornerGap"] < ROUND_OFF        # a point on a corner of the other body, exactly
+    for name in ("random", "turn", "corner"):
         assert found[name + "Exact"] < ROUND_OFF and found[name + "Force"] < ROUND_OFF and found[name + "Moment"] < ROUND_OFF
         assert 0.1 < found[name + "Largest"] < 1.2
 
@@ -87,3 +88,12 @@ def test_gaps_are_those_of_an_exhaustive_search(measure, tmp_path_factory, degre
             else:
                 assert signed < -reach / 2
     assert near > 10
+
+
+@pytest.mark.parametrize("printed", [0, 1])
+@pytest.mark.parametrize("degree, depth, noise, tilt", CASES)
+def test_pairwise_rows_conserve(measure, degree, depth, noise, tilt, printed):
+    """The pairwise form (14), (15), as a repulsion and as printed: B d = q1 - q0, no force and no moment."""
+    found = measure("pair", degree=degree, depth=depth, noise=noise, tilt=tilt, printed=printed)
+    assert found["pairwise"] > 20 and found["pairwiseNear"] > 0
+    assert found["pairwiseExact"] < ROUND_OFF and found["pairwiseForce"] < ROUND_OFF and found["pairwiseMoment"] < ROUND_OFF
