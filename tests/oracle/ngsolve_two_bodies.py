@@ -25,6 +25,7 @@ from ngsolve import BND, Det, Grad, Id, InnerProduct, Inv, Trace, ds, dx, log, x
 FINE_ANGLE = 60             # degrees from the axis: where the discs' outline is fine and in contact
 ORDER = 4                   # of the quadrature of the stress and its energy
 SAMPLE = 20                 # steps between two rows of the history
+SMOOTH = 0.02               # window of the mean of peak_force_smooth, in contact times
 BODIES = ("upper", "lower")
 OUTLINES = ("upper outline", "lower outline")
 
@@ -94,13 +95,18 @@ class Outline:
         return np.stack([-np.ones_like(s), np.ones_like(s), self.bubble * (1 - 2 * s)], axis=-1)
 
     def closest(self, points: np.ndarray, position: np.ndarray):
-        """Edge, s, signed gap and outward normal (m, 2) of the closest points; of the nearest edge and its two neighbours."""
+        """Which points are inside; edge, s, gap < 0 and outward normal (m, 2) of their closest points on the edge of the nearest
+        middle and its two neighbours."""
         corners = position[self.edges]                                               # (edges, 3 dofs, 2)
         middles = np.einsum("a,eai->ei", self.shape(np.array(0.5)), corners)
+        tangents = corners[:, 1] - corners[:, 0]
         nearest = np.argmin(((points[:, None] - middles) ** 2).sum(-1), axis=1)
+        r, t = points - middles[nearest], tangents[nearest]
+        which = np.flatnonzero(self.side * (r[:, 0] * t[:, 1] - r[:, 1] * t[:, 0]) < 0.25 * (t * t).sum(1))   # not far outside
+        points, nearest = points[which], nearest[which]
         edge = np.clip(nearest[:, None] + np.array([-1, 0, 1]), 0, len(self.edges) - 1)
         a, s = corners[edge], np.full(edge.shape, 0.5)
-        for _ in range(5):
+        for _ in range(4):
             r = points[:, None] - (self.shape(s)[..., None] * a).sum(-2)
             t = (self.slope(s)[..., None] * a).sum(-2)
             hessian = (t * t).sum(-1) + 2 * self.bubble * (r * a[:, :, 2]).sum(-1)
@@ -113,7 +119,8 @@ class Outline:
         gap = np.where((r * normal).sum(1) < 0, -distance, distance)
         vertex = ((s == 0) | (s == 1)) & (distance > 1e-12)                          # there the gap's gradient is along r
         normal[vertex] = r[vertex] / gap[vertex, None]
-        return edge, s, gap, normal
+        inside = (gap < 0) & ~((edge == len(self.edges) - 1) & (s == 1))            # beyond the chain: open
+        return which[inside], edge[inside], s[inside], gap[inside], normal[inside]
 
 
 class Pair:
@@ -191,9 +198,8 @@ class Pair:
         near = points[0][:, 1] < points[1][:, 1].max(), points[1][:, 1] > points[0][:, 1].min()
         for role, (own, other) in enumerate((self.outlines, self.outlines[::-1])):
             which = np.flatnonzero(near[role])
-            edge, s, gap, normal = other.closest(points[role][which], position)
-            inside = (gap < 0) & ~((edge == len(other.edges) - 1) & (s == 1))       # beyond the chain: open
-            which, edge, s, gap, normal = which[inside], edge[inside], s[inside], gap[inside], normal[inside]
+            inside, edge, s, gap, normal = other.closest(points[role][which], position)
+            which = which[inside]
             if np.any(which >= len(own.weight) - 4) or np.any(edge == len(other.edges) - 1):
                 raise SystemExit("contact reaches the end of the fine outline")
             weight = 0.5 * own.weight[which]                                         # each role counts half
@@ -224,6 +230,19 @@ class Pair:
     def velocities(self) -> list[float]:
         return [ng.InnerProduct(weight, self.v.vec) / mass for weight, mass in zip(self.weights, self.masses)]
 
+    def least_ellipticity(self) -> float:
+        """SVK: smallest eigenvalue of Q(N) = (N.SN) I + (lambda + mu) FN FN^T + mu F F^T over all points and N, over mu; lost where < 0."""
+        lam, mu = self.o.lame_lambda, self.o.lame_mu
+        F = np.eye(2) + Grad(self.u)(self.points).reshape(-1, 2, 2)
+        E = (np.einsum("mki,mkj->mij", F, F) - np.eye(2)) / 2
+        angle = np.arange(18) * math.pi / 18
+        N = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        NSN = lam * np.trace(E, axis1=1, axis2=2)[:, None] + 2 * mu * np.einsum("ni,mij,nj->mn", N, E, N)
+        FN, B = np.einsum("mij,nj->imn", F, N), np.einsum("mik,mjk->ijm", F, F)[..., None]
+        Q = [NSN + (lam + mu) * FN[0] ** 2 + mu * B[0, 0], NSN + (lam + mu) * FN[1] ** 2 + mu * B[1, 1],
+             (lam + mu) * FN[0] * FN[1] + mu * B[0, 1]]
+        return ((Q[0] + Q[1]) / 2 - np.hypot((Q[0] - Q[1]) / 2, Q[2])).min() / mu
+
     def state(self, force: float, potential: float) -> dict:
         """A row of the history, whole bodies; J_x, J_y: where the least det F is, in the body as drawn at the first touch."""
         self.force.data = self.mass * self.v.vec
@@ -237,6 +256,7 @@ class Pair:
                "kinetic_upper": kinetic[0], "kinetic_lower": kinetic[1], "elastic_upper": elastic[0], "elastic_lower": elastic[1],
                "contact_potential": 2 * potential}
         row["total_energy"] = sum(list(row.values())[4:])
+        row |= {"least_ellipticity": self.least_ellipticity()} if self.o.law == "svk" else {}
         return row | {"least_det_F": J.min(), "J_x": place[0], "J_y": place[1] - (4 * self.o.radius if place[1] > 0 else 0)}
 
 
@@ -260,6 +280,8 @@ def summary(pair: Pair, rows: list[dict], forces: np.ndarray, end: str) -> dict:
     t, force = forces.T
     closed, strong = force != 0, np.flatnonzero(force > 0.01 * force.max())
     touching = np.flatnonzero(closed)
+    window = max(1, round(SMOOTH * (t[touching[-1]] - t[touching[0]]) / pair.dt))
+    smooth = np.convolve(force, np.ones(window) / window, mode="same")
     final, masses = rows[-1], [2 * mass for mass in pair.masses]
     worst = min(rows, key=lambda row: row["least_det_F"])
     broken = next((row for row in rows if row["least_det_F"] <= 0), None)
@@ -270,10 +292,12 @@ def summary(pair: Pair, rows: list[dict], forces: np.ndarray, end: str) -> dict:
     return {"end": end, "mass_upper": masses[0], "mass_lower": masses[1], "first_contact": t[touching[0]],
             "contact_time": t[touching[-1]] + pair.dt - t[touching[0]], "contact_time_1_percent": t[strong[-1]] - t[strong[0]],
             "contact_intervals": int(np.count_nonzero(np.diff(closed.astype(int)) == 1)), "impulse": pair.dt * force.sum(),
-            "peak_force": force.max(), "time_of_peak": t[force.argmax()], "velocity_upper": final["velocity_upper"],
+            "peak_force": force.max(), "time_of_peak": t[force.argmax()],
+            "peak_force_smooth": smooth.max(), "time_of_peak_smooth": t[smooth.argmax()], "velocity_upper": final["velocity_upper"],
             "velocity_lower": final["velocity_lower"], **vibration, "energy_start": rows[0]["total_energy"],
             "energy_drift": max(abs(row["total_energy"] / rows[0]["total_energy"] - 1) for row in rows),
             "energy_change": final["total_energy"] / rows[0]["total_energy"] - 1, "momentum_change": (after - before) / abs(before or after or 1),
+            "least_ellipticity": min((row["least_ellipticity"] for row in rows if "least_ellipticity" in row), default=None),
             "least_det_F": {key: worst[key] for key in ("t", "least_det_F", "J_x", "J_y")},
             "first_inverted": broken and {key: broken[key] for key in ("t", "least_det_F", "J_x", "J_y")}}
 
