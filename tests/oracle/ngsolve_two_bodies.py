@@ -1,9 +1,11 @@
 """A disc on a free block, or two equal discs head on, with NGSolve (`pip install ngsolve==6.2.2608`): a second opinion on two bodies.
 
 Half of both bodies (u_x = 0 on the axis x = 0), plane strain, curved P2 triangles of netgen, no friction, no gravity. Shares nothing
-with our own step: central differences with the consistent mass. Contact by hand: each Gauss point of either outline against the
-closest point y of the other's deformed outline (P2 edges, so parabolas), potential k p^2 / 2 per unit reference length with half
-the weight in each role; the force is its exact gradient, so momentum is exact and the energy off by O(dt^2).
+with our own step: central differences with the consistent mass. Contact of potential k p^2 / 2 per unit reference length:
+two-sided: by hand, each Gauss point of either outline against the closest point of the other's deformed outline (P2 edges, so
+           parabolas), half the weight in each role; its exact gradient, so momentum is exact and the energy off by O(dt^2).
+ngsolve:   as NGSolve's users would write it: ContactBoundary, points of the upper outline alone, p along their normal; not quite
+           a gradient, and its potential is not counted in the energy, which is therefore to be compared after the contact.
 Ends with a line of JSON: whole bodies, SI units, per metre of thickness; y upwards; energies of vibration: kinetic about the body's
 mean velocity + elastic, after the contact.
 """
@@ -20,7 +22,7 @@ from pathlib import Path
 import netgen.occ as occ
 import ngsolve as ng
 import numpy as np
-from ngsolve import BND, Det, Grad, Id, InnerProduct, Inv, Trace, ds, dx, log, x, y
+from ngsolve import BND, Det, Grad, Id, IfPos, InnerProduct, Inv, Trace, ds, dx, log, x, y
 
 FINE_ANGLE = 60             # degrees from the axis: where the discs' outline is fine and in contact
 ORDER = 4                   # of the quadrature of the stress and its energy
@@ -40,6 +42,7 @@ def arguments() -> argparse.Namespace:
         parser.add_argument(f"--{name}", type=float, default=default, help=f"[{unit}] (default {default:g})")
     parser.add_argument("--law", choices=("svk", "neohookean"), default="neohookean")
     parser.add_argument("--lower", choices=("block", "disc"), default="block", help="the lower body (default block)")
+    parser.add_argument("--contact", choices=("two-sided", "ngsolve"), default="two-sided")
     parser.add_argument("--realcompile", action="store_true", help="the stress through the C++ compiler: 12 s of set-up, a fifth of the time of its evaluation")
     parser.add_argument("--history", type=Path, help="writes force, energies, velocities and least det F over time there (CSV)")
     options = parser.parse_args()
@@ -133,20 +136,21 @@ class Pair:
         self.u.Set(ng.CF((0, -4 * o.radius)), definedon=self.mesh.Materials("upper"))            # to the first touch
         self.v.Set(self.mesh.MaterialCF({"upper": ng.CF((0, -o.speed)), "lower": ng.CF((0, o.lower_speed))}))
         coordinates.Set(ng.CF((x, y)))
-        self.reference = self.nodal(coordinates).copy()
+        self.reference = self.nodal(coordinates.vec).copy()
         self.outlines = [Outline(scalar, name, self.reference, side) for name, side in zip(OUTLINES, (1.0, -1.0))]
         self.force, self.contact, self.acceleration = (self.u.vec.CreateVector() for _ in range(3))
         self.assemble()
         self.masses = [ng.Integrate(ng.CF(o.density) * dx(body), self.mesh) for body in BODIES]
         self.is_upper = np.zeros(scalar.ndof, bool)
         self.is_upper[[dof for element in scalar.Elements() if element.mat == BODIES[0] for dof in element.dofs]] = True
+        self.is_upper_vertex = self.is_upper & (np.arange(scalar.ndof) < self.mesh.nv)             # bubbles carry no net force
         self.points = self.mesh.MapToAllElements(ng.IntegrationRule(ng.TRIG, ORDER), self.mesh.Materials(".*"))
         self.dt = o.courant * 2 / self.highest_frequency()
 
     @staticmethod
-    def nodal(field) -> np.ndarray:
+    def nodal(vector) -> np.ndarray:
         """Coefficients (scalar dofs, 2)."""
-        return field.vec.FV().NumPy().reshape(2, -1).T
+        return vector.FV().NumPy().reshape(2, -1).T
 
     def strain_energy(self, C):
         """W of C = F^T F (2 x 2, plane strain) [J/m3]."""
@@ -193,7 +197,7 @@ class Pair:
 
     def contact_forces(self) -> tuple[float, float]:
         """Fills self.contact; the normal force on the upper half body [N/m] and the potential [J/m]."""
-        position, total, upwards, potential = self.reference + self.nodal(self.u), np.zeros((2, self.space.ndof // 2)), 0.0, 0.0
+        position, total, upwards, potential = self.reference + self.nodal(self.u.vec), np.zeros((2, self.space.ndof // 2)), 0.0, 0.0
         points = [np.einsum("ga,gai->gi", outline.N, position[outline.dofs]) for outline in self.outlines]
         near = points[0][:, 1] < points[1][:, 1].max(), points[1][:, 1] > points[0][:, 1].min()
         for role, (own, other) in enumerate((self.outlines, self.outlines[::-1])):
@@ -260,6 +264,25 @@ class Pair:
         return row | {"least_det_F": J.min(), "J_x": place[0], "J_y": place[1] - (4 * self.o.radius if place[1] > 0 else 0)}
 
 
+class PairOfNGSolve(Pair):
+    """Contact by ContactBoundary."""
+
+    def assemble(self):
+        super().assemble()
+        trial = self.space.TrialFunction()
+        self.pairs = ng.ContactBoundary(*(self.mesh.Boundaries(name) for name in OUTLINES))
+        here = ng.CF((x, y)) + trial
+        penetration = InnerProduct(here - ng.CF((x, y)).Other() - trial.Other(), self.pairs.normal)
+        self.pairs.AddEnergy(IfPos(penetration, self.o.penalty / 2 * penetration ** 2, 0))
+        self.springs = ng.BilinearForm(self.space, nonassemble=True)
+
+    def contact_forces(self) -> tuple[float, float]:
+        self.pairs.Update(self.u, self.springs, intorder=6, maxdist=0.2 * self.o.radius)
+        self.springs.Apply(self.u.vec, self.contact)
+        self.contact.data *= -1
+        return self.nodal(self.contact)[self.is_upper_vertex, 1].sum(), 0.0
+
+
 def march(pair: Pair) -> tuple[list[dict], np.ndarray, str]:
     """Rows of the history, times and forces of all steps, and how it ended: "over" where the contact has been over for a while."""
     o, rows, forces, last = pair.o, [], [], 0.0
@@ -307,13 +330,13 @@ def main():
     options = arguments()
     ng.SetNumThreads(1)
     start = time.process_time()
-    pair = Pair(options)
+    pair = (Pair if options.contact == "two-sided" else PairOfNGSolve)(options)
     ready = time.process_time()
     rows, forces, end = march(pair)
     if options.history:
         table = np.array([list(row.values()) for row in rows])
         np.savetxt(options.history, table, delimiter=",", header=",".join(rows[0]), comments="", fmt="%.10g")
-    print(json.dumps({"program": "ngsolve", "version": metadata.version("ngsolve"), "lower": options.lower, "law": options.law,
+    print(json.dumps({"program": "ngsolve", "version": metadata.version("ngsolve"), "lower": options.lower, "contact": options.contact, "law": options.law,
                       "nu": options.nu, "penalty": options.penalty, "refine": options.refine, "dofs": pair.space.ndof, "dt": pair.dt,
                       "steps": len(forces), **summary(pair, rows, forces, end), "setup_cpu_seconds": round(ready - start, 2),
                       "cpu_seconds": round(time.process_time() - ready, 2)}))
