@@ -43,7 +43,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--law", choices=("svk", "neohookean"), default="neohookean")
     parser.add_argument("--lower", choices=("block", "disc"), default="block", help="the lower body (default block)")
     parser.add_argument("--contact", choices=("two-sided", "ngsolve"), default="two-sided")
-    parser.add_argument("--realcompile", action="store_true", help="the stress through the C++ compiler: 12 s of set-up, a fifth of the time of its evaluation")
+    parser.add_argument("--realcompile", action="store_true", help="the stress by the C++ compiler: 12 s of set-up, then a fifth of its time")
     parser.add_argument("--history", type=Path, help="writes force, energies, velocities and least det F over time there (CSV)")
     options = parser.parse_args()
     options.lame_lambda = options.nu * options.young / ((1 + options.nu) * (1 - 2 * options.nu))
@@ -97,32 +97,44 @@ class Outline:
     def slope(self, s):
         return np.stack([-np.ones_like(s), np.ones_like(s), self.bubble * (1 - 2 * s)], axis=-1)
 
-    def closest(self, points: np.ndarray, position: np.ndarray):
-        """Which points are inside; edge, s, gap < 0 and outward normal (m, 2) of their closest points on the edge of the nearest
-        middle and its two neighbours."""
-        corners = position[self.edges]                                               # (edges, 3 dofs, 2)
-        middles = np.einsum("a,eai->ei", self.shape(np.array(0.5)), corners)
-        tangents = corners[:, 1] - corners[:, 0]
-        nearest = np.argmin(((points[:, None] - middles) ** 2).sum(-1), axis=1)
-        r, t = points - middles[nearest], tangents[nearest]
-        which = np.flatnonzero(self.side * (r[:, 0] * t[:, 1] - r[:, 1] * t[:, 0]) < 0.25 * (t * t).sum(1))   # not far outside
-        points, nearest = points[which], nearest[which]
-        edge = np.clip(nearest[:, None] + np.array([-1, 0, 1]), 0, len(self.edges) - 1)
-        a, s = corners[edge], np.full(edge.shape, 0.5)
+    def point(self, s, corners):
+        return (self.shape(s)[..., None] * corners).sum(-2)
+
+    def tangent(self, s, corners):
+        return (self.slope(s)[..., None] * corners).sum(-2)
+
+    def project(self, points: np.ndarray, corners: np.ndarray) -> np.ndarray:
+        """s of the closest point on each edge (points, candidates, 3 dofs, 2): Newton's method, kept in [0, 1]."""
+        s = np.full(corners.shape[:2], 0.5)
         for _ in range(4):
-            r = points[:, None] - (self.shape(s)[..., None] * a).sum(-2)
-            t = (self.slope(s)[..., None] * a).sum(-2)
-            hessian = (t * t).sum(-1) + 2 * self.bubble * (r * a[:, :, 2]).sum(-1)
-            s = np.clip(s + (r * t).sum(-1) / np.maximum(hessian, 0.1 * (t * t).sum(-1)), 0, 1)
-        r = points[:, None] - (self.shape(s)[..., None] * a).sum(-2)
-        best = np.arange(len(points)), np.argmin((r * r).sum(-1), axis=1)
-        edge, s, r, t = edge[best], s[best], r[best], (self.slope(s)[..., None] * a).sum(-2)[best]
-        normal = self.side * np.stack([t[:, 1], -t[:, 0]], axis=1) / np.linalg.norm(t, axis=1)[:, None]
-        distance = np.linalg.norm(r, axis=1)
+            r, t = points[:, None] - self.point(s, corners), self.tangent(s, corners)
+            square = (t * t).sum(-1)
+            hessian = square + 2 * self.bubble * (r * corners[:, :, 2]).sum(-1)
+            s = np.clip(s + (r * t).sum(-1) / np.maximum(hessian, 0.1 * square), 0, 1)
+        return s
+
+    def outward(self, t: np.ndarray) -> np.ndarray:
+        return self.side * np.stack([t[:, 1], -t[:, 0]], axis=1) / np.linalg.norm(t, axis=1)[:, None]
+
+    def closest(self, points: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Which points are inside; edge, s, gap < 0 and outward normal (m, 2) of their closest points, which are sought on the
+        edge of the nearest middle and its two neighbours."""
+        corners = position[self.edges]                                               # (edges, 3 dofs, 2)
+        middles, chords = self.point(np.full(len(corners), 0.5), corners), corners[:, 1] - corners[:, 0]
+        nearest = np.argmin(((points[:, None] - middles) ** 2).sum(-1), axis=1)
+        height = ((points - middles[nearest]) * self.outward(chords)[nearest]).sum(1)
+        which = np.flatnonzero(height < 0.25 * np.linalg.norm(chords, axis=1)[nearest])     # the others are far outside
+        points = points[which]
+        edge = np.clip(nearest[which, None] + np.array([-1, 0, 1]), 0, len(self.edges) - 1)
+        s = self.project(points, corners[edge])
+        distance = np.linalg.norm(points[:, None] - self.point(s, corners[edge]), axis=-1)
+        best = np.arange(len(points)), np.argmin(distance, axis=1)
+        edge, s, distance = edge[best], s[best], distance[best]
+        r, normal = points - self.point(s, corners[edge]), self.outward(self.tangent(s, corners[edge]))
         gap = np.where((r * normal).sum(1) < 0, -distance, distance)
-        vertex = ((s == 0) | (s == 1)) & (distance > 1e-12)                          # there the gap's gradient is along r
+        vertex = ((s == 0) | (s == 1)) & (distance > 0)                              # there the gap's gradient is along r
         normal[vertex] = r[vertex] / gap[vertex, None]
-        inside = (gap < 0) & ~((edge == len(self.edges) - 1) & (s == 1))            # beyond the chain: open
+        inside = (gap < 0) & ~((edge == len(self.edges) - 1) & (s == 1))             # beyond the chain: open
         return which[inside], edge[inside], s[inside], gap[inside], normal[inside]
 
 
@@ -254,14 +266,13 @@ class Pair:
         kinetic = twice[self.is_upper].sum(), twice[~self.is_upper].sum()
         elastic = [2 * ng.Integrate(energy, self.mesh) for energy in self.elastic]
         J = Det(Id(2) + Grad(self.u))(self.points).reshape(-1)
-        worst = self.points[int(np.argmin(J))]
-        place = x(worst), y(worst)
+        least = self.points[int(np.argmin(J))]
         row = {"t": self.t, "normal_force": 2 * force, "velocity_upper": self.velocities()[0], "velocity_lower": self.velocities()[1],
                "kinetic_upper": kinetic[0], "kinetic_lower": kinetic[1], "elastic_upper": elastic[0], "elastic_lower": elastic[1],
                "contact_potential": 2 * potential}
         row["total_energy"] = sum(list(row.values())[4:])
         row |= {"least_ellipticity": self.least_ellipticity()} if self.o.law == "svk" else {}
-        return row | {"least_det_F": J.min(), "J_x": place[0], "J_y": place[1] - (4 * self.o.radius if place[1] > 0 else 0)}
+        return row | {"least_det_F": J.min(), "J_x": x(least), "J_y": y(least) - (4 * self.o.radius if y(least) > 0 else 0)}
 
 
 class PairOfNGSolve(Pair):
@@ -336,9 +347,9 @@ def main():
     if options.history:
         table = np.array([list(row.values()) for row in rows])
         np.savetxt(options.history, table, delimiter=",", header=",".join(rows[0]), comments="", fmt="%.10g")
-    print(json.dumps({"program": "ngsolve", "version": metadata.version("ngsolve"), "lower": options.lower, "contact": options.contact, "law": options.law,
-                      "nu": options.nu, "penalty": options.penalty, "refine": options.refine, "dofs": pair.space.ndof, "dt": pair.dt,
-                      "steps": len(forces), **summary(pair, rows, forces, end), "setup_cpu_seconds": round(ready - start, 2),
+    print(json.dumps({"program": "ngsolve", "version": metadata.version("ngsolve"),
+                      **{name: getattr(options, name) for name in ("lower", "contact", "law", "nu", "penalty", "refine")},
+                      "dofs": pair.space.ndof, "dt": pair.dt, "steps": len(forces), **summary(pair, rows, forces, end), "setup_cpu_seconds": round(ready - start, 2),
                       "cpu_seconds": round(time.process_time() - ready, 2)}))
     if end != "over":
         raise SystemExit(f"no answer: {end} at t = {pair.t:g} s")
