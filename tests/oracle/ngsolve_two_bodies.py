@@ -349,8 +349,8 @@ def main():
         np.savetxt(options.history, table, delimiter=",", header=",".join(rows[0]), comments="", fmt="%.10g")
     print(json.dumps({"program": "ngsolve", "version": metadata.version("ngsolve"),
                       **{name: getattr(options, name) for name in ("lower", "contact", "law", "nu", "penalty", "refine")},
-                      "dofs": pair.space.ndof, "dt": pair.dt, "steps": len(forces), **summary(pair, rows, forces, end), "setup_cpu_seconds": round(ready - start, 2),
-                      "cpu_seconds": round(time.process_time() - ready, 2)}))
+                      "dofs": pair.space.ndof, "dt": pair.dt, "steps": len(forces), **summary(pair, rows, forces, end),
+                      "setup_cpu_seconds": round(ready - start, 2), "cpu_seconds": round(time.process_time() - ready, 2)}))
     if end != "over":
         raise SystemExit(f"no answer: {end} at t = {pair.t:g} s")
 
