@@ -1,0 +1,360 @@
+"""A disc on a free block, or two equal discs head on, with NGSolve (`pip install ngsolve==6.2.2608`): a second opinion on two bodies.
+
+Half of both bodies (u_x = 0 on the axis x = 0), plane strain, curved P2 triangles of netgen, no friction, no gravity. Shares nothing
+with our own step: central differences with the consistent mass. Contact of potential k p^2 / 2 per unit reference length:
+two-sided: by hand, each Gauss point of either outline against the closest point of the other's deformed outline (P2 edges, so
+           parabolas), half the weight in each role; its exact gradient but where the closest point jumps over a corner
+           between two edges, so momentum is exact and the energy nearly (1e-5 at k = 1e9 Pa/m, 1e-4 at 1e10).
+ngsolve:   as NGSolve's users would write it: ContactBoundary, points of the upper outline alone, p along their normal; not quite
+           a gradient, and its potential is not counted in the energy, which is therefore to be compared after the contact.
+Ends with a line of JSON: whole bodies, SI units, per metre of thickness; y upwards; energies of vibration: kinetic about the body's
+mean velocity + elastic, after the contact.
+"""
+
+import argparse
+import json
+import math
+import os
+import sys
+import time
+from importlib import metadata
+from pathlib import Path
+
+import netgen.occ as occ
+import ngsolve as ng
+import numpy as np
+from ngsolve import BND, Det, Grad, Id, IfPos, InnerProduct, Inv, Trace, ds, dx, log, x, y
+
+FINE_ANGLE = 60             # degrees from the axis: where the discs' outline is fine and in contact
+ORDER = 4                   # of the quadrature of the stress and its energy
+SAMPLE = 20                 # steps between two rows of the history
+SMOOTH = 0.02               # window of the mean of peak_force_smooth, in contact times
+BODIES = ("upper", "lower")
+OUTLINES = ("upper outline", "lower outline")
+
+
+def arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    numbers = {"radius": (0.5, "m"), "width": (10.0, "m, of the block"), "height": (2.0, "m, of the block"), "young": (7e6, "Pa"),
+               "density": (1722.0, "kg/m3"), "nu": (0.45, "-"), "penalty": (1e9, "Pa/m"), "speed": (10.0, "m/s, downwards, of the disc"),
+               "lower-speed": (0.0, "m/s, upwards, of the lower body"), "refine": (1.0, "divides all mesh sizes"),
+               "courant": (0.4, "step over the linear limit of stability"), "after": (0.3, "flight after the contact, in contact times")}
+    for name, (default, unit) in numbers.items():
+        parser.add_argument(f"--{name}", type=float, default=default, help=f"[{unit}] (default {default:g})")
+    parser.add_argument("--law", choices=("svk", "neohookean"), default="neohookean")
+    parser.add_argument("--lower", choices=("block", "disc"), default="block", help="the lower body (default block)")
+    parser.add_argument("--contact", choices=("two-sided", "ngsolve"), default="two-sided")
+    parser.add_argument("--realcompile", action="store_true", help="the stress by the C++ compiler: 12 s of set-up, then a fifth of its time")
+    parser.add_argument("--history", type=Path, help="writes force, energies, velocities and least det F over time there (CSV)")
+    options = parser.parse_args()
+    options.lame_lambda = options.nu * options.young / ((1 + options.nu) * (1 - 2 * options.nu))
+    options.lame_mu = options.young / (2 * (1 + options.nu))
+    return options
+
+
+def bodies_mesh(o: argparse.Namespace) -> ng.Mesh:
+    """Half bodies, drawn 4 radii apart; materials upper and lower, boundaries axis, `OUTLINES` (the fine ones) and free."""
+    def disc(centre):
+        first = FINE_ANGLE if centre > 0 else 180 - FINE_ANGLE
+        return occ.WorkPlane().MoveTo(0, centre - o.radius).Arc(o.radius, first).Arc(o.radius, 180 - first).Close().Face()
+
+    half, fine = o.width / 2, 1.6 * o.radius
+    upper = disc(5 * o.radius)
+    lower = disc(-o.radius) if o.lower == "disc" else occ.WorkPlane().MoveTo(0, -o.height).LineTo(half, -o.height).LineTo(
+        half, 0).LineTo(fine, 0).LineTo(0, 0).LineTo(0, -o.height).Face()
+    depth = o.radius * (1 - math.cos(math.radians(FINE_ANGLE)))
+    for face, name, is_fine in ((upper, BODIES[0], lambda c: c.y < 4 * o.radius + depth),
+                                (lower, BODIES[1], lambda c: c.y > (-depth if o.lower == "disc" else -1e-9) and c.x < fine)):
+        face.name, size = name, 0.6 if (name, o.lower) == ("lower", "block") else 0.16
+        face.maxh = size * o.radius / o.refine
+        for edge in face.edges:
+            edge.name = "axis" if edge.center.x < 1e-9 else f"{name} outline" if is_fine(edge.center) else "free"
+            if edge.name == f"{name} outline":
+                edge.maxh = 0.05 * o.radius / o.refine
+    return ng.Mesh(occ.OCCGeometry(occ.Compound([upper, lower]), dim=2).GenerateMesh(maxh=o.radius, grading=0.3)).Curve(2)
+
+
+class Outline:
+    """A chain of P2 edges from the axis outwards, in NGSolve's basis 1 - s, s, bubble s (1 - s); dofs of the scalar space."""
+
+    def __init__(self, space, name: str, reference: np.ndarray, side: float):
+        edges = np.array([element.dofs for element in space.Elements(BND) if space.mesh.GetBoundaries()[element.index] == name])
+        begin, end = reference[edges[:, 0], 0], reference[edges[:, 1], 0]
+        edges[begin > end, :2] = edges[begin > end, 1::-1]
+        self.edges, self.side = edges[np.argsort(np.minimum(begin, end))], side      # side: +1 where the body is left of the chain
+        bubble = ng.GridFunction(space)
+        bubble.vec[int(edges[0, 2])] = 1
+        middles = bubble(space.mesh.MapToAllElements(ng.IntegrationRule(points=[(0.5,)], weights=[1.0]), space.mesh.Boundaries(name)))
+        self.bubble = 4 * middles.flat[np.argmax(np.abs(middles))]
+        nodes, weights = np.polynomial.legendre.leggauss(4)
+        self.N = np.tile(self.shape((nodes + 1) / 2), (len(edges), 1))               # of all Gauss points, edge by edge
+        self.dofs = np.repeat(self.edges, 4, axis=0)
+        dX = np.einsum("ga,gai->gi", np.tile(self.slope((nodes + 1) / 2), (len(edges), 1)), reference[self.dofs])
+        self.weight = np.tile(weights / 2, len(edges)) * np.linalg.norm(dX, axis=1)  # reference length [m]
+
+    def shape(self, s):
+        return np.stack([1 - s, s, self.bubble * s * (1 - s)], axis=-1)
+
+    def slope(self, s):
+        return np.stack([-np.ones_like(s), np.ones_like(s), self.bubble * (1 - 2 * s)], axis=-1)
+
+    def point(self, s, corners):
+        return (self.shape(s)[..., None] * corners).sum(-2)
+
+    def tangent(self, s, corners):
+        return (self.slope(s)[..., None] * corners).sum(-2)
+
+    def project(self, points: np.ndarray, corners: np.ndarray) -> np.ndarray:
+        """s of the closest point on each edge (points, candidates, 3 dofs, 2): Newton's method, kept in [0, 1]."""
+        s = np.full(corners.shape[:2], 0.5)
+        for _ in range(4):
+            r, t = points[:, None] - self.point(s, corners), self.tangent(s, corners)
+            square = (t * t).sum(-1)
+            hessian = square + 2 * self.bubble * (r * corners[:, :, 2]).sum(-1)
+            s = np.clip(s + (r * t).sum(-1) / np.maximum(hessian, 0.1 * square), 0, 1)
+        return s
+
+    def outward(self, t: np.ndarray) -> np.ndarray:
+        return self.side * np.stack([t[:, 1], -t[:, 0]], axis=1) / np.linalg.norm(t, axis=1)[:, None]
+
+    def closest(self, points: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Which points are inside; edge, s, gap < 0 and outward normal (m, 2) of their closest points, which are sought on the
+        edge of the nearest middle and its two neighbours."""
+        corners = position[self.edges]                                               # (edges, 3 dofs, 2)
+        middles, chords = self.point(np.full(len(corners), 0.5), corners), corners[:, 1] - corners[:, 0]
+        nearest = np.argmin(((points[:, None] - middles) ** 2).sum(-1), axis=1)
+        height = ((points - middles[nearest]) * self.outward(chords)[nearest]).sum(1)
+        which = np.flatnonzero(height < 0.25 * np.linalg.norm(chords, axis=1)[nearest])     # the others are far outside
+        points = points[which]
+        edge = np.clip(nearest[which, None] + np.array([-1, 0, 1]), 0, len(self.edges) - 1)
+        s = self.project(points, corners[edge])
+        distance = np.linalg.norm(points[:, None] - self.point(s, corners[edge]), axis=-1)
+        best = np.arange(len(points)), np.argmin(distance, axis=1)
+        edge, s, distance = edge[best], s[best], distance[best]
+        r, normal = points - self.point(s, corners[edge]), self.outward(self.tangent(s, corners[edge]))
+        gap = np.where((r * normal).sum(1) < 0, -distance, distance)
+        vertex = ((s == 0) | (s == 1)) & (distance > 0)                              # there the gap's gradient is along r
+        normal[vertex] = r[vertex] / gap[vertex, None]
+        inside = (gap < 0) & ~((edge == len(self.edges) - 1) & (s == 1))             # beyond the chain: open
+        return which[inside], edge[inside], s[inside], gap[inside], normal[inside]
+
+
+class Pair:
+    """Both half bodies: displacement u and velocity v at the time t, the first touch at 0."""
+
+    def __init__(self, o: argparse.Namespace):
+        self.o, self.t, self.mesh = o, 0.0, bodies_mesh(o)
+        self.space, scalar = ng.VectorH1(self.mesh, order=2, dirichletx="axis"), ng.H1(self.mesh, order=2)
+        self.u, self.v, coordinates = (ng.GridFunction(self.space) for _ in range(3))
+        self.u.Set(ng.CF((0, -4 * o.radius)), definedon=self.mesh.Materials("upper"))            # to the first touch
+        self.v.Set(self.mesh.MaterialCF({"upper": ng.CF((0, -o.speed)), "lower": ng.CF((0, o.lower_speed))}))
+        coordinates.Set(ng.CF((x, y)))
+        self.reference = self.nodal(coordinates.vec).copy()
+        self.outlines = [Outline(scalar, name, self.reference, side) for name, side in zip(OUTLINES, (1.0, -1.0))]
+        self.force, self.contact, self.acceleration = (self.u.vec.CreateVector() for _ in range(3))
+        self.assemble()
+        self.masses = [ng.Integrate(ng.CF(o.density) * dx(body), self.mesh) for body in BODIES]
+        self.is_upper = np.zeros(scalar.ndof, bool)
+        self.is_upper[[dof for element in scalar.Elements() if element.mat == BODIES[0] for dof in element.dofs]] = True
+        self.is_upper_vertex = self.is_upper & (np.arange(scalar.ndof) < self.mesh.nv)             # bubbles carry no net force
+        self.points = self.mesh.MapToAllElements(ng.IntegrationRule(ng.TRIG, ORDER), self.mesh.Materials(".*"))
+        self.dt = o.courant * 2 / self.highest_frequency()
+
+    @staticmethod
+    def nodal(vector) -> np.ndarray:
+        """Coefficients (scalar dofs, 2)."""
+        return vector.FV().NumPy().reshape(2, -1).T
+
+    def strain_energy(self, C):
+        """W of C = F^T F (2 x 2, plane strain) [J/m3]."""
+        lam, mu = self.o.lame_lambda, self.o.lame_mu
+        if self.o.law == "svk":
+            return lam / 8 * (Trace(C) - 2) ** 2 + mu / 4 * InnerProduct(C - Id(2), C - Id(2))
+        log_J = 0.5 * log(Det(C))
+        return mu / 2 * (Trace(C) - 2) - mu * log_J + lam / 2 * log_J ** 2
+
+    def second_piola(self, C):
+        """S = 2 dW/dC [Pa]."""
+        lam, mu = self.o.lame_lambda, self.o.lame_mu
+        if self.o.law == "svk":
+            return lam / 2 * (Trace(C) - 2) * Id(2) + mu * (C - Id(2))
+        return mu * (Id(2) - Inv(C)) + lam * 0.5 * log(Det(C)) * Inv(C)
+
+    def assemble(self):
+        o, (trial, test) = self.o, self.space.TnT()
+        volume = dx(intrules={ng.TRIG: ng.IntegrationRule(ng.TRIG, ORDER)})
+        F, F_now = Id(2) + Grad(trial), Id(2) + Grad(self.u)
+        os.environ["PATH"] = f"{sys.prefix}/bin:" + os.environ["PATH"]                           # of NGSolve's compiler script
+        how = dict(realcompile=True, wait=True) if o.realcompile else {}
+        self.stress = ng.BilinearForm(self.space, nonassemble=True)
+        self.stress += InnerProduct(F * self.second_piola(F.trans * F), Grad(test)).Compile(**how) * volume
+        self.mass = ng.BilinearForm(o.density * InnerProduct(trial, test) * dx, symmetric=True).Assemble().mat
+        self.inverse = self.mass.Inverse(self.space.FreeDofs(), inverse="sparsecholesky")
+        self.weights = [ng.LinearForm(o.density * test[1] * dx(body)).Assemble().vec for body in BODIES]
+        self.elastic = [self.strain_energy(F_now.trans * F_now) * dx(body, intrules={ng.TRIG: ng.IntegrationRule(ng.TRIG, ORDER)})
+                        for body in BODIES]
+        strain = 0.5 * (Grad(trial) + Grad(trial).trans)
+        linear = ng.BilinearForm(self.space, symmetric=True)
+        linear += InnerProduct(o.lame_lambda * Trace(strain) * Id(2) + 2 * o.lame_mu * strain, Grad(test)) * dx
+        linear += 2 * o.penalty * InnerProduct(trial, test) * ds("|".join(OUTLINES))
+        self.linear = linear.Assemble().mat
+
+    def highest_frequency(self) -> float:
+        """Of small motions, either outline on springs 2 k: a bound of the pair in contact [1/s]; power iteration."""
+        mode, image = self.u.vec.CreateVector(), self.u.vec.CreateVector()
+        image.SetRandom(1)
+        for _ in range(60):
+            mode.data = (1 / ng.Norm(image)) * image
+            image.data = self.inverse * (self.linear * mode).Evaluate()
+        return math.sqrt(ng.Norm(image))
+
+    def contact_forces(self) -> tuple[float, float]:
+        """Fills self.contact; the normal force on the upper half body [N/m] and the potential [J/m]."""
+        position, total, upwards, potential = self.reference + self.nodal(self.u.vec), np.zeros((2, self.space.ndof // 2)), 0.0, 0.0
+        points = [np.einsum("ga,gai->gi", outline.N, position[outline.dofs]) for outline in self.outlines]
+        near = points[0][:, 1] < points[1][:, 1].max(), points[1][:, 1] > points[0][:, 1].min()
+        for role, (own, other) in enumerate((self.outlines, self.outlines[::-1])):
+            which = np.flatnonzero(near[role])
+            inside, edge, s, gap, normal = other.closest(points[role][which], position)
+            which = which[inside]
+            if np.any(which >= len(own.weight) - 4) or np.any(edge == len(other.edges) - 1):
+                raise SystemExit("contact reaches the end of the fine outline")
+            weight = 0.5 * own.weight[which]                                         # each role counts half
+            force = -(self.o.penalty * weight * gap)[:, None] * normal               # on the point; its reaction on the edge
+            potential += self.o.penalty / 2 * (weight * gap ** 2).sum()
+            upwards += (1 - 2 * role) * force[:, 1].sum()
+            for component in range(2):
+                np.add.at(total[component], own.dofs[which], own.N[which] * force[:, component, None])
+                np.add.at(total[component], other.edges[edge], -other.shape(s) * force[:, component, None])
+        self.contact.FV().NumPy()[:] = total.reshape(-1)
+        return upwards, potential
+
+    def accelerate(self) -> tuple[float, float]:
+        """Acceleration at u, and half a step of the velocity: to the time of u where it was half a step before."""
+        self.stress.Apply(self.u.vec, self.force)
+        result = self.contact_forces()
+        self.contact.data -= self.force
+        self.acceleration.data = self.inverse * self.contact
+        self.v.vec.data += self.dt / 2 * self.acceleration
+        return result
+
+    def advance(self):
+        """From v at the time of u to u one dt on, v half a step before it."""
+        self.v.vec.data += self.dt / 2 * self.acceleration
+        self.u.vec.data += self.dt * self.v.vec
+        self.t += self.dt
+
+    def velocities(self) -> list[float]:
+        return [ng.InnerProduct(weight, self.v.vec) / mass for weight, mass in zip(self.weights, self.masses)]
+
+    def least_ellipticity(self) -> float:
+        """SVK: smallest eigenvalue of Q(N) = (N.SN) I + (lambda + mu) FN FN^T + mu F F^T over all points and N, over mu; lost where < 0."""
+        lam, mu = self.o.lame_lambda, self.o.lame_mu
+        F = np.eye(2) + Grad(self.u)(self.points).reshape(-1, 2, 2)
+        E = (np.einsum("mki,mkj->mij", F, F) - np.eye(2)) / 2
+        angle = np.arange(18) * math.pi / 18
+        N = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        NSN = lam * np.trace(E, axis1=1, axis2=2)[:, None] + 2 * mu * np.einsum("ni,mij,nj->mn", N, E, N)
+        FN, B = np.einsum("mij,nj->imn", F, N), np.einsum("mik,mjk->ijm", F, F)[..., None]
+        Q = [NSN + (lam + mu) * FN[0] ** 2 + mu * B[0, 0], NSN + (lam + mu) * FN[1] ** 2 + mu * B[1, 1],
+             (lam + mu) * FN[0] * FN[1] + mu * B[0, 1]]
+        return ((Q[0] + Q[1]) / 2 - np.hypot((Q[0] - Q[1]) / 2, Q[2])).min() / mu
+
+    def state(self, force: float, potential: float) -> dict:
+        """A row of the history, whole bodies; J_x, J_y: where the least det F is, in the body as drawn at the first touch."""
+        self.force.data = self.mass * self.v.vec
+        twice = (self.force.FV().NumPy() * self.v.vec.FV().NumPy()).reshape(2, -1).sum(0)
+        kinetic = twice[self.is_upper].sum(), twice[~self.is_upper].sum()
+        elastic = [2 * ng.Integrate(energy, self.mesh) for energy in self.elastic]
+        J = Det(Id(2) + Grad(self.u))(self.points).reshape(-1)
+        least = self.points[int(np.argmin(J))]
+        row = {"t": self.t, "normal_force": 2 * force, "velocity_upper": self.velocities()[0], "velocity_lower": self.velocities()[1],
+               "kinetic_upper": kinetic[0], "kinetic_lower": kinetic[1], "elastic_upper": elastic[0], "elastic_lower": elastic[1],
+               "contact_potential": 2 * potential}
+        row["total_energy"] = sum(list(row.values())[4:])
+        row |= {"least_ellipticity": self.least_ellipticity()} if self.o.law == "svk" else {}
+        return row | {"least_det_F": J.min(), "J_x": x(least), "J_y": y(least) - (4 * self.o.radius if y(least) > 0 else 0)}
+
+
+class PairOfNGSolve(Pair):
+    """Contact by ContactBoundary."""
+
+    def assemble(self):
+        super().assemble()
+        trial = self.space.TrialFunction()
+        self.pairs = ng.ContactBoundary(*(self.mesh.Boundaries(name) for name in OUTLINES))
+        here = ng.CF((x, y)) + trial
+        penetration = InnerProduct(here - ng.CF((x, y)).Other() - trial.Other(), self.pairs.normal)
+        self.pairs.AddEnergy(IfPos(penetration, self.o.penalty / 2 * penetration ** 2, 0))
+        self.springs = ng.BilinearForm(self.space, nonassemble=True)
+
+    def contact_forces(self) -> tuple[float, float]:
+        self.pairs.Update(self.u, self.springs, intorder=6, maxdist=0.2 * self.o.radius)
+        self.springs.Apply(self.u.vec, self.contact)
+        self.contact.data *= -1
+        return self.nodal(self.contact)[self.is_upper_vertex, 1].sum(), 0.0
+
+
+def march(pair: Pair) -> tuple[list[dict], np.ndarray, str]:
+    """Rows of the history, times and forces of all steps, and how it ended: "over" where the contact has been over for a while."""
+    o, rows, forces, last = pair.o, [], [], 0.0
+    longest = 60 * o.radius * math.sqrt(o.density / o.young)
+    while pair.t < max((1 + o.after) * last, 0.05 * longest) and pair.t < longest:
+        force, potential = pair.accelerate()
+        if not math.isfinite(force) or not math.isfinite(pair.acceleration[0]):
+            return rows, np.array(forces), "not a number"
+        last = pair.t if force else last
+        forces.append((pair.t, 2 * force))
+        if len(forces) % SAMPLE == 1:
+            rows.append(pair.state(force, potential))
+        pair.advance()
+    return rows, np.array(forces), "over" if pair.t < longest else "contact too long"
+
+
+def summary(pair: Pair, rows: list[dict], forces: np.ndarray, end: str) -> dict:
+    """What is reported of the whole bodies; least det F, ellipticity and drift of the energy among the rows."""
+    t, force = forces.T
+    closed, strong = force != 0, np.flatnonzero(force > 0.01 * force.max())
+    touching = np.flatnonzero(closed)
+    window = max(1, round(SMOOTH * (t[touching[-1]] - t[touching[0]]) / pair.dt))
+    smooth = np.convolve(force, np.ones(window) / window, mode="same")
+    final, masses = rows[-1], [2 * mass for mass in pair.masses]
+    least = min(rows, key=lambda row: row["least_det_F"])
+    inverted = next((row for row in rows if row["least_det_F"] <= 0), None)
+    before = masses[0] * -pair.o.speed + masses[1] * pair.o.lower_speed
+    after = masses[0] * final["velocity_upper"] + masses[1] * final["velocity_lower"]
+    vibration = {f"vibration_{body}": final[f"kinetic_{body}"] + final[f"elastic_{body}"] - mass / 2 * final[f"velocity_{body}"] ** 2
+                 for body, mass in zip(BODIES, masses)}
+    return {"end": end, "mass_upper": masses[0], "mass_lower": masses[1], "first_contact": t[touching[0]],
+            "contact_time": t[touching[-1]] + pair.dt - t[touching[0]], "contact_time_1_percent": t[strong[-1]] - t[strong[0]],
+            "contact_intervals": int(np.count_nonzero(np.diff(closed.astype(int)) == 1)), "impulse": pair.dt * force.sum(),
+            "peak_force": force.max(), "time_of_peak": t[force.argmax()],
+            "peak_force_smooth": smooth.max(), "time_of_peak_smooth": t[smooth.argmax()], "velocity_upper": final["velocity_upper"],
+            "velocity_lower": final["velocity_lower"], **vibration, "energy_start": rows[0]["total_energy"],
+            "energy_drift": max(abs(row["total_energy"] / rows[0]["total_energy"] - 1) for row in rows),
+            "energy_change": final["total_energy"] / rows[0]["total_energy"] - 1, "momentum_change": (after - before) / abs(before or after or 1),
+            "least_ellipticity": min((row["least_ellipticity"] for row in rows if "least_ellipticity" in row), default=None),
+            **{name: row and [row[key] for key in ("least_det_F", "t", "J_x", "J_y")]            # det F, its time and place
+               for name, row in (("least_det_F", least), ("first_inverted", inverted))}}
+
+
+def main():
+    options = arguments()
+    ng.SetNumThreads(1)
+    start = time.process_time()
+    pair = (Pair if options.contact == "two-sided" else PairOfNGSolve)(options)
+    ready = time.process_time()
+    rows, forces, end = march(pair)
+    if options.history:
+        table = np.array([list(row.values()) for row in rows])
+        np.savetxt(options.history, table, delimiter=",", header=",".join(rows[0]), comments="", fmt="%.10g")
+    print(json.dumps({"program": "ngsolve", "version": metadata.version("ngsolve"),
+                      **{name: getattr(options, name) for name in ("lower", "contact", "law", "nu", "penalty", "refine")},
+                      "dofs": pair.space.ndof, "dt": pair.dt, "steps": len(forces), **summary(pair, rows, forces, end),
+                      "setup_cpu_seconds": round(ready - start, 2), "cpu_seconds": round(time.process_time() - ready, 2)}))
+    if end != "over":
+        raise SystemExit(f"no answer: {end} at t = {pair.t:g} s")
+
+
+if __name__ == "__main__":
+    main()
