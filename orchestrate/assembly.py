@@ -20,7 +20,6 @@ from .mesh import FREE, GROWTH
 from .multibody import CONTACT, OWN, Multibody, Pair
 from .outlines import Loop, Outline
 from .parameters import Value
-from .tables import to_toml
 
 NEVER = 3                    # the label of what nothing reaches
 ROUND = 0.5                  # largest element size on a circle or ellipse, over its smaller semi-axis
@@ -64,10 +63,9 @@ class Assembly:
     used: dict
 
     def write(self, folder: Path) -> None:
-        """mesh.msh, scene.dat and scene.toml."""
+        """mesh.msh and scene.dat, what edp/bodies.edp reads."""
         write_mesh(self.mesh, self.regions, folder / "mesh.msh")
         (folder / "scene.dat").write_text(self.data)
-        (folder / "scene.toml").write_text(to_toml(self.used))
 
 
 def assemble(scene: Multibody, rule: Rule = describe) -> Assembly:
