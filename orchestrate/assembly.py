@@ -20,13 +20,13 @@ from .mesh import FREE, GROWTH
 from .multibody import CONTACT, OWN, Multibody, Pair
 from .outlines import Loop, Outline
 from .parameters import Value
-from .tables import to_toml
 
 NEVER = 3                    # the label of what nothing reaches
 ROUND = 0.5                  # largest element size on a circle or ellipse, over its smaller semi-axis
 FINEST = 4000                # points on a loop at most where it is asked what touches
 COARSEST = 400
 SAMPLED = 0.25               # a step between points at which an element size is asked for, over that size
+LIKE = ("radius", "young", "nu", "density", "speed", "angle", "spin")
 BETWEEN = 0.2                # from body to body in the reference configuration, over the largest extent
 
 Rule = Callable[[dict[str, Value]], dict]    # describe: what the scripts make of a disc on a plane
@@ -63,10 +63,9 @@ class Assembly:
     used: dict
 
     def write(self, folder: Path) -> None:
-        """mesh.msh, scene.dat and scene.toml."""
+        """mesh.msh and scene.dat, what edp/bodies.edp reads."""
         write_mesh(self.mesh, self.regions, folder / "mesh.msh")
         (folder / "scene.dat").write_text(self.data)
-        (folder / "scene.toml").write_text(to_toml(self.used))
 
 
 def assemble(scene: Multibody, rule: Rule = describe) -> Assembly:
@@ -79,7 +78,8 @@ def assemble(scene: Multibody, rule: Rule = describe) -> Assembly:
     meshes = [body.mesh or mesh_body(body.outline, sizes[k], _labels(scene, k)) for k, body in enumerate(scene.bodies)]
     centres = side_by_side([np.array([one.points.min(axis=0), one.points.max(axis=0)]) for one in meshes])
     together, regions = stack(meshes, centres)
-    return Assembly(together, regions, centres, data_file(scene, centres, pairs), values, used_tables(scene, sizes, values, pairs))
+    disc = ask.disc(scene.bodies, min(body.outline.half_thickness for body in scene.bodies), slides=True)
+    return Assembly(together, regions, centres, data_file(scene, disc, centres, pairs), values, used_tables(scene, sizes, values, pairs))
 
 
 # ---- what the scene leaves open
@@ -94,17 +94,21 @@ class Asker:
     rule: Rule
 
     def answer(self, bodies: list[Body], radius: float, slides: bool = False, **more: Value) -> dict:
-        """For a disc of this radius [m] and the softer body's material; straight on unless it `slides`."""
+        """Of the rule, for such a disc."""
+        return self.rule(self.disc(bodies, radius, slides) | more)
+
+    def disc(self, bodies: list[Body], radius: float, slides: bool) -> dict[str, Value]:
+        """A disc of this radius [m] and the softer body's material; straight on unless it `slides`."""
         along, across, pressing, pulling = (max((getattr(one, name) for one in self.met), default=0.0)
                                             for name in ("closing", "sliding", "pressing", "pulling"))
         soft = min(bodies, key=lambda body: body.young)
         asked = {name: self.scene.values[name] for name in ("accuracy", "accuracy_of", "end_time")}
         asked |= {"exponent": self.scene.contact["exponent"], "young": soft.young, "nu": soft.nu, "density": soft.density,
-                  "radius": radius, "symmetry": "full", "speed": along, "gravity": pressing}
+                  "radius": radius, "symmetry": "full", "speed": along, "angle": 90.0, "spin": 0.0, "gravity": pressing}
         if slides:
             asked |= {"speed": math.hypot(along, across), "angle": math.degrees(math.atan2(along, across)),
                       "spin": max(abs(body.spin) for body in bodies), "body_force_x": pulling}
-        return self.rule(asked | more)
+        return asked
 
 
 def contact_values(bodies: list[Body], contact: dict[str, Value], ask: Asker, path: str) -> dict[str, Value]:
@@ -126,8 +130,7 @@ def pair_values(pair: Pair, ask: Asker, values: dict[str, Value]) -> dict[str, V
     """All that a pair may have of its own: what it does not say is as settled for the scene, and open again where it depends on what
     the pair says."""
     bodies = [ask.scene.bodies[k] for k in (pair.first, pair.second) if k >= 0]
-    open_again = {"friction_dynamic", *(["penalty"] if "exponent" in pair.values else [])}
-    inherited = {name: (ask.scene.contact if name in open_again else values)[name] for name in OWN}
+    inherited = {name: values[name] for name in CONTACT} | {"friction_dynamic": ask.scene.contact["friction_dynamic"]}
     own = contact_values(bodies, inherited | pair.values, ask, pair.path)
     return {name: own[name] for name in OWN}
 
@@ -320,17 +323,18 @@ def write_mesh(together: mesh.Mesh, regions: np.ndarray, path: Path) -> None:
 
 # ---- scene.dat
 
-def data_file(scene: Multibody, centres: np.ndarray, pairs: list[dict[str, Value]]) -> str:
+def data_file(scene: Multibody, disc: dict[str, Value], centres: np.ndarray, pairs: list[dict[str, Value]]) -> str:
     """The text of scene.dat, words and numbers (SI, radians):
         ffimpact-bodies 1
+        disc radius young nu density speed angle spin                                                   that the rules stand for
         bodies N       name law young nu density  centreX centreY  placeX placeY angle  vx vy spin     a line a body
         circles C      body x y radius                                                                  in the mesh
         obstacles M    kind count p1 ... pcount vx vy
-        pairs K        a b penalty exponent friction_static friction_dynamic slip_velocity              a, b: body, or -1 - obstacle
-    centre: of the area in the mesh; place: where it is at the start."""
+        pairs K        a b penalty friction_static friction_dynamic                                     a, b: body, or -1 - obstacle
+    centre: of the area in the mesh; place: where it is at the start; the angle of the disc in degrees."""
     circles = [(k, *(centre + loop.centre), loop.radius) for k, (body, centre) in enumerate(zip(scene.bodies, centres))
                for loop in body.outline.loops if loop.radius]
-    lines = [("ffimpact-bodies", 1), ("bodies", len(scene.bodies))]
+    lines = [("ffimpact-bodies", 1), ("disc", *(float(disc[name]) for name in LIKE)), ("bodies", len(scene.bodies))]
     lines += [(body.name, body.law, body.young, body.nu, body.density, *centre, *body.position, body.angle, *body.velocity, body.spin)
               for body, centre in zip(scene.bodies, centres)]
     lines += [("circles", len(circles)), *circles, ("obstacles", len(scene.obstacles))]

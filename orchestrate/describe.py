@@ -9,14 +9,16 @@ from .failure import BadInput, NotInstalled
 from .places import ROOT
 
 
-def describe(values: dict | None = None) -> dict:
-    """The answer of edp/describe.edp to the parameters in `values`: scripts, parameters (rows of the table), columns (of
-    history.csv), summary (the numbers of summary.json), and of the scene `used` (every parameter as used, SI units), half (is
-    half the body enough?), touch_arc [rad], accuracy_made.
+def describe(values: dict | None = None, script: str = "disc-plane") -> dict:
+    """The answer of edp/describe.edp to the parameters in `values` of a scene of edp/<script>.edp: scripts, parameters (rows of the
+    table), columns (of history.csv), summary (the numbers of summary.json), body_columns and body_summary (of each of several
+    bodies), and of the scene bodies (how many), `used` (every parameter as used, SI units), half (is half the body enough?),
+    touch_arc [rad], accuracy_made.
 
     BadInput where the script refuses the values; NotInstalled without FreeFem++.
     """
-    return json.loads(_ask(tuple(text for name, value in (values or {}).items() for text in (f"-{name}", str(value)))))
+    flags = {"script": script} | (values or {})
+    return json.loads(_ask(tuple(text for name, value in flags.items() for text in (f"-{name}", str(value)))))
 
 
 @cache

@@ -16,6 +16,7 @@ from pathlib import Path
 
 from .failure import Failure
 from .parameters import Value
+from .results import suffixes
 
 COARSER = math.sqrt(2)
 MOST = 2                    # refinements: elements and steps are then half as large as at first
@@ -32,21 +33,24 @@ SCATTERS = "thresholded_contact_time"
 KNOWN = {SCATTERS: 0.0025}  # no mesh and no step that were tried know it better than that: said, but no reason for a finer run
 OF_ITSELF = "friction_work of itself"   # accuracy_of = friction_work
 
+Scaled = Callable[[Mapping, Mapping, float, bool], dict[str, Value]]
 Solve = Callable[[dict[str, Value], Path], None]   # runs the scene with these values in a folder; Failure where it fails
 
 
-def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solve, read: Callable) -> dict:
+def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solve, read: Callable, scaled: Scaled | None = None) -> dict:
     """What joins the summary of the run in `stage`, made from the scene `values`: estimated_error (by answer, see difference(); None if
     it could not be estimated), estimate_cpu_seconds, refinements, and the sentences `warnings`.
 
     Where sizes and steps follow from the accuracy and the estimate is above it, finer runs take the run's place in `stage`.
-    `read` gives (summary, scene as used, scale of speeds [m/s]) of a folder.
+    `read` gives (summary, scene as used, scale of speeds [m/s]) of a folder, `scaled` the entries of the scene with larger or smaller
+    elements and steps (left out: other).
     """
+    scaled = scaled or other
     coarser, finer = stage / "coarser", stage / "finer"
     summary, used, speed = read(stage)
     asked, seconds, refinements, estimated, before, sentences = values["accuracy"], 0.0, 0, None, math.inf, []
     try:
-        solve(other(values, used, COARSER, own_mesh), coarser)
+        solve(scaled(values, used, COARSER, own_mesh), coarser)
     except Failure as failure:
         if failure.code not in NO_ANSWER:
             raise
@@ -57,7 +61,7 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
         if all(coarse.get(name) == summary.get(name) is not None for name in ("dofs", "steps")):
             sentences = ["the error is not estimated: steps 1.4 times larger are too large for this scene, a second run took the same ones: ask for a smaller accuracy"]
             break
-        estimated = errors(difference(summary, coarse, speed, used["radius"]))
+        estimated = errors(difference(summary, coarse, speed, used.get("radius")))
         above = [name for name in wanted(values["accuracy_of"]) if estimated[name] > asked]
         scatters, before = above == [SCATTERS] and estimated[SCATTERS] > before / 2, estimated[SCATTERS]
         estimated |= {name: max(least, estimated[name]) for name, least in KNOWN.items() if estimated[name] > 0}
@@ -66,7 +70,7 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
         if not above or scatters or fixed or refinements == MOST or summary.get("ellipticity_lost_time") is not None:
             break
         try:
-            solve(other(values, used, 1 / COARSER, own_mesh) | {"fields": values["fields"]}, finer)
+            solve(scaled(values, used, 1 / COARSER, own_mesh) | {"fields": values["fields"]}, finer)
         except Failure as failure:
             if failure.code not in NO_ANSWER:
                 raise
@@ -106,9 +110,9 @@ def other(values: Mapping[str, Value], used: Mapping[str, Value], factor: float,
     return dict(values) | kept | sizes | {"accuracy": min(LARGEST, factor**2 * used["accuracy"]), "fields": 0}
 
 
-def difference(fine: Mapping, coarse: Mapping, speed: float, radius: float) -> dict[str, float]:
+def difference(fine: Mapping, coarse: Mapping, speed: float, radius: float | None) -> dict[str, float]:
     """How far the answers of two summaries differ, each over its scale: impulse, times and force over themselves, velocities and
-    spin over `speed` [m/s] (spin times `radius` [m]), energies and friction work over the largest energy, where the summary has it,
+    spin over `speed` [m/s] (spin times `radius` [m]; of several bodies the largest, and spin times its reach), energies and friction work over the largest energy, where the summary has it,
     else over that at the start."""
     def value(summary: Mapping, name: str) -> float:
         found = summary.get(name)
@@ -118,8 +122,9 @@ def difference(fine: Mapping, coarse: Mapping, speed: float, radius: float) -> d
         return abs(value(fine, name) - value(coarse, name)) / abs(scale) if scale else 0.0
 
     energy = value(fine, "largest_energy") or value(fine, "energy_initial") or value(fine, "energy_final")
-    found = {"impulse": apart("impulse", value(fine, "impulse")), "rebound": math.hypot(apart("rebound_vx", speed), apart("rebound_vy", speed)),
-             "rebound_spin": apart("spin", speed / radius), "energy": max(apart(name, energy) for name in ("energy_final", "vibration_energy")),
+    rebound = max(math.hypot(apart(f"rebound_vx{of}", speed), apart(f"rebound_vy{of}", speed)) for of in suffixes(fine))
+    rim = max(apart(f"spin{of}", speed / (value(fine, f"reach{of}") or radius)) for of in suffixes(fine))
+    found = {"impulse": apart("impulse", value(fine, "impulse")), "rebound": rebound, "rebound_spin": rim, "energy": max(apart(name, energy) for name in ("energy_final", "vibration_energy")),
              "friction_work": apart("friction_work", energy)}
     for name in ("thresholded_contact_time", "contact_time", "peak_force"):
         found[name] = apart(name, value(fine, name))

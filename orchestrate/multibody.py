@@ -4,15 +4,16 @@
     young = 7e6                  # law, young, nu, density, mesh_size, contact_mesh_size: of the bodies that say nothing else
     gravity = 9.81               # [m/s2], along -y; beside it the parameters of a run: end_time, dt, accuracy, fields ...
     [[body]]                     # see bodies.py
-    [[obstacle]]                 # see obstacles.py; with penalty, exponent, friction_static, friction_dynamic, slip_velocity of its own
-    [contact]                    # penalty, exponent, friction_static, friction_dynamic, slip_velocity, regularization,
-    pairing = "closest-point"    # friction_transition, pairing
+    [[obstacle]]                 # see obstacles.py; with penalty, friction_static, friction_dynamic of its own
+    [contact]                    # penalty, exponent, friction_static, friction_dynamic, slip_velocity, regularization, friction_transition
+    penalty = "auto"
     [[contact.pair]]             # what differs between two of them
     bodies = ["disc", "floor"]
     friction_static = 0.3
 """
 
 import copy
+import hashlib
 import itertools
 import re
 import tomllib
@@ -25,17 +26,17 @@ from . import bodies, obstacles, parameters, scene
 from .bodies import MATERIAL, SIZES, Body
 from .failure import BadInput
 from .obstacles import Obstacle
-from .parameters import Parameter, Value
+from .estimate import LARGEST
+from .parameters import Value
 from .outlines import Outline
-from .tables import SHORTEST, Table, listed
+from .tables import SHORTEST, Table, listed, to_toml
 
-SCENES = scene.SCENES / "multibody"
+SCENES = scene.SCENES
+SCRIPT = "bodies"            # edp/bodies.edp
 RUN = ("gravity", "body_force_x", "body_force_y", "degree", "integrator", "dt", "accuracy", "accuracy_of", "tolerance", "breakdown",
        "chatter", "end_time", "fields", "checkpoint_every", "without")
-OWN = ("penalty", "exponent", "friction_static", "friction_dynamic", "slip_velocity")      # a pair may have its own
-SCRIPT = Parameter("script", "word", "bodies", "-", "the FreeFEM script", words=("bodies",))
-PAIRING = Parameter("pairing", "word", "closest-point", "-", "how two bodies see each other", words=("closest-point", "pairwise"))
-CONTACT = (*OWN, "regularization", "friction_transition", "pairing")
+OWN = ("penalty", "friction_static", "friction_dynamic")                                  # a pair may have its own
+CONTACT = (*OWN, "exponent", "slip_velocity", "regularization", "friction_transition")
 TOUCHING = 1e-9              # of a body's thickness: an overlap up to it is round-off
 
 
@@ -70,22 +71,68 @@ class Multibody:
         changed = self.given
         for name, value in given.items():
             changed = set_entry(changed, name, value)
-        return read(changed, self.folder, self.name)
+        return read(changed, self.folder, self.name) if given else self
+
+    def check(self, given: dict[str, Value]) -> dict[str, Value]:
+        """The given entries of such a scene, by dotted names, text as TOML reads it; BadInput where there is no such place."""
+        for name, value in given.items():
+            set_entry(self.given, name, value)
+        return {name: toml_value(value) for name, value in given.items()}
+
+    @property
+    def asked(self) -> dict:
+        """What decides the answer: two scenes that agree in it are one run."""
+        files = [str(given["file"]) for given in self.given["body"] if "file" in given]
+        meshes = {name: hashlib.sha256((self.folder / name).read_bytes()).hexdigest() for name in files}
+        return parameters.decisive({name: value for name, value in self.given.items() if name != "title"}) | {"files": meshes}
+
+    @property
+    def numbers(self) -> list[str]:
+        """The numbers of summary.json."""
+        return scene.numbers(len(self.bodies))
+
+    @property
+    def meshed(self) -> bool:
+        """Whether Python makes the mesh, with gmsh."""
+        return True
+
+    @property
+    def sizes(self) -> dict[str, float]:
+        """The largest mesh sizes that bodies give, 0 where none does."""
+        return {name: max(getattr(body, name) for body in self.bodies) for name in SIZES}
+
+    def description(self, foreign: bytes | None = None) -> dict:
+        """Nothing more than was read; BadInput where a mesh file is given beside the scene."""
+        if foreign is not None:
+            raise BadInput("mesh: is of one body (accepted: in a table [[body]], shape = \"mesh\" with file)")
+        return {}
+
+    def prepare(self, where: Path, foreign: bytes | None = None) -> tuple[dict[str, Value | Path], str]:
+        """The flags of a run in the folder `where`, and the text of its scene.toml. Puts into the folder what the flags name: the
+        mesh of all bodies, and what bodies.edp reads of them."""
+        from . import assembly
+        built = assembly.assemble(self)
+        built.write(where)
+        return built.values | {"mesh": where / "mesh.msh", "bodies": where / "scene.dat"}, to_toml(built.used)
+
+    def scaled(self, values: dict, used: dict, factor: float, own_mesh: bool = True) -> dict[str, Value | list]:
+        """What the scene, run as the tables `used`, is overridden by for `factor` times the elements and steps; the contact's own
+        parameters stay as they were. Meshes of files stay too."""
+        found = {f"contact.{name}": used["contact"][name] for name in ("penalty", "slip_velocity", "friction_dynamic")}
+        if used["contact"].get("pair"):
+            found["contact.pair"] = used["contact"]["pair"]
+        for k, (body, given) in enumerate(zip(self.bodies, used["body"]), 1):
+            if not body.mesh:
+                bulk = min(factor * given["mesh_size"], body.outline.half_thickness)
+                found |= {f"body.{k}.mesh_size": bulk, f"body.{k}.contact_mesh_size": min(bulk, factor * given["contact_mesh_size"])}
+        if used["dt"] > 0:
+            found["dt"] = factor * used["dt"]
+        return found | {"accuracy": min(LARGEST, factor**2 * used["accuracy"]), "fields": 0}
 
 
 def built_in() -> list[str]:
     """Names of the scenes of bodies that come with the program."""
-    return sorted(path.stem for path in SCENES.glob("*.toml"))
-
-
-def load(name: str) -> Multibody:
-    """A built-in scene, or that of a TOML file; BadInput names the file, the entry, its value and what is accepted."""
-    path = SCENES / f"{name}.toml" if name in built_in() else Path(name)
-    _, given = scene.read_toml(path, f"{name}: no such scene (built in: {', '.join(built_in())}; or the path of a TOML file)")
-    try:
-        return read(given, path.parent, path.stem)
-    except BadInput as error:
-        raise BadInput(f"{path}: {error}") if path.parent != SCENES else error from None
+    return [name for name in scene.built_in() if "body" in scene.read_toml(SCENES / f"{name}.toml", name)[1]]
 
 
 def read(given: dict, folder: Path, name: str) -> Multibody:
@@ -95,22 +142,23 @@ def read(given: dict, folder: Path, name: str) -> Multibody:
     if not all_bodies:
         raise BadInput("body: is missing (accepted: one table [[body]] or more)")
     rigid = listed(given, "obstacle")
+    for k, one in enumerate(rigid, 1):
+        _of_the_scene(f"obstacle.{k}", one)
     all_obstacles = obstacles.read([{key: value for key, value in one.items() if key not in OWN} for one in rigid])
+    script = table.text("script", SCRIPT)
+    if script != SCRIPT:
+        raise BadInput(f"script: '{script}' has no [[body]] (accepted: {SCRIPT})")
     index = _names(all_bodies, all_obstacles)
     contact_table = Table("contact", given.get("contact", {}), (*CONTACT, "pair"))
-    contact = {key: contact_table.parameter(key, _rule(key)) for key in CONTACT}
+    contact = {key: contact_table.parameter(key, parameters.table()[key]) for key in CONTACT}
     pairs = _own_of_obstacles(rigid, len(all_bodies))
     for both, pair in _exceptions(contact_table, index).items():
         pairs[both] = replace(pair, values=pairs[both].values | pair.values) if both in pairs else pair
     values = {key: table.parameter(key, parameters.table()[key]) for key in RUN}
-    found = Multibody(name, table.text("title", name), table.parameter("script", SCRIPT), given, folder, all_bodies, all_obstacles, contact,
+    found = Multibody(name, table.text("title", name), SCRIPT, given, folder, all_bodies, all_obstacles, contact,
                       [pairs[both] for both in sorted(pairs)], values)
     _apart(found)
     return found
-
-
-def _rule(key: str) -> Parameter:
-    return parameters.table().get(key, PAIRING)
 
 
 def _names(all_bodies: list[Body], all_obstacles: list[Obstacle]) -> dict[str, int]:
@@ -131,7 +179,7 @@ def _own_of_obstacles(rigid: list[dict], bodies_count: int) -> dict[tuple[int, i
     pairs = {}
     for k, given in enumerate(rigid):
         mine = Table(f"obstacle.{k + 1}", {key: given[key] for key in OWN if key in given}, OWN)
-        own = {key: mine.parameter(key, _rule(key)) for key in mine.given}
+        own = {key: mine.parameter(key, parameters.table()[key]) for key in mine.given}
         pairs |= {(body, -1 - k): Pair(body, -1 - k, own, mine.path) for body in range(bodies_count) if own}
     return pairs
 
@@ -141,15 +189,20 @@ def _exceptions(contact: Table, index: dict[str, int]) -> dict[tuple[int, int], 
     pairs = {}
     for k, given in enumerate(listed({"contact.pair": contact.given.get("pair", [])}, "contact.pair"), 1):
         path = f"contact.pair.{k}"
-        for key in set(CONTACT) - set(OWN):
-            if key in given:
-                raise BadInput(f"{path}.{key}: '{given[key]}' holds for the whole scene (accepted: in [contact]; here {', '.join(OWN)})")
+        _of_the_scene(path, given)
         table = Table(path, given, ("bodies", *OWN))
         both = _partners(path, table.given.get("bodies"), index)
         if both in pairs:
             raise BadInput(f"{path}.bodies: '{table.given['bodies']}' has a table already (accepted: one a pair)")
-        pairs[both] = Pair(*both, {key: table.parameter(key, _rule(key)) for key in OWN if key in table}, path)
+        pairs[both] = Pair(*both, {key: table.parameter(key, parameters.table()[key]) for key in OWN if key in table}, path)
     return pairs
+
+
+def _of_the_scene(path: str, given: dict) -> None:
+    """BadInput where a table has of its own what the contact of a scene has one of."""
+    for key in CONTACT:
+        if key in given and key not in OWN:
+            raise BadInput(f"{path}.{key}: '{given[key]}' holds for the whole scene (accepted: in [contact]; here {', '.join(OWN)})")
 
 
 def _partners(path: str, given, index: dict[str, int]) -> tuple[int, int]:
@@ -221,7 +274,7 @@ def set_entry(given: dict, name: str, value: Value | list) -> dict:
         place = place[key]
         if not isinstance(place, dict | list):
             raise BadInput(f"{name}: {path} is '{place}' and has no entry {following}")
-    place[_key(place, last, name, name)] = _toml_value(value)
+    place[_key(place, last, name, name)] = toml_value(value)
     return changed
 
 
@@ -238,7 +291,7 @@ def _key(place: dict | list, step: str, path: str, name: str) -> str | int:
     return int(step) - 1
 
 
-def _toml_value(value):
+def toml_value(value):
     """Text as TOML reads it, where it does; numbers and arrays of numpy as plain ones."""
     if not isinstance(value, str):
         return value.tolist() if isinstance(value, np.generic | np.ndarray) else value

@@ -19,7 +19,7 @@ _NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]+)?|\.[0-9]+)([eE][+-]?[0-9]+)?")
 @dataclass(frozen=True)
 class Parameter:
     """One row of the table. `kind` is real, int, word or path; `low`/`high` bound numbers, `words` lists the words that are
-    accepted, beside numbers too (auto)."""
+    accepted, beside numbers too (auto); `scripts` those that take it."""
 
     name: str
     kind: str
@@ -29,6 +29,7 @@ class Parameter:
     low: float = 0.0
     high: float = 0.0
     words: tuple[str, ...] = ()
+    scripts: tuple[str, ...] = ()
 
     @property
     def accepted(self) -> str:
@@ -62,15 +63,22 @@ def table() -> dict[str, Parameter]:
     for row in describe()["parameters"]:
         words = row.pop("words", [])
         row["words"] = tuple(words.split("|") if isinstance(words, str) else words)
+        row["scripts"] = tuple(row["scripts"].split("|"))
         if row["kind"] == "real":
             row |= {name: float(row[name]) for name in ("default", "low", "high") if not isinstance(row[name], str)}
         rows[row["name"]] = Parameter(**row)
     return rows
 
 
-def names() -> list[str]:
-    """The parameters that a scene can set (files and folders are not part of a scene)."""
-    return [p.name for p in table().values() if p.kind != "path"]
+def names(script: str = "") -> list[str]:
+    """The parameters that a scene can set (files and folders are not part of a scene): of one script, or of all."""
+    return [p.name for p in table().values() if p.kind != "path" and (not script or script in p.scripts)]
+
+
+def taken(name: str, script: str) -> None:
+    """BadInput where a script does not take a parameter of the table."""
+    if script not in table()[name].scripts:
+        raise BadInput(f"{name}: {script} takes no such parameter (accepted: in {'|'.join(table()[name].scripts)})")
 
 
 def decisive(values: dict[str, Value]) -> dict[str, Value]:
@@ -78,19 +86,22 @@ def decisive(values: dict[str, Value]) -> dict[str, Value]:
     return {name: value for name, value in values.items() if name not in NOT_DECISIVE}
 
 
-def check(given: dict[str, Value]) -> dict[str, Value]:
-    """The given parameters, checked and converted; BadInput names the first one that is unknown or not accepted."""
+def check(given: dict[str, Value], script: str = "") -> dict[str, Value]:
+    """The given parameters (of one script, or of all), checked and converted; BadInput names the first one that is unknown or not
+    accepted."""
     for name in given:
+        if name in names() and script:
+            taken(name, script)
         if name not in names():
             close = difflib.get_close_matches(name, names(), n=2)
             hint = f"; did you mean {' or '.join(close)}?" if close else ""
-            raise BadInput(f"{name}: no such parameter{hint} (accepted: {', '.join(names())})")
+            raise BadInput(f"{name}: no such parameter{hint} (accepted: {', '.join(names(script))})")
     return {name: table()[name].check(value) for name, value in given.items()}
 
 
-def defaults() -> dict[str, Value]:
-    """Every parameter of a scene at its default."""
-    return {name: table()[name].default for name in names()}
+def defaults(script: str = "disc-plane") -> dict[str, Value]:
+    """Every parameter of a scene of a script at its default."""
+    return {name: table()[name].default for name in names(script)}
 
 
 def whole(text: str) -> int:

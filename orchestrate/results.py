@@ -2,6 +2,7 @@
 
 import json
 import tomllib
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -52,11 +53,18 @@ def read_scene(folder: Path) -> dict[str, Value]:
 
 
 def read_answers(folder: Path) -> tuple[dict, dict[str, Value], float]:
-    """Of a finished run the summary, with largest_energy of its history [J/m], the scene as used, and the largest speed of the centre of
+    """Of a finished run the summary, with largest_energy of its history [J/m], the scene as used, and the largest speed of a centre of
     mass [m/s]: what energies and velocities are measured by."""
-    history = read_history(folder)
+    history, summary = read_history(folder), read_summary(folder)
     energy = float((history["kinetic"] + history["elastic"] + history["contact"]).max())
-    return read_summary(folder) | {"largest_energy": energy}, read_scene(folder), float(np.hypot(history["vx"], history["vy"]).max())
+    speed = max(float(np.hypot(history[f"vx{of}"], history[f"vy{of}"]).max()) for of in suffixes(history))
+    return summary | {"largest_energy": energy}, read_scene(folder), speed
+
+
+def suffixes(columns: Iterable[str]) -> list[str]:
+    """What stands behind the names of columns (of history.csv) or numbers (of summary.json) that are of one body: _1, _2 ..., or
+    nothing, where there is one body only."""
+    return [f"_{b}" for b in range(1, 1 + sum(name.startswith("spin_") for name in columns))] or [""]
 
 
 def read_summary(folder: Path) -> dict:

@@ -10,7 +10,6 @@ import math
 import os
 import signal
 import subprocess
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
@@ -18,18 +17,20 @@ from pathlib import Path
 import numpy as np
 
 from . import estimate as estimates, freefem, mesh
-from .describe import describe
 from .failure import BadInput, Failure, TooLong, Unreadable
 from .folder import checkpoints, clear, failed_beside, finished_in, replace, result_folder, staging, unfinished
-from .parameters import ROOT, Value, decisive
+from .multibody import Multibody
+from .parameters import ROOT, Value
 from .places import shown
 from .results import RunResult, read_answers, read_history, read_json, read_scene, read_summary, write_json
 from .scene import Scene
+from .tables import to_toml
 
+DECISIVE = ("approach", "assembly", "bodies", "estimate", "gmsh_file", "mesh", "multibody", "obstacles", "outlines", "polyline", "tables")
 FAILURES = {10: "bad input", 11: "step failed", 12: "material broke down", 13: "not installed", 14: "unreadable"}
 
 
-def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | None = None, *,
+def run(scene: Scene | Multibody, overrides: dict[str, Value] | None = None, out: Path | None = None, *,
         mesh_file: Path | None = None, force: bool = False, progress: bool = False, estimate: bool = True) -> RunResult:
     """Runs `scene` with some parameters overridden in the folder `out` (default results/<scene>), or reuses it.
 
@@ -42,7 +43,7 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | Non
     if mesh_file:
         mesh_file = _mesh_path(mesh_file)
     foreign = mesh.load(mesh_file) if mesh_file else None
-    _describe(scene.values, foreign)   # BadInput before anything is made
+    scene.description(foreign)   # BadInput before anything is made
     finished = finished_in(folder, force)
     if not force and (there := reusable(scene, folder, mesh_file, estimate)):
         return there
@@ -52,20 +53,20 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | Non
         if not force and (there := reusable(scene, folder, mesh_file, estimate)):   # another run has finished it meanwhile
             return there
         provenance = {"script": scene.script, "code": code_hash(), "freefem": program.version,
-                      "gmsh": None if mesh_file else mesh.gmsh_version()}
-        asked_for = {"asked": decisive(scene.values), "estimate": estimate}
+                      "gmsh": _gmsh(scene, mesh_file)}
+        asked_for = {"asked": scene.asked, "estimate": estimate}
         asked = asked_for | provenance | {"mesh": _sha256(mesh_file) if mesh_file else None}
         if force or unfinished(stage) != asked:
             clear(stage)
             write_json(stage / "checkpoint.json", asked)
 
-        def solve(values: dict[str, Value], where: Path) -> None:
+        def solve(given: dict[str, Value], where: Path) -> None:
             with _progress_line(scene.name) if progress else nullcontext() as show:
-                _solve(program, scene.script, values, foreign, where, lock, show)
+                _solve(program, scene.override(given), foreign, where, lock, show)
 
         try:
-            solve(scene.values, stage)
-            found = estimates.settle(stage, scene.values, foreign is None, solve, read_answers) if estimate else {}
+            solve({}, stage)
+            found = estimates.settle(stage, scene.values | scene.sizes, foreign is None, solve, read_answers, scene.scaled) if estimate else {}
         except Failure as failure:
             if checkpoints(stage):   # a script that comes to its end, good or bad, removes it
                 failure.folder = stage
@@ -75,28 +76,29 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | Non
                 _say_where(stage, failure.folder)
                 replace(stage, failure.folder, _same_scene(failure.folder, scene, mesh_file))
             raise
-        provenance |= asked_for | {"git": _git(), "mesh": _sha256(mesh_file or stage / "mesh.msh")}
+        provenance |= asked_for | {"git": _git(), "mesh": _sha256(mesh_file or stage / "mesh.msh") if scene.meshed else None}
         _say_where(stage, folder)
         _finish(stage, found, provenance)
         replace(stage, folder, _same_scene(folder, scene, mesh_file))
     return RunResult(folder, read_summary(folder), reused=False)
 
 
-def _solve(program: freefem.FreeFem, script: str, values: dict[str, Value], foreign: bytes | None, where: Path, lock: int,
+def _solve(program: freefem.FreeFem, scene: Scene | Multibody, foreign: bytes | None, where: Path, lock: int,
            show: freefem.Progress | None) -> None:
-    """Runs the script with `values` in the folder `where`: from its checkpoint where there is one, not again where it is finished."""
+    """Runs the scene in the folder `where`: from its checkpoint where there is one, not again where it is finished."""
     if (where / "summary.json").exists():
         return
     goes_on = (where / "checkpoint").exists()
     if not goes_on:
         where.mkdir(exist_ok=True)
         if not (where / "checkpoint.json").exists():   # what makes the folder ours
-            write_json(where / "checkpoint.json", values)
-        _write_mesh(where / "mesh.msh", _describe(values, foreign), foreign)
-    flags = [text for name, value in values.items() for text in (f"-{name}", str(value))]
-    flags += ["-mesh", str(where / "mesh.msh"), "-out", str(where)]
-    flags += ["-restart", str(where / "checkpoint")] if goes_on else []
-    exit_code, said = freefem.run(program, script, flags, where / "log.txt", show, lock)
+            write_json(where / "checkpoint.json", scene.asked)
+    given, scene_toml = scene.prepare(where, foreign)
+    given = given | {"out": where} | ({"restart": where / "checkpoint"} if goes_on else {})
+    flags = [text for name, value in given.items() for text in (f"-{name}", str(value))]
+    exit_code, said = freefem.run(program, scene.script, flags, where / "log.txt", show, lock)
+    if scene_toml and (where / "scene.toml").exists():
+        (where / "scene.toml").write_text(scene_toml)
     _check(where, exit_code, said)
 
 
@@ -150,11 +152,11 @@ def _finish(stage: Path, found: dict, provenance: dict) -> None:
     os.replace(stage / "summary.json.part", stage / "summary.json")
 
 
-def _keep_failed(stage: Path, failure: Failure, scene: Scene, provenance: dict) -> None:
+def _keep_failed(stage: Path, failure: Failure, scene: Scene | Multibody, provenance: dict) -> None:
     """failure.json: the one the script wrote, or what is known; never a summary.json."""
     (stage / "summary.json").unlink(missing_ok=True)
     if not (stage / "scene.toml").exists():
-        (stage / "scene.toml").write_text("".join(f"{name} = {json.dumps(value)}\n" for name, value in scene.values.items()))
+        (stage / "scene.toml").write_text(to_toml(scene.given))
     record = {"status": FAILURES.get(failure.code, "crashed"), "message": str(failure)} | read_json(stage / "failure.json")
     write_json(stage / "failure.json", record | {"exit_code": failure.code, "provenance": provenance})
 
@@ -172,7 +174,7 @@ def _progress_line(name: str) -> Iterator[freefem.Progress]:
 
 # ---- reuse
 
-def reusable(scene: Scene, folder: Path, mesh_file: Path | None = None, estimate: bool = False) -> RunResult | None:
+def reusable(scene: Scene | Multibody, folder: Path, mesh_file: Path | None = None, estimate: bool = False) -> RunResult | None:
     """The finished run in `folder` if it is of this very scene, mesh and code, with an estimate of its error where that is asked for,
     else None; Unreadable if it is not ours."""
     summary = finished_in(folder, force=False)
@@ -182,15 +184,15 @@ def reusable(scene: Scene, folder: Path, mesh_file: Path | None = None, estimate
 
 
 def code_hash() -> str:
-    """sha256 over what decides a result besides the scene: the FreeFEM scripts and the mesh generator."""
+    """sha256 over what decides a result besides the scene: the FreeFEM scripts and what makes meshes and scene.dat."""
     files = sorted(path for path in (ROOT / "edp").rglob("*") if path.suffix in (".edp", ".idp"))
     digest = hashlib.sha256()
-    for path in [*files, *(ROOT / f"orchestrate/{name}.py" for name in ("mesh", "gmsh_file", "estimate"))]:
+    for path in [*files, *(ROOT / f"orchestrate/{name}.py" for name in DECISIVE)]:
         digest.update(f"{path.relative_to(ROOT)}\n".encode() + path.read_bytes())
     return digest.hexdigest()
 
 
-def _same_scene(folder: Path, scene: Scene, mesh_file: Path | None) -> bool:
+def _same_scene(folder: Path, scene: Scene | Multibody, mesh_file: Path | None) -> bool:
     """Whether the run in `folder`, finished or failed, is one of this scene on this mesh, by whatever code."""
     name = "summary.json" if (folder / "summary.json").exists() else "failure.json"
     try:
@@ -198,11 +200,11 @@ def _same_scene(folder: Path, scene: Scene, mesh_file: Path | None) -> bool:
         if mesh_file:
             same_mesh = provenance["mesh"] == _sha256(mesh_file)
         else:
-            same_mesh = provenance["gmsh"] == mesh.gmsh_version()
+            same_mesh = provenance["gmsh"] == _gmsh(scene, None)
         same_script, asked = provenance["script"] == scene.script, provenance["asked"]
     except (FileNotFoundError, ValueError, KeyError, TypeError):   # it does not say
         return False
-    return same_mesh and same_script and asked == decisive(scene.values)
+    return same_mesh and same_script and asked == scene.asked
 
 
 # ---- the mesh
@@ -217,23 +219,9 @@ def _mesh_path(given: Path) -> Path:
     return path
 
 
-def _describe(values: dict[str, Value], foreign: bytes | None) -> dict:
-    """What the scripts say of the scene, on the mesh `foreign` (FreeFEM's .msh) where there is one; BadInput where they refuse it."""
-    if foreign is None:
-        return describe(values)
-    with tempfile.NamedTemporaryFile(suffix=".msh") as file:
-        file.write(foreign)
-        file.flush()
-        return describe(values | {"mesh": file.name})
-
-
-def _write_mesh(path: Path, description: dict, foreign: bytes | None) -> None:
-    """The mesh of a run: `foreign`, or our own, of the sizes and the part of the body that the description says."""
-    if foreign is not None:
-        path.write_bytes(foreign)
-    else:
-        sizes = (description["used"][name] for name in ("radius", "mesh_size", "contact_mesh_size"))
-        mesh.write(mesh.disc(*sizes, description["half"], description["touch_arc"]), path)
+def _gmsh(scene: Scene | Multibody, mesh_file: Path | None) -> str | None:
+    """The version of the gmsh that makes the mesh, None where a file or the script itself brings it."""
+    return mesh.gmsh_version() if scene.meshed and not mesh_file else None
 
 
 # ---- provenance

@@ -1,10 +1,11 @@
-"""Scenes as data: a TOML file names the FreeFEM script and the parameters that differ from their defaults."""
+"""Scenes as data: a TOML file names the FreeFEM script and the parameters that differ from their defaults, or lists bodies (multibody.py)."""
 
+import tempfile
 import tomllib
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from . import parameters
+from . import estimate, mesh, parameters
 from .describe import describe
 from .failure import BadInput
 
@@ -13,7 +14,7 @@ SCENES = Path(__file__).resolve().parent / "scenes"
 
 @dataclass(frozen=True)
 class Scene:
-    """`script` is a file edp/<script>.edp; `values` holds EVERY parameter of the table, in SI units."""
+    """`script` is a file edp/<script>.edp; `values` holds EVERY parameter that it takes, in SI units."""
 
     name: str
     title: str
@@ -22,7 +23,70 @@ class Scene:
 
     def override(self, given: dict[str, parameters.Value]) -> "Scene":
         """The same scene with some parameters set (text or values); BadInput where one is not accepted."""
-        return replace(self, values=self.values | parameters.check(given))
+        return replace(self, values=self.values | self.check(given))
+
+    def check(self, given: dict[str, parameters.Value]) -> dict[str, parameters.Value]:
+        """The given entries of such a scene, checked one by one and converted; BadInput."""
+        return parameters.check(given, self.script)
+
+    @property
+    def asked(self) -> dict:
+        """What decides the answer: two scenes that agree in it are one run."""
+        return parameters.decisive(self.values)
+
+    @property
+    def given(self) -> dict:
+        """The scene as a file says it."""
+        return {"script": self.script} | self.values
+
+    @property
+    def sizes(self) -> dict[str, float]:
+        """Mesh sizes that are not in `values`: none."""
+        return {}
+
+    @property
+    def scaled(self) -> estimate.Scaled:
+        """What it is overridden by for larger or smaller elements and steps."""
+        return estimate.other
+
+    @property
+    def numbers(self) -> list[str]:
+        """The numbers of summary.json."""
+        return numbers(describe(script=self.script)["bodies"])
+
+    @property
+    def meshed(self) -> bool:
+        """Whether Python makes the mesh, with gmsh; else the script does."""
+        return self.script in parameters.table()["mesh"].scripts
+
+    def description(self, foreign: bytes | None = None) -> dict:
+        """What the scripts say of the scene, on the mesh `foreign` (FreeFEM's .msh) where there is one; BadInput where they refuse it."""
+        if foreign is None:
+            return describe(self.values, self.script)
+        parameters.taken("mesh", self.script)
+        with tempfile.NamedTemporaryFile(suffix=".msh") as file:
+            file.write(foreign)
+            file.flush()
+            return describe(self.values | {"mesh": file.name}, self.script)
+
+    def prepare(self, where: Path, foreign: bytes | None = None) -> tuple[dict[str, parameters.Value | Path], str]:
+        """The flags of a run in the folder `where`, and the text of its scene.toml, "" where the script writes it. Puts into the folder
+        what the flags name: the mesh, `foreign` or our own, of the sizes and the part of the body that the description says."""
+        said, file = self.description(foreign), where / "mesh.msh"
+        if not self.meshed:
+            return self.values, ""
+        if foreign is not None:
+            file.write_bytes(foreign)
+        else:
+            sizes = (said["used"][name] for name in ("radius", "mesh_size", "contact_mesh_size"))
+            mesh.write(mesh.disc(*sizes, said["half"], said["touch_arc"]), file)
+        return self.values | {"mesh": file}, ""
+
+
+def numbers(bodies: int) -> list[str]:
+    """The numbers of summary.json of a scene of so many bodies; those of each of several have the suffixes _1, _2 ..."""
+    said = describe()
+    return said["summary"] + [f"{name}_{b}" for b in range(1, bodies + 1) for name in said["body_summary"] if bodies > 1]
 
 
 def built_in() -> list[str]:
@@ -45,20 +109,28 @@ def read_toml(path: Path, missing: str) -> tuple[str, dict]:
         raise BadInput(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
 
 
-def load(name: str) -> Scene:
-    """A built-in scene, or the scene of a TOML file: title, script and any parameters, all at top level.
+def load(name: str) -> "Scene | multibody.Multibody":
+    """A built-in scene, or the scene of a TOML file: title, script and any parameters, all at top level; or one with bodies.
 
     The scene.toml of a result folder is such a file too. BadInput when there is no such scene, on a TOML error
     and on an unknown key.
     """
     path = SCENES / f"{name}.toml" if name in built_in() else Path(name)
     _, given = read_toml(path, f"{name}: no such scene (built in: {', '.join(built_in())}; or the path of a TOML file)")
-    script, title = given.pop("script", "disc-plane"), given.pop("title", path.stem)
-    scripts = describe()["scripts"]
-    if script not in scripts:
-        raise BadInput(f"{path}: script: '{script}' is not known (accepted: {'|'.join(scripts)})")
     try:
-        values = parameters.defaults() | parameters.check(given)
+        return _read(given, path)
     except BadInput as error:
         raise BadInput(f"{path}: {error}") if path.parent != SCENES else error from None
-    return Scene(path.stem, title, script, values)
+
+
+def _read(given: dict, path: Path) -> "Scene | multibody.Multibody":
+    from . import multibody
+    if "body" in given:
+        return multibody.read(given, path.parent, path.stem)
+    script, title = given.pop("script", "disc-plane"), given.pop("title", path.stem)
+    scripts = [word for word in describe()["scripts"].split("|") if word != multibody.SCRIPT]
+    if script == multibody.SCRIPT:
+        raise BadInput(f"body: is missing, which script = '{script}' needs (accepted: one table [[body]] or more)")
+    if script not in scripts:
+        raise BadInput(f"script: '{script}' is not known (accepted: {'|'.join(scripts)})")
+    return Scene(path.stem, title, script, parameters.defaults(script) | parameters.check(given, script))

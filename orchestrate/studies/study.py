@@ -16,7 +16,7 @@ from tqdm import tqdm
 
 from .. import estimate as estimates, freefem, run, scene, stopping
 from ..failure import Busy, Failure, TooLong, Unreadable
-from ..parameters import Value, decisive
+from ..parameters import Value
 from ..results import read_json
 
 CORES = len(os.sched_getaffinity(0))
@@ -149,7 +149,7 @@ def _failed_before(wanted: scene.Scene, folder: Path) -> dict | None:
     for place in (folder, folder.with_name(folder.name + ".failed")):
         record = read_json(place / "failure.json")
         if record.get("exit_code") in (11, 12) and (record.get("provenance") or {}).get("code") == run.code_hash():
-            if record["provenance"].get("asked") == decisive(wanted.values):
+            if record["provenance"].get("asked") == wanted.asked:
                 return record
     return None
 
