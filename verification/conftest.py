@@ -1,6 +1,7 @@
 """The runs of the verification cases, each set of flags once."""
 
 from functools import cache
+from itertools import count
 
 import pytest
 
@@ -20,3 +21,16 @@ def disc(tmp_path_factory):
     def go(**given) -> runs.Outcome:
         return runs.disc(tmp_path_factory.mktemp("disc"), **given)
     return go
+
+
+@pytest.fixture
+def march(tmp_path):
+    """march(tables, name=value, ...): edp/bodies.edp run for the scene in these tables."""
+    numbers = count()
+    return lambda tables, **given: runs.bodies(tmp_path / str(next(numbers)), tables, **given)
+
+
+@pytest.fixture
+def steps(tmp_path):
+    """steps(tables): what bodies-steps.edp prints of the scene in these tables."""
+    return lambda tables: runs.measure("bodies-steps", **runs.prepared(tmp_path, tables))

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from orchestrate import freefem, results
+from orchestrate import assembly, freefem, multibody, parameters, results
 from orchestrate.failure import Failure
 from orchestrate.parameters import ROOT, Value
 
@@ -37,6 +37,22 @@ def disc(folder: Path, **given: Value | Path) -> Outcome:
     """edp/disc-plane.edp with these flags, run into `folder`."""
     _start("edp/disc-plane.edp", (*_flags(given), "-out", str(folder)), ROOT)
     return Outcome(results.read_summary(folder), results.read_history(folder))
+
+
+def bodies(folder: Path, tables: dict, **given: Value | Path) -> Outcome:
+    """edp/bodies.edp for the scene in these tables (orchestrate.multibody), with more flags, run into `folder`/run."""
+    out = folder / "run"
+    _start("edp/bodies.edp", (*_flags(prepared(folder, tables) | given), "-out", str(out)), ROOT)
+    return Outcome(results.read_summary(out), results.read_history(out))
+
+
+def prepared(folder: Path, tables: dict) -> dict[str, Value | Path]:
+    """The flags of a scene of bodies in these tables; its mesh and bodies are written into `folder`."""
+    made = assembly.assemble(multibody.read(tables, ROOT, "scene"))
+    folder.mkdir(parents=True, exist_ok=True)
+    made.write(folder)
+    flags = {name: value for name, value in made.values.items() if name in parameters.table()}
+    return flags | {"mesh": folder / "mesh.msh", "bodies": folder / "scene.dat"}
 
 
 def _flags(given: dict[str, Value | Path]) -> tuple[str, ...]:
