@@ -13,7 +13,7 @@ def test_every_step_conserves(steps, hit, degree):
     a step begins with the gaps the last one ended with. Over the hit the energy with the work of friction stays to 1e-9, momentum to 1e-12,
     angular momentum to 1e-9."""
     found = steps({"end_time": 6e-3, "dt": 1e-4, "degree": degree} | HITS[hit])
-    assert found["state"] == 0 and found["touching"] > 20 and found["depth"] > 1e-5
+    assert found["state"] == 0 and found["rejected"] < 3 and found["touching"] > 20 and found["depth"] > 1e-5
     assert found["exact"] < 1e-12 and found["begin"] < 1e-11
     assert max(found["rowForce"], found["rowMoment"], found["force"], found["moment"]) < 1e-14
     assert found["balance"] < 1e-9 and found["momentum"] < 1e-12 and found["angular"] < 1e-9
