@@ -82,7 +82,7 @@ def energies(history: dict[str, np.ndarray], bodies: dict[str, str]) -> plt.Figu
         together.plot(t, history["elastic"], color=ORANGE, linestyle=DOTS, linewidth=1.0, label="elastic")
     total, words = history["kinetic"] + history["elastic"] + history["contact"], "total"
     lines = {"contact": (history["contact"], GREY)}
-    for name, column, words_of_it, sign in (("lost to friction", "friction_work", "+ lost", 1), ("work of gravity", "external_work", "− work", -1)):
+    for name, column, words_of_it, sign in (("lost to friction", "friction_work", "+ lost", 1), ("external work", "external_work", "− work", -1)):
         if history[column].any():
             lines[name] = history[column], {"friction_work": "#d4a017", "external_work": "#888888"}[column]
             total, words = total + sign * history[column], f"{words} {words_of_it}"

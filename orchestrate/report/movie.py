@@ -130,11 +130,12 @@ class Stage:
         view = left, right, floor, top = (bodies.limits if among else limits)(motion.bodies)
         width = min(6.0, 4.8 * (right - left) / (top - floor))      # of the upper panel [inch]
         height, below = width * (top - floor) / (right - left), 1.6
-        whole = np.array([width + 2.0, height + below + 2.05])
+        heading = title(result.scene)
+        whole = np.array([width + 2.0, height + below + 1.75 + 0.15 * (1 + heading.count("\n"))])
         self.figure = plt.figure(figsize=whole)
         panel = lambda x, y, w, h: self.figure.add_axes((*np.array([x, y]) / whole, *np.array([w, h]) / whole))   # noqa: E731
         self.above, bar = panel(0.85, below + 1.3, width, height), panel(width + 1.0, below + 1.3, 0.16, height)
-        self.figure.suptitle(title(result.scene), fontsize=9, y=1 - 0.12 / whole[1])
+        self.figure.suptitle(heading, fontsize=9, y=1 - 0.12 / whole[1])
         self.view, self.rigid, self.drawn = view, bodies.obstacles_of(result.scene), []
         if among:
             self.drawn = bodies.draw_obstacles(self.above, self.rigid, view, motion.times[0])
