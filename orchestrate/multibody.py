@@ -89,7 +89,12 @@ class Multibody:
     @property
     def numbers(self) -> list[str]:
         """The numbers of summary.json."""
-        return scene.numbers(len(self.bodies))
+        return scene.of_bodies("summary", len(self.bodies))
+
+    @property
+    def columns(self) -> list[str]:
+        """The columns of history.csv."""
+        return scene.of_bodies("columns", len(self.bodies))
 
     @property
     def meshed(self) -> bool:

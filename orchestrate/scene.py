@@ -52,7 +52,12 @@ class Scene:
     @property
     def numbers(self) -> list[str]:
         """The numbers of summary.json."""
-        return numbers(describe(script=self.script)["bodies"])
+        return of_bodies("summary", describe(script=self.script)["bodies"])
+
+    @property
+    def columns(self) -> list[str]:
+        """The columns of history.csv."""
+        return of_bodies("columns", describe(script=self.script)["bodies"])
 
     @property
     def meshed(self) -> bool:
@@ -83,10 +88,11 @@ class Scene:
         return self.values | {"mesh": file}, ""
 
 
-def numbers(bodies: int) -> list[str]:
-    """The numbers of summary.json of a scene of so many bodies; those of each of several have the suffixes _1, _2 ..."""
+def of_bodies(what: str, bodies: int) -> list[str]:
+    """The columns of history.csv, or the numbers of summary.json, of a scene of so many bodies; those of each of several have the
+    suffixes _1, _2 ..."""
     said = describe()
-    return said["summary"] + [f"{name}_{b}" for b in range(1, bodies + 1) for name in said["body_summary"] if bodies > 1]
+    return said[what] + [f"{name}_{b}" for b in range(1, bodies + 1) for name in said[f"body_{what}"] if bodies > 1]
 
 
 def built_in() -> list[str]:

@@ -4,7 +4,8 @@ import re
 
 import pytest
 
-from orchestrate import parameters, scene
+from orchestrate import multibody, parameters, scene
+from orchestrate.describe import describe
 from orchestrate.failure import BadInput
 
 
@@ -59,11 +60,27 @@ def test_unknown_parameter_gets_a_suggestion():
         parameters.check({"mesh": "file.msh"})
 
 
+def test_each_script_takes_its_own_parameters():
+    """A parameter that a script does not take is bad input that says which one does, on either way in."""
+    assert "block_width" in parameters.names("disc-block") and "block_width" not in parameters.names("disc-plane")
+    assert parameters.check({"block_width": 3}, "disc-block") == {"block_width": 3.0}
+    for script, name, value in (("disc-plane", "block_width", 3), ("bodies", "radius", 1)):
+        with pytest.raises(BadInput) as error:
+            parameters.check({name: value}, script)
+        with pytest.raises(BadInput) as asked:
+            describe({name: value}, script)
+        assert str(error.value) == str(asked.value) == f"{name}: {script} takes no such parameter (accepted: in {'|'.join(parameters.table()[name].scripts)})"
+    with pytest.raises(BadInput, match="script: 'ball' is not known .accepted: disc-plane|disc-block|bodies"):
+        describe({}, "ball")
+
+
 @pytest.mark.parametrize("name", scene.built_in())
 def test_built_in_scenes_load(name):
     """Every scene that comes with the program has a title, and a value for every parameter."""
     loaded = scene.load(name)
-    assert loaded.title and list(loaded.values) == parameters.names()
+    assert loaded.title and set(loaded.values) <= set(parameters.names(loaded.script))
+    if loaded.script != multibody.SCRIPT:
+        assert list(loaded.values) == parameters.names(loaded.script)
 
 
 def test_scene_file(tmp_path):

@@ -30,6 +30,7 @@ DASHED = (0, (4, 2))
 def draw(folder: Path, warnings: list[str]) -> list[Path]:
     """Draws all figures of the run in `folder` into folder/figures, with its warnings below; the files. Unreadable where the
     folder is broken. energies.png is the last: where it is, all are."""
+    from . import bodies
     history, scene = read_history(folder), read_scene(folder)
     snapshots = vtu.series(folder / "fields.pvd")
     target = folder / "figures"
@@ -37,22 +38,32 @@ def draw(folder: Path, warnings: list[str]) -> list[Path]:
     touches = history["normal_force"] > 0
     contact = {name: column[max(0, int(np.argmax(touches)) - 1):] for name, column in history.items()}   # without the flight
     with plt.rc_context(STYLE):
-        drawn = {"energies": _energies(contact), "velocity": _velocity(contact)}
-        if history["friction_force"].any():
-            drawn |= {"force": _friction(history, scene), "rolling": _rolling(history, scene)}
+        if bodies.are_several(scene):
+            drawn = bodies.draw(contact, scene, snapshots)
         else:
-            drawn["force"] = _force(contact)
-        if snapshots:
-            half = is_half(scene)
-            drawn["shapes"] = _shapes(snapshots, half)
-            if len(snapshots) > 2 and not half:
-                drawn["flight"] = _flight(history, scene, snapshots)
+            drawn = _on_a_plane(history, contact, scene, snapshots)
         for name, figure in reversed(drawn.items()):
             figure.suptitle(title(scene), fontsize=9)
             footer(figure, warnings)
             figure.savefig(target / f"{name}.png")
             plt.close(figure)
     return [target / f"{name}.png" for name in drawn]
+
+
+def _on_a_plane(history: dict[str, np.ndarray], contact: dict[str, np.ndarray], scene: dict[str, Value],
+                snapshots: list[tuple[float, Path]]) -> dict[str, plt.Figure]:
+    """The figures by name of one body on the plane y = 0; `contact` is the history from the first touch on."""
+    drawn = {"energies": _energies(contact), "velocity": _velocity(contact)}
+    if history["friction_force"].any():
+        drawn |= {"force": _friction(history, scene), "rolling": _rolling(history, scene)}
+    else:
+        drawn["force"] = _force(contact)
+    if snapshots:
+        half = is_half(scene)
+        drawn["shapes"] = _shapes(snapshots, half)
+        if len(snapshots) > 2 and not half:
+            drawn["flight"] = _flight(history, scene, snapshots)
+    return drawn
 
 
 def footer(figure: plt.Figure, warnings: list[str]) -> None:
@@ -65,7 +76,10 @@ def footer(figure: plt.Figure, warnings: list[str]) -> None:
 
 
 def title(scene: dict[str, Value]) -> str:
-    """Law, nu, speed, the angle where the impact is oblique, and the friction law where there is one."""
+    """Law, nu, speed, the angle where the impact is oblique, and the friction law where there is one; of several bodies each one's."""
+    from . import bodies
+    if bodies.are_several(scene):
+        return bodies.title(scene)
     angle = "" if scene.get("angle", 90) == 90 else f" at {scene['angle']:g}°"
     text = f"{LAWS.get(scene['law'], scene['law'])}, ν = {scene['nu']:g}, {scene['speed']:g} m/s{angle}"
     if scene.get("friction_static", 0) > 0:
@@ -391,7 +405,7 @@ class Body:
 
 def is_half(scene: dict[str, Value]) -> bool:
     """Whether only the half of the body to the right of its axis was computed."""
-    return scene["symmetry"] == "half"
+    return scene.get("symmetry") == "half"
 
 
 def deformed(snapshot: vtu.Snapshot, half: bool) -> Body:

@@ -20,8 +20,9 @@ from .. import scene, vtu
 from ..failure import BadInput, NotInstalled, Unreadable
 from ..parameters import ROOT, overrides, whole
 from ..places import shown
-from ..results import RunResult
+from ..results import RunResult, suffixes
 from ..run import run
+from . import bodies
 from .figures import BLACK, BLUE, GREY, ORANGE, STRESS, STYLE, Body, deformed, diameter, draw_body, draw_ground, is_half, limits, per_metre, title
 
 SECONDS = 8.0     # of the film
@@ -57,7 +58,8 @@ def main(argv: list[str]) -> int:
 
 def write(film: Path, result: RunResult, frames: int, progress: bool = False) -> None:
     """Writes `frames` frames, evenly spaced from the touch to the end, of SECONDS seconds together; complete or not at all."""
-    motion = Motion(result.folder / "fields.pvd", is_half(result.scene))
+    several = len(suffixes(result.history)) > 1
+    motion = Motion(result.folder / "fields.pvd", is_half(result.scene), several)
     with plt.rc_context(STYLE | {"figure.constrained_layout.use": False}):   # the axes stay where they are
         stage = Stage(result, motion)
         part = film.with_suffix(f".part{film.suffix}")
@@ -95,17 +97,18 @@ class GifWriter(PillowWriter):
 class Motion:
     """The snapshots of a run, and the body at any time between them, where places and stresses are linear in time.
 
-    `times` (s,) in s from the touch to the end; `bodies`, one a time; `diameters` (s, m, 2) in m, None where half a body was computed.
+    `times` (s,) in s from the touch to the end; `bodies`, one a time (of several bodies all of them); `diameters` (s, m, 2) in m, None
+    where half a body was computed, or `several`.
     """
 
-    def __init__(self, pvd: Path, half: bool):
+    def __init__(self, pvd: Path, half: bool, several: bool = False):
         series = vtu.series(pvd)
         if not series:
             raise Unreadable(f"{pvd} is missing or empty; delete its folder and run again")
         snapshots = [vtu.read(path) for _, path in series]
         self.times = np.array([t for t, _ in series])
         self.bodies = [deformed(snapshot, half) for snapshot in snapshots]
-        self.diameters = None if half else np.array([diameter(snapshot) for snapshot in snapshots])
+        self.diameters = None if half or several else np.array([diameter(snapshot) for snapshot in snapshots])
 
     def at(self, t: float) -> tuple[Body, np.ndarray | None]:
         """The body and its diameter (m, 2) at time t [s]."""
@@ -123,15 +126,21 @@ class Stage:
 
     def __init__(self, result: RunResult, motion: Motion):
         self.motion = motion
-        view = left, right, floor, top = limits(motion.bodies)
+        among = bodies.are_several(result.scene)
+        view = left, right, floor, top = (bodies.limits if among else limits)(motion.bodies)
         width = min(6.0, 4.8 * (right - left) / (top - floor))      # of the upper panel [inch]
         height, below = width * (top - floor) / (right - left), 1.6
-        whole = np.array([width + 2.0, height + below + 2.05])
+        heading = title(result.scene)
+        whole = np.array([width + 2.0, height + below + 1.75 + 0.15 * (1 + heading.count("\n"))])
         self.figure = plt.figure(figsize=whole)
         panel = lambda x, y, w, h: self.figure.add_axes((*np.array([x, y]) / whole, *np.array([w, h]) / whole))   # noqa: E731
         self.above, bar = panel(0.85, below + 1.3, width, height), panel(width + 1.0, below + 1.3, 0.16, height)
-        self.figure.suptitle(title(result.scene), fontsize=9, y=1 - 0.12 / whole[1])
-        draw_ground(self.above, view)
+        self.figure.suptitle(heading, fontsize=9, y=1 - 0.12 / whole[1])
+        self.view, self.rigid, self.drawn = view, bodies.obstacles_of(result.scene), []
+        if among:
+            self.drawn = bodies.draw_obstacles(self.above, self.rigid, view, motion.times[0])
+        else:
+            draw_ground(self.above, view)
         self.above.set(xlabel="x [m]", ylabel="y [m]")
         self.largest = np.quantile([body.stress for body in motion.bodies], 0.999) or 1.0   # one spot does not darken all the rest
         self.picture = draw_body(self.above, motion.bodies[0], self.largest)
@@ -162,6 +171,10 @@ class Stage:
     def show(self, t: float) -> None:
         """Everything that moves, at time t [s]."""
         body, line = self.motion.at(t)
+        if any(one.velocity.any() for one in self.rigid):
+            for each in self.drawn:
+                each.remove()
+            self.drawn = bodies.draw_obstacles(self.above, self.rigid, self.view, t)
         self.picture.remove()
         self.picture = draw_body(self.above, body, self.largest)
         if self.marks:

@@ -2,12 +2,12 @@
 
 import sys
 import tomllib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ..parameters import Value
 from ..places import shown
-from ..results import RunResult
+from ..results import RunResult, suffixes
 
 REFERENCE = Path(__file__).resolve().parent / "reference"
 
@@ -93,27 +93,48 @@ def draw(result: RunResult) -> None:
         print(f"ffimpact: the figures could not be drawn: {error!r}", file=sys.stderr)
 
 
+def _scene(scene: dict[str, Value]) -> list[str]:
+    """What was run: materials, speed, contact."""
+    contact = scene.get("contact", scene)
+    words = f"penalty {contact['penalty']:g}"
+    if contact.get("friction_static"):
+        words += f", friction {contact['friction_static']:g} static, {contact['friction_dynamic']:g} dynamic"
+    if "body" not in scene:
+        return [f"{scene['law']}, nu = {scene['nu']:g}, {scene['speed']:g} m/s, angle {scene['angle']:g} degrees, {words}"]
+    return [*(f"{body['name']}: {body['shape']}, {body['law']}, young = {body['young']:g}, nu = {body['nu']:g}" for body in scene["body"]),
+            *(f"{one['name']}: rigid {one['kind']}" for one in scene["obstacle"]), words]
+
+
+def _of_bodies(quantity: Quantity, scene: dict[str, Value], summary: dict) -> list[Quantity]:
+    """A row of each of several bodies, where the summary has it of each."""
+    of = suffixes(summary)
+    if f"{quantity.key}{of[0]}" not in summary or of == [""]:
+        return [quantity]
+    names = [body["name"] for body in scene["body"]] if "body" in scene else ["disc", "block"]
+    return [replace(quantity, key=quantity.key + suffix, label=f"{quantity.label}, {name}") for suffix, name in zip(of, names)]
+
+
 def report(result: RunResult) -> str:
     """The key figures of a run as a table of text, what was skipped, and where the pictures are."""
     summary, scene = result.summary, result.scene
     script = summary["provenance"]["script"]
-    known = references(script, scene) if summary["provenance"].get("gmsh") else {}   # a mesh of the user's is another body
+    provenance = summary["provenance"]
+    known = references(script, scene) if provenance.get("gmsh") or not provenance.get("mesh") else {}   # a mesh of the user's is another body
     place = shown(result.folder)
-    lines = [f"{place}: " + ("finished earlier, same scene and code" if result.reused else "finished"),
-             f"{scene['law']}, nu = {scene['nu']:g}, {scene['speed']:g} m/s, angle {scene['angle']:g} degrees, "
-             f"penalty {scene['penalty']:g}" + (f", friction {scene['friction_static']:g} static, {scene['friction_dynamic']:g} dynamic"
-                                                if scene.get("friction_static") else "")]
-    for quantity in rows(per_metre=not script.startswith("ball")):
+    lines = [f"{place}: " + ("finished earlier, same scene and code" if result.reused else "finished"), *_scene(scene)]
+    quantities = [one for row in rows(per_metre=not script.startswith("ball")) for one in _of_bodies(row, scene, summary)]
+    width = max(24, *(len(quantity.label) + 2 for quantity in quantities))
+    for quantity in quantities:
         value = summary.get(quantity.key)
-        if value is None or (abs(value) < 1e-9 and quantity.key in LEFT_OUT_AT_ZERO):
+        if value is None or (abs(value) < 1e-9 and quantity.key.rstrip("_0123456789") in LEFT_OUT_AT_ZERO):
             continue
         beside = [quantity.beside(number) for number in known.get(quantity.key, [])] or [""]
-        lines.append(f"  {quantity.label:<24}{quantity.text(value):<18}{beside[0]}".rstrip())
-        lines += [f"  {'':<42}{more}" for more in beside[1:]]
-    lines += [f"  {'warning':<24}{sentence}" for sentence in summary["warnings"]]
+        lines.append(f"  {quantity.label:<{width}}{quantity.text(value):<18}{beside[0]}".rstrip())
+        lines += [f"  {'':<{width + 18}}{more}" for more in beside[1:]]
+    lines += [f"  {'warning':<{width}}{sentence}" for sentence in summary["warnings"]]
     if summary.get("skipped"):
-        lines.append(f"  {'skipped':<24}{', '.join(summary['skipped'])}")
+        lines.append(f"  {'skipped':<{width}}{', '.join(summary['skipped'])}")
     pictures = sorted((result.folder / "figures").glob("*.png"))
     if pictures:
-        lines.append(f"  {'figures':<24}" + f"{place}/figures/{{{','.join(p.stem for p in pictures)}}}.png")
+        lines.append(f"  {'figures':<{width}}" + f"{place}/figures/{{{','.join(p.stem for p in pictures)}}}.png")
     return "\n".join(lines)

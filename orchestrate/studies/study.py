@@ -40,7 +40,8 @@ def study(points: list[Point], folder: Path, base: Point, limit: float, name: st
     name of a parameter of the point (spin) is called <name>_end.
     """
     places = [place(folder, point) for point in points]
-    tasks = {where: scene.load(name).override(base | point) for where, point in zip(places, points)}
+    given = scene.load(name)
+    tasks = {where: given.override(base | point) for where, point in zip(places, points)}
     found = {where: outcome for where, wanted in tasks.items() if (outcome := there(where, wanted, estimate))}
     to_do = {where: wanted for where, wanted in tasks.items() if where not in found}
     if to_do:
@@ -56,7 +57,7 @@ def study(points: list[Point], folder: Path, base: Point, limit: float, name: st
 
 def place(folder: Path, point: Point) -> Path:
     """The result folder of a point of the study in `folder`, named after its parameters; where that is too long for a name by its hash."""
-    name = ",".join(f"{name}={value}" for name, value in point.items()) or "run"
+    name = ",".join(f"{name}={value}" for name, value in point.items()).replace("/", "_") or "run"
     if len(name) > LONGEST:
         name = f"{name[:LONGEST - 20]},{hashlib.sha256(name.encode()).hexdigest()[:16]}"
     return folder / "runs" / name

@@ -3,7 +3,7 @@
     scene = "disc-normal"                       # a built-in scene, or a scene file beside this one
     collect = ["contact_time", "rebound_vy"]    # numbers of summary.json; left out: all of them
     limit = 600                                 # seconds a run may take
-    [set]                                       # for every run
+    [set]                                       # for every run; of a scene with bodies any entry: body.2.young, contact.penalty ...
     law = "svk"
     [product]                                   # every combination: lists, or ranges
     nu = [0.30, 0.45]
@@ -31,9 +31,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from .. import parameters, scene
-from ..describe import describe
+from .. import scene
 from ..failure import BadInput, Busy, Failure, Unreadable
+from ..multibody import Multibody
 from ..parameters import ROOT, Value
 from ..folder import result_folder
 from ..places import shown
@@ -43,6 +43,7 @@ from . import sweep_figures
 SWEEPS = Path(__file__).resolve().parent   # the built-in sweeps are beside us
 LIMIT = 600.0                   # seconds a run may take
 MOST_RUNS = 20_000              # more than that is a slip of the pen
+RANGE = ("from", "to", "points", "spacing")
 KEYS = ("title", "scene", "collect", "limit", "set", "product", "zip", "refine", "figure")
 SHOWN = 8                       # collected columns in the printed table; all are in sweep.csv
 RECORDED = (0, 11, 12)          # exit codes that are answers: finished, no step, the material broke down
@@ -160,9 +161,13 @@ def _sweep(path: Path, given: dict, text: str) -> Sweep:
             raise BadInput(f"{key}: no such entry (accepted: {', '.join(KEYS)})")
     tables = {key: _is(given.get(key, {}), dict, key, "a table") for key in ("set", "product", "refine", "figure")}
     groups = _is(given.get("zip", []), list, "zip", "tables [[zip]]")
-    base, refine = parameters.check(tables["set"]), parameters.check(tables["refine"])
-    axes = [[{name: value} for value in _values(name, values)] for name, values in tables["product"].items()]
-    axes += [_together(_is(group, dict, "zip", "tables [[zip]]")) for group in groups]
+    name = given.get("scene", "disc-normal")
+    if _is(name, str, "scene", "a name") not in scene.built_in():
+        name = os.path.join(path.parent.resolve(), name)
+    of = scene.load(name)
+    base, refine = (of.check(_flat(tables[key])) for key in ("set", "refine"))
+    axes = [[{name: value} for value in _values(name, values, of)] for name, values in _flat(tables["product"]).items()]
+    axes += [_together(_flat(_is(group, dict, "zip", "tables [[zip]]")), of) for group in groups]
     count = int(np.prod([len(axis) for axis in axes])) * (2 if refine else 1)
     if not axes:
         raise BadInput("product: nothing varies (accepted: at least one parameter in [product] or [[zip]])")
@@ -176,11 +181,9 @@ def _sweep(path: Path, given: dict, text: str) -> Sweep:
     points = [{name: value for part in parts for name, value in part.items()} for parts in itertools.product(*axes)]
     if len({tuple(point.values()) for point in points}) < len(points):
         raise BadInput("zip: two points are the same (accepted: every combination once)")
-    name = given.get("scene", "disc-normal")
-    if _is(name, str, "scene", "a name") not in scene.built_in():
-        name = os.path.join(path.parent.resolve(), name)
-    _finer(refine, scene.load(name).values | base, points)
-    known = [f"{each}_end" if each in varied else each for each in describe()["summary"]]
+    of.override({"fields": 0} | base | points[0])
+    _finer(refine, of.values | of.sizes | base, points)
+    known = [f"{each}_end" if each in varied else each for each in of.numbers]
     wanted = _is(given.get("collect", known), list, "collect", "a list of names")
     for each in wanted:
         if each not in known or wanted.count(each) > 1:
@@ -188,17 +191,17 @@ def _sweep(path: Path, given: dict, text: str) -> Sweep:
     limit = given.get("limit", LIMIT)
     if type(limit) not in (int, float) or not 1 <= limit <= 1e6:
         raise BadInput(f"limit: {limit} (accepted: 1 to 1e6 seconds)")
-    figure = sweep_figures.check(tables["figure"], points, wanted)
+    figure = sweep_figures.check(tables["figure"], points, wanted, of.columns)
     base = {"fields": 0} | base
     return Sweep(path.stem, str(given.get("title", path.stem)), name, base, points, refine, wanted, float(limit), figure, text)
 
 
 def _finer(refine: study.Point, values: study.Point, points: list[study.Point]) -> None:
     """BadInput where `refine` changes nothing, or makes coarser what it should make finer."""
-    if refine and all(all((values | point)[name] == value for name, value in refine.items()) for point in points):
+    if refine and all(all((values | point).get(name) == value for name, value in refine.items()) for point in points):
         raise BadInput(f"refine: {', '.join(refine)} as in the runs themselves (accepted: other values, or no [refine])")
     for name in set(refine) & set(FINER):
-        coarse = min((values | point)[name] for point in points)
+        coarse = min((values | point)[name] for point in points)       # of bodies the largest that one gives
         if coarse > 0 and not 0 < refine[name] < coarse:
             raise BadInput(f"refine: {name} = {refine[name]:g} is not finer (accepted: above 0, below {coarse:g})")
 
@@ -209,31 +212,47 @@ def _is(value, kind: type, name: str, words: str):
     return value
 
 
-def _values(name: str, given: list | dict) -> list[Value]:
-    """The checked values of an axis, from a list or a range."""
+def _flat(table: dict, path: str = "") -> dict:
+    """The entries of a table by dotted names: body.2.young stands in nested tables where its name is not in quotes."""
+    found = {}
+    for name, value in table.items():
+        nested = isinstance(value, dict) and not set(value) & set(RANGE)
+        found |= _flat(value, f"{path}{name}.") if nested else {f"{path}{name}": value}
+    return found
+
+
+def _values(name: str, given: list | dict, of: scene.Scene | Multibody) -> list[Value]:
+    """The checked values of an axis of a sweep of the scene `of`, from a list or a range."""
     if isinstance(given, dict):
-        if not {"from", "to", "points"} <= set(given) <= {"from", "to", "points", "spacing"}:
+        if not set(RANGE[:3]) <= set(given) <= set(RANGE):
             raise BadInput(f"{name}: {given} is no range (accepted: from, to, points and perhaps spacing)")
         low, high, points, spacing = *(given[key] for key in ("from", "to", "points")), given.get("spacing", "linear")
         if spacing not in ("linear", "log"):
             raise BadInput(f"{name}: spacing '{spacing}' is not known (accepted: linear|log)")
-        if parameters.table().get(name) is None or parameters.table()[name].kind == "word":
+        low, high = (of.check({name: number})[name] for number in (low, high))
+        if type(low) not in (int, float) or type(high) not in (int, float):
             raise BadInput(f"{name}: a range needs a parameter that is a number")
-        low, high = (parameters.check({name: number})[name] for number in (low, high))
         if spacing == "log" and min(low, high) <= 0:
             raise BadInput(f"{name}: from {low} to {high} (accepted for log: above 0)")
         if type(points) is not int or not 2 <= points <= MOST_RUNS:
             raise BadInput(f"{name}: points = {points} (accepted: 2 to {MOST_RUNS})")
         given = [float(f"{value:.10g}") for value in (np.geomspace if spacing == "log" else np.linspace)(low, high, points)]
-    values = [parameters.check({name: value})[name] for value in _is(given, list, name, "a list of values, or a range")]
+    values = [_single(name, value, of) for value in _is(given, list, name, "a list of values, or a range")]
     if not values or len(set(values)) < len(values):
         raise BadInput(f"{name}: {given} (accepted: at least one value, none twice)")
     return values
 
 
-def _together(group: dict) -> list[study.Point]:
+def _single(name: str, value, of: scene.Scene | Multibody) -> Value:
+    """A checked value of an axis: a number or a word."""
+    if isinstance(value, list | dict):
+        raise BadInput(f"{name}: {value} (accepted: single numbers and words, as body.1.velocity.2 for one of two)")
+    return of.check({name: value})[name]
+
+
+def _together(group: dict, of: scene.Scene | Multibody) -> list[study.Point]:
     """A [[zip]]: its parameters go through their values together."""
-    columns = {name: [parameters.check({name: value})[name] for value in _is(values, list, name, "a list of values")]
+    columns = {name: [_single(name, value, of) for value in _is(values, list, name, "a list of values")]
                for name, values in group.items()}
     if not columns or len({len(values) for values in columns.values()}) > 1 or not all(columns.values()):
         raise BadInput(f"zip: {', '.join(f'{name} has {len(values)} values' for name, values in columns.items()) or 'nothing in it'} "

@@ -9,6 +9,7 @@ that are collected. The x of lines is logarithmic where its values span a decade
 """
 
 import itertools
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,7 +20,6 @@ import pandas as pd
 from matplotlib.ticker import LogLocator, NullLocator
 
 from .. import parameters
-from ..describe import describe
 from ..failure import BadInput
 from ..report import report
 from ..report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE
@@ -31,8 +31,8 @@ WORDS = {"nu": "ν", "penalty": "k"}
 COLOURS, MARKERS = (BLUE, ORANGE, GREEN, PURPLE, GREY), "osd^v"
 
 
-def check(given: dict, points: list[dict], collected: list[str]) -> dict:
-    """The [figure] of a sweep, completed; empty if none was given. BadInput where it cannot be drawn or would mix points up."""
+def check(given: dict, points: list[dict], collected: list[str], columns: list[str]) -> dict:
+    """The [figure] of a sweep, completed; empty if none was given; `columns` are those of its histories. BadInput where it cannot be drawn or would mix points up."""
     if not given:
         return {}
     kind, varied = given.get("kind", "lines"), list(points[0])
@@ -50,7 +50,7 @@ def check(given: dict, points: list[dict], collected: list[str]) -> dict:
     for key in ("by", "panel"):
         if figure[key] is not None:
             _name(key, figure[key], varied)
-    accepted = describe()["columns"] if kind == "histories" else collected
+    accepted = columns if kind == "histories" else collected
     for key in results:
         names = figure.get(key) if key == "y" else [figure.get(key)]
         if not isinstance(names, list) or not names:
@@ -116,13 +116,19 @@ def findings(sweep, rows: pd.DataFrame, out: Path) -> list[str]:
 
 def label(name: str) -> str:
     """The words and the unit of a parameter or a number of the summary, for an axis."""
-    parameter, words = parameters.table().get(name), WORDS.get(name, name.replace("_", " "))
+    parameter, words = _parameter(name), WORDS.get(name, name.replace("_", " "))
     unit = _unit(name).strip() or (parameter.unit if parameter and not _quantity(name) else "")
     return words if unit in ("-", "", "of the start") else f"{words} [{unit}]"
 
 
 def _quantity(name: str) -> report.Quantity | None:
-    return {quantity.key: quantity for quantity in report.rows(per_metre=True)}.get(name)
+    """The row of the report, also of one of several bodies."""
+    return {quantity.key: quantity for quantity in report.rows(per_metre=True)}.get(re.sub("_[0-9]+$", "", name))
+
+
+def _parameter(name: str) -> parameters.Parameter | None:
+    """The row of the table, of body.2.young that of young."""
+    return parameters.table().get(name.rpartition(".")[2])
 
 
 def _factor(name: str) -> float:
@@ -141,7 +147,7 @@ def _value(name: str, value) -> str:
     """A value of a parameter in words, with its unit."""
     if isinstance(value, str):
         return LAWS.get(value, value)
-    unit = parameters.table()[name].unit
+    unit = parameter.unit if (parameter := _parameter(name)) else "-"
     return f"{WORDS.get(name, name.replace('_', ' '))} = {value:g}" + f" {unit}" * (unit != "-")
 
 

@@ -1,0 +1,185 @@
+"""Figures of a run of several bodies, or of obstacles of one's own: energies of each body and of all (figures 9a, 9b of the paper), velocities,
+forces, and deformed shapes among the obstacles."""
+
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+from .. import obstacles, vtu
+from ..obstacles import Obstacle
+from ..parameters import Value
+from ..results import suffixes
+from .figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, SHAPES, STRESS, Body, deformed, draw_body, is_half, per_metre
+
+COLOURS = (BLUE, ORANGE, GREEN, PURPLE, "#56b4e9", "#e69f00")    # of bodies
+ACROSS = 3       # panels side by side
+GRID = 300       # points along the longer side of a picture, at which obstacles are looked for
+DOTS = (0, (1, 1.5))
+ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 1), "handlelength": 1.4, "columnspacing": 1.0, "fontsize": 7}
+
+
+def are_several(scene: dict[str, Value]) -> bool:
+    """Whether a scene, as used, has several bodies or obstacles of its own; else it is a body on the plane y = 0."""
+    return scene.get("script") != "disc-plane" and "script" in scene
+
+
+def names(scene: dict[str, Value]) -> list[str]:
+    """The bodies' names, in the order of the suffixes _1, _2 ..."""
+    return [body["name"] for body in scene["body"]] if "body" in scene else ["disc", "block"]
+
+
+def title(scene: dict[str, Value]) -> str:
+    """Each body's material; of a disc on a block the speed."""
+    def material(one: dict) -> str:
+        return f"{LAWS[one['law']]}, E = {1e-6 * one['young']:g} MPa, ν = {one['nu']:g}"
+
+    if "body" not in scene:
+        return f"disc on block: {material(scene)}, {scene['speed']:g} m/s"
+    materials = {}
+    for body in scene["body"]:
+        materials.setdefault(material(body), []).append(body["name"])
+    return "\n".join([scene["title"], *(f"{', '.join(of)}: {words}" for words, of in materials.items())])
+
+
+def draw(history: dict[str, np.ndarray], scene: dict[str, Value], snapshots: list[tuple[float, Path]]) -> dict[str, plt.Figure]:
+    """The figures by name; `history` from the first touch on."""
+    bodies = dict(zip(names(scene), suffixes(history)))
+    drawn = {"energies": energies(history, bodies), "velocity": velocities(history, bodies), "force": forces(history, bodies)}
+    if snapshots:
+        drawn["shapes"] = shapes(snapshots, scene)
+    return drawn
+
+
+def panels(count: int, height: float = 2.4) -> tuple[plt.Figure, list[plt.Axes]]:
+    """A figure of so many panels over the same time [ms]."""
+    columns = min(count, 2 if count == 4 else ACROSS)
+    rows = -(-count // columns)
+    figure, grid = plt.subplots(rows, columns, figsize=(max(5.2, 3.0 * columns), height * rows + 0.5), squeeze=False, sharex=True)
+    for axes in grid.flat[count:]:
+        axes.set_axis_off()
+    for axes in grid.flat[:count]:
+        axes.margins(x=0)
+    for axes in grid.flat[max(0, count - columns):count]:
+        axes.set_xlabel("time [ms]")
+        axes.tick_params(labelbottom=True)
+    return figure, list(grid.flat[:count])
+
+
+def energies(history: dict[str, np.ndarray], bodies: dict[str, str]) -> plt.Figure:
+    """Energies [J/m] over time: a panel a body; one of all, with the contact's, which belongs to no body; the error of the balance."""
+    t, unit = 1e3 * history["t"], f"energy [J{per_metre(history)}]"
+    several = len(bodies) > 1
+    figure, (*own, together, balance) = panels(len(bodies) * several + 2)
+    for axes, (name, of), colour in zip(own, bodies.items(), COLOURS * len(bodies)):
+        kinetic, elastic = history[f"kinetic{of}"], history[f"elastic{of}"]
+        axes.plot(t, kinetic + elastic, color=colour, label=name)
+        axes.plot(t, kinetic, color=colour, linestyle="--", linewidth=1.0, label="kinetic")
+        axes.plot(t, elastic, color=colour, linestyle=DOTS, linewidth=1.0, label="elastic")
+        together.plot(t, kinetic + elastic, color=colour, label=name)
+    if not several:
+        together.plot(t, history["kinetic"], color=BLUE, linestyle="--", linewidth=1.0, label="kinetic")
+        together.plot(t, history["elastic"], color=ORANGE, linestyle=DOTS, linewidth=1.0, label="elastic")
+    total, words = history["kinetic"] + history["elastic"] + history["contact"], "total"
+    lines = {"contact": (history["contact"], GREY)}
+    for name, column, words_of_it, sign in (("lost to friction", "friction_work", "+ lost", 1), ("external work", "external_work", "− work", -1)):
+        if history[column].any():
+            lines[name] = history[column], {"friction_work": "#d4a017", "external_work": "#888888"}[column]
+            total, words = total + sign * history[column], f"{words} {words_of_it}"
+    for name, (values, colour) in lines.items():
+        together.plot(t, values, color=colour, linewidth=1.0, label=name)
+    together.plot(t, total, color=BLACK, linewidth=1.0, label=words)
+    for axes in (*own, together):
+        axes.axhline(0, color=GREY, linewidth=0.6)
+        axes.set_ylabel(unit)
+        axes.legend(**ABOVE, ncols=2 if axes is together and len(bodies) < 4 else 3)
+    error = np.abs(history["balance"]) / (np.abs(total).max() or 1.0)
+    balance.semilogy(t, np.where(error > 0, error, np.nan), color=BLACK, linewidth=0.9)
+    balance.set_ylabel("|balance| / largest total")
+    return figure
+
+
+def velocities(history: dict[str, np.ndarray], bodies: dict[str, str]) -> plt.Figure:
+    """Velocities [m/s] of the centres of mass and spins [rad/s], a panel a component, a line a body."""
+    components = {"vx": "$v_x$ [m/s]", "vy": "$v_y$ [m/s]", "spin": "spin [rad/s]"}
+    moving = [name for name in components if any(history[name + of].any() for of in bodies.values())] or ["vy"]
+    figure, grid = panels(len(moving), 2.8)
+    for axes, name in zip(grid, moving):
+        axes.axhline(0, color=GREY, linewidth=0.6)
+        for (body, of), colour in zip(bodies.items(), COLOURS * len(bodies)):
+            axes.plot(1e3 * history["t"], history[name + of], color=colour, label=body)
+        axes.set_ylabel(components[name])
+    if len(bodies) > 1:
+        grid[0].legend(**ABOVE, ncols=3)
+    return figure
+
+
+def forces(history: dict[str, np.ndarray], bodies: dict[str, str]) -> plt.Figure:
+    """Contact forces [kN/m] over time: normal and friction forces of all contacts, and the components on each of several bodies."""
+    t, unit = 1e3 * history["t"], f"[kN{per_metre(history)}]"
+    lines = {f"normal force {unit}": {"": "normal_force"}}
+    if history["friction_force"].any():
+        lines[f"friction force {unit}"] = {"": "friction_force"}
+    if len(bodies) > 1:
+        for component in ("x", "y"):
+            columns = {name: f"force_{component}{of}" for name, of in bodies.items()}
+            if any(history[column].any() for column in columns.values()):
+                lines[f"force along {component} {unit}"] = columns
+    figure, grid = panels(len(lines), 2.8)
+    for axes, (words, columns) in zip(grid, lines.items()):
+        axes.axhline(0, color=GREY, linewidth=0.6)
+        for (name, column), colour in zip(columns.items(), COLOURS * len(columns) if len(columns) > 1 else (BLACK,)):
+            axes.plot(t, 1e-3 * history[column], color=colour, label=name)
+        axes.set_ylabel(words)
+    if len(bodies) > 1:
+        grid[-1].legend(**ABOVE, ncols=3)
+    return figure
+
+
+# ---- shapes
+
+def shapes(series: list[tuple[float, Path]], scene: dict[str, Value]) -> plt.Figure:
+    """All bodies at up to SHAPES instants among the obstacles, coloured by the von Mises stress [MPa]."""
+    picked = [series[k] for k in np.unique(np.linspace(0, len(series) - 1, SHAPES).round().astype(int))]
+    found = [deformed(vtu.read(path), is_half(scene)) for _, path in picked]
+    left, right, low, high = view = limits(found)
+    columns = min(3, len(found)) if right - left < 3 * (high - low) else min(2, len(found))
+    rows, size = -(-len(found) // columns), 7.0 / columns
+    figure, grid = plt.subplots(rows, columns, figsize=(7.8, rows * (size * (high - low) / (right - left) + 0.25) + 0.5), squeeze=False)
+    for axes in grid.flat:
+        axes.set_axis_off()
+    largest, rigid = max(body.stress.max() for body in found), obstacles_of(scene)
+    for axes, body, (t, _) in zip(grid.flat, found, picked):
+        draw_obstacles(axes, rigid, view, t)
+        picture = draw_body(axes, body, largest)
+        axes.set_title(f"{1e3 * t:.2f} ms", pad=2)
+    figure.colorbar(picture, ax=grid, label=STRESS, shrink=0.7, aspect=30)
+    return figure
+
+
+def obstacles_of(scene: dict[str, Value]) -> list[Obstacle]:
+    """The rigid obstacles of a scene as used."""
+    return obstacles.read(scene.get("obstacle", []))
+
+
+def limits(found: list[Body]) -> tuple[float, float, float, float]:
+    """Left, right, lower and upper end [m] of a picture that has room for all bodies."""
+    low, high = (np.array([end(body.points, axis=0) for body in found]) for end in (np.min, np.max))
+    (left, bottom), (right, top) = low.min(axis=0), high.max(axis=0)
+    margin = 0.06 * max(right - left, top - bottom)
+    return left - margin, right + margin, bottom - margin, top + margin
+
+
+def draw_obstacles(axes: plt.Axes, rigid: list[Obstacle], view: tuple[float, float, float, float], t: float) -> list:
+    """The obstacles where they are at time t [s], grey, in axes with the limits `view` [m]; what was drawn."""
+    left, right, low, high = view
+    axes.set(xlim=(left, right), ylim=(low, high), aspect="equal")
+    step = max(right - left, high - low) / GRID
+    x, y = np.arange(left, right + step, step), np.arange(low, high + step, step)
+    points = np.stack(np.meshgrid(x, y), axis=-1)
+    if not rigid:
+        return []
+    gap = np.min([one.gap((points - one.velocity * t).reshape(-1, 2)) for one in rigid], axis=0).reshape(points.shape[:2])
+    if not gap.min() < 0 < gap.max():
+        return []
+    return [axes.contourf(x, y, gap, levels=[gap.min(), 0], colors=["#d0d0d0"]), axes.contour(x, y, gap, levels=[0], colors=[BLACK], linewidths=0.8)]
