@@ -6,7 +6,7 @@
     [[body]]                     # see bodies.py
     [[obstacle]]                 # see obstacles.py; with penalty, exponent, friction_static, friction_dynamic, slip_velocity of its own
     [contact]                    # penalty, exponent, friction_static, friction_dynamic, slip_velocity, regularization,
-    pairing = "closest-point"    # friction_transition, pairing
+    pairing = "closest-point"    # friction_transition, pairing, pairing_range
     [[contact.pair]]             # what differs between two of them
     bodies = ["disc", "floor"]
     friction_static = 0.3
@@ -34,8 +34,7 @@ RUN = ("gravity", "body_force_x", "body_force_y", "degree", "integrator", "dt", 
        "chatter", "end_time", "fields", "checkpoint_every", "without")
 OWN = ("penalty", "exponent", "friction_static", "friction_dynamic", "slip_velocity")      # a pair may have its own
 SCRIPT = Parameter("script", "word", "bodies", "-", "the FreeFEM script", words=("bodies",))
-PAIRING = Parameter("pairing", "word", "closest-point", "-", "how two bodies see each other", words=("closest-point", "pairwise"))
-CONTACT = (*OWN, "regularization", "friction_transition", "pairing")
+CONTACT = (*OWN, "regularization", "friction_transition", "pairing", "pairing_range")
 TOUCHING = 1e-9              # of a body's thickness: an overlap up to it is round-off
 
 
@@ -110,7 +109,7 @@ def read(given: dict, folder: Path, name: str) -> Multibody:
 
 
 def _rule(key: str) -> Parameter:
-    return parameters.table().get(key, PAIRING)
+    return parameters.table()[key]
 
 
 def _names(all_bodies: list[Body], all_obstacles: list[Obstacle]) -> dict[str, int]:
