@@ -5,8 +5,8 @@
     gravity = 9.81               # [m/s2], along -y; beside it the parameters of a run: end_time, dt, accuracy, fields ...
     [[body]]                     # see bodies.py
     [[obstacle]]                 # see obstacles.py; with penalty, friction_static, friction_dynamic of its own
-    [contact]                    # penalty, exponent, friction_static, friction_dynamic, slip_velocity, regularization, friction_transition
-    penalty = "auto"
+    [contact]                    # penalty, exponent, friction_static, friction_dynamic, slip_velocity, regularization, friction_transition,
+    pairing = "closest-point"    # pairing_range
     [[contact.pair]]             # what differs between two of them
     bodies = ["disc", "floor"]
     friction_static = 0.3
@@ -36,7 +36,7 @@ SCRIPT = "bodies"            # edp/bodies.edp
 RUN = ("gravity", "body_force_x", "body_force_y", "degree", "integrator", "dt", "accuracy", "accuracy_of", "tolerance", "breakdown",
        "chatter", "end_time", "fields", "checkpoint_every", "without")
 OWN = ("penalty", "friction_static", "friction_dynamic")                                  # a pair may have its own
-CONTACT = (*OWN, "exponent", "slip_velocity", "regularization", "friction_transition")
+CONTACT = (*OWN, "exponent", "slip_velocity", "regularization", "friction_transition", "pairing", "pairing_range")
 TOUCHING = 1e-9              # of a body's thickness: an overlap up to it is round-off
 
 

@@ -350,7 +350,7 @@ BAD = [
     ([("obstacle.1.normal", [0, 0])], "obstacle.1.normal: '[0, 0]'"),
     ([("obstacle.1.friction_static", -1)], "obstacle.1.friction_static: -1 is out of range (accepted: 0 to 10)"),
     ([("contact", 3)], "contact: '3' is no table"),
-    ([("contact.pairing", "closest-point")], "contact.pairing: 'closest-point' belongs to no such key"),
+    ([("contact.pairing", "nearest")], "contact.pairing: 'nearest' is not known (accepted: closest-point|pairwise|pairwise-printed)"),
     ([("contact.pair", 3)], "contact.pair: '3' is no list of tables (accepted: [[contact.pair]])"),
     ([("contact.pair", [{"penalty": 1e9}])], "contact.pair.1.bodies: '' is no pair (accepted: two names, one at least of a body, of disc, block, floor)"),
     ([("contact.pair", [{"bodies": ["disc", "ball"]}])], "contact.pair.1.bodies: 'ball' is not in the scene (accepted: two names, one at least of a body, of disc, block, floor)"),
