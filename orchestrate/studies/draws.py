@@ -16,13 +16,21 @@ def bar_speed(young: float, density: float) -> float:
     return (young / density) ** 0.5
 
 
-def draw(seed: int, count: int, hard: bool = False) -> list[Point]:
+def draw(seed: int, count: int, hard: bool = False, block: bool = False) -> list[Point]:
     """`count` impacts of a disc: material, law, speed, radius; some oblique or spinning, with and without friction, exponents.
 
     `hard`: also gravity, other integrators, linear elements, other accuracies, penalties and friction laws.
+    `block`: on a free block of the same material, of some radii's width and height, without gravity.
     """
     chance = random.Random(seed)
-    return [_scene(chance, hard) for _ in range(count)]
+    points = [_scene(chance, hard) for _ in range(count)]
+    return [_on_block(chance, point) for point in points] if block else points
+
+
+def _on_block(chance: random.Random, point: Point) -> Point:
+    across, deep = chance.choice([5, 10, 20]), chance.choice([2, 4])
+    kept = {name: value for name, value in point.items() if name not in ("gravity", "height")}
+    return kept | {"block_width": across * point["radius"], "block_height": deep * point["radius"]}
 
 
 def words(point: Point) -> str:
