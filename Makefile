@@ -72,8 +72,8 @@ skipping: ## what each saving saves, and that it does not change the answer
 costs: ## where the time goes, its floor, and how it grows with the mesh
 promise: ## whether accuracy means what it says, over forty scenes drawn at random
 scaling: ## one impact in many units and materials has one dimensionless answer
-pairing-comparison: ## closest point against pairs of points (14), (15): rebound, energy and time over epsilon and k
 materials: ## twelve materials at three speeds, against a stiffer contact on a finer mesh
+pairing-comparison: ## closest point against pairs of points (14), (15): rebound, energy and time over epsilon and k
 refine: ## refine mesh and step, report the observed convergence
 refine-oblique: $(READY) ## the same for the oblique disc, with the slip velocity down to 0.01 m/s
 	@$(PYTHON) -m orchestrate refine disc-oblique $(ARGS)

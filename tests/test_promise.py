@@ -42,6 +42,8 @@ def test_hard_scenes_are_hard_and_accepted():
         assert 5 < sum(name in point for point in points) < 100, name
     assert len({point["accuracy"] for point in points}) > 2
     assert all(scene.load("disc-normal").override(promise.OPEN | point) for point in points)
+    on_block = draws.draw(promise.SEED, 50, hard=True, block=True)
+    assert all(scene.load("disc-block").override(promise.OPEN | point) for point in on_block) and not any("gravity" in point for point in on_block)
 
 
 # ---- the promise
@@ -80,7 +82,8 @@ def test_promise_compares_with_the_finer_run(tmp_path, monkeypatch, change, erro
         return pd.DataFrame([point | coarse[0] if more else FINISHED | {"energy_initial": 1e9} for point in points])
     monkeypatch.setattr(study, "study", runs)
     monkeypatch.setattr(promise, "read_scene", lambda _: used())
-    monkeypatch.setattr(promise, "read_answers", lambda _: ({}, used(), 8.0))
+    answers = {False: coarse[0], True: FINISHED}
+    monkeypatch.setattr(promise, "read_answers", lambda folder: (answers["finer" in folder.parts] | {"largest_energy": 1e9}, used(), 8.0))
     table = promise.compare([draws.draw(1, 1)[0] | {"speed": 8.0}], tmp_path)
     assert table.error[0] == pytest.approx(error, rel=0.01) and table.estimated[0] == pytest.approx(1e-3 / 5e-3)
 
@@ -93,11 +96,11 @@ def used() -> dict:
 @pytest.mark.parametrize("error, code", [(0.5, 0), (2.0, 1)])
 def test_promise_says_whether_it_is_kept(tmp_path, monkeypatch, capsys, error, code, hard):
     """By its exit code and in words, in the hard scenes too, where what is above must have a warning; the table is a file."""
-    monkeypatch.setattr(promise, "compare", lambda points, _: errors(*[error] * len(points)))
+    monkeypatch.setattr(promise, "compare", lambda points, *_: errors(*[error] * len(points)))
     arguments = ["--scenes", "4", "--out", str(tmp_path), *(["--hard"] if hard else [])]
     assert promise.main(arguments) == code and ("IS NOT KEPT" in capsys.readouterr().out) == bool(code)
     assert len(pd.read_csv(tmp_path / "promise.csv")) == 4
-    monkeypatch.setattr(promise, "compare", lambda points, _: errors(*[error] * len(points), warnings="penalty: ..."))
+    monkeypatch.setattr(promise, "compare", lambda points, *_: errors(*[error] * len(points), warnings="penalty: ..."))
     assert promise.main(arguments) == (0 if hard else code)
 
 
