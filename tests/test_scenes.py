@@ -128,12 +128,12 @@ def test_a_killed_run_goes_on(mine, monkeypatch):
     found, path = mine
     wanted, real, calls = scene.load(str(path)).override({"checkpoint_every": 5}), freefem.run, []
 
-    def once_killed(program, script, flags, log, *more):
+    def once_killed(program, script, flags, log, progress, lock):
         calls.append(flags)
         if len(calls) > 1:
-            return real(program, script, flags, log, *more)
+            return real(program, script, flags, log, progress, lock)
         with subprocess.Popen([program.command, "-nw", "-ne", "-v", "0", f"edp/{script}.edp", *flags], cwd=parameters.ROOT, env=program.environment,
-                              stdout=subprocess.PIPE, text=True) as child:
+                              stdout=subprocess.DEVNULL, pass_fds=[lock]) as child:
             while not (log.parent / "checkpoint").exists() and child.poll() is None:
                 pass
             child.kill()
