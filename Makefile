@@ -5,7 +5,7 @@ READY := .venv/.ready
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup disc-normal disc-oblique disc-rolling friction-laws oblique contact-time-svk law-comparison contact-time-neohookean calibrate stick-slip verify paper movie test robustness bench bench-quick textbook skipping costs promise scaling materials pairing-comparison refine refine-oblique clean
+.PHONY: help setup disc-normal disc-oblique disc-rolling disc-block friction-laws oblique contact-time-svk law-comparison contact-time-neohookean calibrate stick-slip verify paper movie test robustness bench bench-quick textbook skipping costs promise scaling materials pairing-comparison refine refine-oblique clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
@@ -22,6 +22,9 @@ disc-oblique: $(READY) ## a disc hits the plane at 60 degrees, with friction: as
 	@$(PYTHON) -m orchestrate compare disc-oblique-svk disc-oblique $(ARGS)
 
 disc-rolling: $(READY) ## a disc is set down on the plane, slides and comes to roll (section 3.1)
+	@$(PYTHON) -m orchestrate run $@ $(ARGS)
+
+disc-block: $(READY) ## a disc falls on a free block of the same material (section 3.2)
 	@$(PYTHON) -m orchestrate run $@ $(ARGS)
 
 friction-laws: $(READY) ## draw the friction laws (figure 3)
@@ -43,11 +46,11 @@ verify: $(READY) ## exact solutions with convergence: bar, rod, Hertz, rigid bod
 	@$(PYTHON) -m orchestrate $@ $(ARGS)
 
 paper: override ARGS :=
-paper: disc-normal disc-oblique disc-rolling friction-laws $(SWEEPS) stick-slip verify ## all of the above, and results/paper/report.html
+paper: disc-normal disc-oblique disc-rolling disc-block friction-laws $(SWEEPS) stick-slip verify ## all of the above, and results/paper/report.html
 	@$(PYTHON) -m orchestrate $@
 
 movie: CASE := disc-oblique
-movie: $(READY) ## a film of a scene: make movie CASE=disc-oblique
+movie: $(READY) ## a film of a scene, built in or a file: make movie CASE=disc-oblique
 	@$(PYTHON) -m orchestrate $@ $(CASE) $(ARGS)
 
 test: $(READY) ## run all tests

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from orchestrate import folder, freefem, mesh, parameters, run, scene
+from orchestrate.failure import Busy
 
 COARSE = ("-law", "neohookean", "-nu", "0.4", "-accuracy", "0.4")
 ODD = "it's; touch pwned #$(touch pwned)`touch pwned`\"\\ *"     # a name that a shell would make something of
@@ -63,7 +64,7 @@ def test_second_run_on_a_folder_is_refused(tmp_path):
         time.sleep(0.01)
     code, _, error = call(*COARSE, "-out", str(tmp_path / "out/"), cwd=tmp_path)
     assert code == 14 and error.startswith("ffimpact: out: ") and "another run" in error and error.count("\n") == 1
-    with pytest.raises(run.Busy):
+    with pytest.raises(Busy):
         run.run(scene.load("disc-normal"), {"accuracy": 0.4}, tmp_path / "out")
     assert first.poll() is None
     first.kill()

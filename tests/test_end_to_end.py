@@ -34,7 +34,7 @@ def test_folder_holds_what_the_contract_says(result):
     """history.csv has every column, summary.json every key, scene.toml every parameter."""
     assert set(COLUMNS) <= set(result.history) and any(name.startswith("angular_momentum") for name in result.history)
     assert set(KEYS) <= set(result.summary)
-    assert set(parameters.names()) <= set(result.scene)
+    assert set(parameters.names("disc-plane")) <= set(result.scene)
     assert {p.name for p in (result.folder / "figures").iterdir()} == {
         "energies.png", "force.png", "shapes.png", "velocity.png"}
 
@@ -327,3 +327,5 @@ def test_readme_gives_the_unit_of_every_number(result):
               "residual_evaluations", "dofs", "unsolved_jumps", "refinements"}
     assert set(result.summary) - counts <= told, set(result.summary) - counts - told
     assert set(result.history) <= told, set(result.history) - told
+    of_bodies = {name for key in ("body_columns", "body_summary") for name in describe()[key]}
+    assert of_bodies <= told, of_bodies - told

@@ -123,7 +123,7 @@ def report(result: RunResult) -> str:
     place = shown(result.folder)
     lines = [f"{place}: " + ("finished earlier, same scene and code" if result.reused else "finished"), *_scene(scene)]
     quantities = [one for row in rows(per_metre=not script.startswith("ball")) for one in _of_bodies(row, scene, summary)]
-    width = max(24, *(len(quantity.label) + 2 for quantity in quantities))
+    width = max(24, *(len(quantity.label) + 1 for quantity in quantities))
     for quantity in quantities:
         value = summary.get(quantity.key)
         if value is None or (abs(value) < 1e-9 and quantity.key.rstrip("_0123456789") in LEFT_OUT_AT_ZERO):

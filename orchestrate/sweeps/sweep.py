@@ -31,7 +31,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from .. import scene
+from .. import parameters, scene
 from ..failure import BadInput, Busy, Failure, Unreadable
 from ..multibody import Multibody
 from ..parameters import ROOT, Value
@@ -229,9 +229,10 @@ def _values(name: str, given: list | dict, of: scene.Scene | Multibody) -> list[
         low, high, points, spacing = *(given[key] for key in ("from", "to", "points")), given.get("spacing", "linear")
         if spacing not in ("linear", "log"):
             raise BadInput(f"{name}: spacing '{spacing}' is not known (accepted: linear|log)")
+        rule = parameters.table().get(name.rpartition(".")[2])
+        if rule and rule.kind == "word" or not {type(low), type(high)} <= {int, float}:
+            raise BadInput(f"{name}: a range needs a parameter that is a number, from and to numbers")
         low, high = (of.check({name: number})[name] for number in (low, high))
-        if type(low) not in (int, float) or type(high) not in (int, float):
-            raise BadInput(f"{name}: a range needs a parameter that is a number")
         if spacing == "log" and min(low, high) <= 0:
             raise BadInput(f"{name}: from {low} to {high} (accepted for log: above 0)")
         if type(points) is not int or not 2 <= points <= MOST_RUNS:

@@ -1,0 +1,292 @@
+"""Scenes of several bodies through every way in: disc-block, a TOML file of one's own, direct runs, sweeps, figures."""
+
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from orchestrate import assembly, freefem, multibody, parameters, run, scene, vtu
+from orchestrate.describe import describe
+from orchestrate.failure import BadInput, Failure
+from orchestrate.report import bodies, figures, report
+from orchestrate.sweeps import sweep
+
+MINE = """
+title = "A disc meets a soft one and a moving post"
+law = "neohookean"
+young = 7e6
+nu = 0.4
+density = 1722
+accuracy = 0.4
+fields = 3
+[[body]]
+name = "striker"
+shape = "disc"
+radius = 0.05
+position = [-0.052, 0]
+velocity = [4, 0]
+[[body]]
+name = "target"
+shape = "disc"
+radius = 0.04
+position = [0.04, 0]
+young = 4e6
+[[obstacle]]
+name = "post"
+kind = "circle"
+centre = [0.11, 0]
+radius = 0.02
+velocity = [-1, 0]
+[contact]
+friction_static = 0.2
+[[contact.pair]]
+bodies = ["target", "post"]
+friction_static = 0
+"""
+
+
+@pytest.fixture(scope="module")
+def block(tmp_path_factory):
+    """disc-block, coarse, half of it."""
+    found = run.run(scene.load("disc-block"), {"accuracy": 0.4, "fields": 3}, tmp_path_factory.mktemp("block") / "run")
+    report.draw(found)
+    return found
+
+
+@pytest.fixture(scope="module")
+def mine(tmp_path_factory):
+    """The file above, run, with the file's path."""
+    folder = tmp_path_factory.mktemp("mine")
+    (folder / "mine.toml").write_text(MINE)
+    found = run.run(scene.load(str(folder / "mine.toml")), {}, folder / "run")
+    report.draw(found)
+    return found, folder / "mine.toml"
+
+
+# ---- disc-block
+
+def test_each_body_has_its_columns_and_numbers(block):
+    """history.csv and summary.json hold what the scripts say they write of two bodies; the totals are the sums over the bodies."""
+    wanted, h, s = scene.load("disc-block"), block.history, block.summary
+    assert list(h) == wanted.columns and {"vy_1", "vy_2", "kinetic_1"} <= set(h) and "block_width" in block.scene
+    assert set(wanted.numbers) <= set(s) and s["provenance"]["script"] == "disc-block" and s["estimated_error"] is not None
+    for name in ("kinetic", "elastic", "momentum_y"):
+        assert h[name] == pytest.approx(h[f"{name}_1"] + h[f"{name}_2"], rel=1e-9, abs=1e-9 * abs(h[name]).max())
+    assert s["mass_1"] == pytest.approx(1722 * np.pi * 0.25, rel=1e-2) and s["mass_2"] == pytest.approx(1722 * 20, rel=1e-9)
+
+
+def test_what_one_body_loses_the_other_gains(block):
+    """No force from outside: the momentum of all stays what the disc brought, each body's changes by its impulse, energy is kept."""
+    h, s = block.history, block.summary
+    assert np.ptp(h["momentum_y"]) < 1e-9 * abs(h["momentum_y"]).max()
+    assert s["impulse_y_1"] == pytest.approx(-s["impulse_y_2"], rel=1e-9) and 0.97 * s["impulse"] < s["impulse_y_1"] < s["impulse"]   # on a curved face
+    assert s["mass_1"] * (s["rebound_vy_1"] + 10) == pytest.approx(s["impulse_y_1"], rel=1e-6)
+    assert s["rebound_vy_1"] > 0 > s["rebound_vy_2"] and s["energy_drift"] < 1e-8
+    assert h["force_y_1"] == pytest.approx(-h["force_y_2"], abs=1e-6 * h["normal_force"].max())
+
+
+def test_lost_ellipticity_is_a_warning(block):
+    """St. Venant-Kirchhoff beyond its range says so for two bodies as it does for one; the law that keeps it does not."""
+    hard = run.run(scene.load("disc-block"), {"accuracy": 0.4, "speed": 25, "fields": 0, "breakdown": "continue"}, block.folder.parent / "hard", estimate=False)
+    assert hard.summary["ellipticity_lost_time"] > 0 and any(each.startswith("ellipticity: lost from") for each in hard.summary["warnings"])
+    assert block.summary["ellipticity_lost_time"] is None and not any(each.startswith("ellipticity") for each in block.summary["warnings"])
+
+
+# ---- a file of one's own
+
+def test_the_folder_of_a_scene_of_ones_own(mine):
+    """Mesh, data file, scene as used, with the mesh's checksum: read again they are the same scene, which is not run again."""
+    found, path = mine
+    s = found.summary
+    assert {"mesh.msh", "scene.dat", "scene.toml", "history.csv", "summary.json", "fields.pvd"} <= {each.name for each in found.folder.iterdir()}
+    assert s["provenance"]["mesh"] == run._sha256(found.folder / "mesh.msh") and s["provenance"]["gmsh"]
+    again = assembly.assemble(scene.load(str(found.folder / "scene.toml")))
+    assert again.data == (found.folder / "scene.dat").read_text()
+    assert run.run(scene.load(str(path)), {}, found.folder).reused
+    assert not run.reusable(scene.load(str(path)).override({"body.2.young": 5e6}), found.folder)
+    assert s["rebound_vx_2"] != 0 and s["energy_drift"] < 1e-8 and s["estimated_error"] is not None
+
+
+def test_entries_are_set_on_the_command_line(mine):
+    """--set body.2.young=... arrives in the scene as used, and a direct run on the folder's files gives the same answer."""
+    found, path = mine
+    out = path.parent / "set"
+    done = call("run", str(path), "--set", "body.2.young=8e6", "fields=0", "--out", str(out), "--quiet")
+    assert done.returncode == 0, done.stderr
+    other = json.loads((out / "summary.json").read_text())
+    assert other["impulse"] > found.summary["impulse"] and run.read_scene(out)["body"][1]["young"] == 8e6
+    flags = [word for name, value in values(out).items() for word in (f"-{name}", str(value))]
+    direct = freefem_run("-mesh", str(out / "mesh.msh"), "-bodies", str(out / "scene.dat"), *flags, "-out", str(path.parent / "direct"))
+    assert direct.returncode == 0, direct.stderr
+    assert json.loads((path.parent / "direct/summary.json").read_text())["impulse"] == pytest.approx(other["impulse"], rel=1e-9)
+
+
+def test_a_killed_run_goes_on(mine, monkeypatch):
+    """A run of bodies that ends at a checkpoint goes on from there when asked again, to the same answer."""
+    found, path = mine
+    wanted, real, calls = scene.load(str(path)).override({"checkpoint_every": 5}), freefem.run, []
+
+    def once_killed(program, script, flags, log, progress, lock):
+        calls.append(flags)
+        if len(calls) > 1:
+            return real(program, script, flags, log, progress, lock)
+        with subprocess.Popen([program.command, "-nw", "-ne", "-v", "0", f"edp/{script}.edp", *flags], cwd=parameters.ROOT, env=program.environment,
+                              stdout=subprocess.DEVNULL, pass_fds=[lock]) as child:
+            while not (log.parent / "checkpoint").exists() and child.poll() is None:
+                pass
+            child.kill()
+        log.write_text("")
+        return -9, ""
+    monkeypatch.setattr(freefem, "run", once_killed)
+    out = path.parent / "killed"
+    with pytest.raises(Failure, match="goes on from the last checkpoint"):
+        run.run(wanted, {}, out, estimate=False)
+    result = run.run(wanted, {}, out, estimate=False)
+    assert "-restart" in calls[1] and result.summary["resumed_at"] > 0
+    assert result.summary["impulse"] == pytest.approx(found.summary["impulse"], rel=1e-9)
+
+
+def test_a_sweep_reaches_every_entry(mine):
+    """Axes named by dotted names, in quotes or not; the table has the numbers of each body."""
+    path = mine[1].with_name("sweep.toml")
+    path.write_text('scene = "mine.toml"\ncollect = ["rebound_vx_1", "rebound_vx_2"]\n[set]\nfields = 0\n[product]\nbody.2.young = [2e6, 8e6]\n'
+                    '"contact.penalty" = [5e9]\n[figure]\nx = "body.2.young"\ny = "rebound_vx_2"\n')
+    wanted = sweep.load(str(path))
+    assert wanted.points == [{"body.2.young": 2e6, "contact.penalty": 5e9}, {"body.2.young": 8e6, "contact.penalty": 5e9}]
+    rows = sweep.collect(wanted, path.parent / "sweep")
+    assert (rows.exit == 0).all() and rows.rebound_vx_2.nunique() == 2 and (path.parent / "sweep/sweep.png").exists()
+    for text, words in (("body.3.young = [1e6]", "body.3.young: there is no body.3 in the scene"), ("body.2.yung = [1e6]", "body.2.yung: .* belongs to no such key"),
+                        ("body.1.velocity = [[1, 0], [2, 0]]", "single numbers and words"), ("radius = [1]", "radius: .* belongs to no such key")):
+        path.write_text(f'scene = "mine.toml"\n[product]\n{text}\n')
+        with pytest.raises(BadInput, match=words):
+            sweep.load(str(path))
+
+
+def test_coarser_and_finer_elements(mine):
+    """The scene for another mesh has that much larger elements on every body that is meshed, and the same contact."""
+    wanted = scene.load(str(mine[1]))
+    used = run.read_scene(mine[0].folder)
+    finer = run.read_scene(mine[0].folder) | {}
+    built = assembly.assemble(wanted.override(wanted.scaled(wanted.values, used, 0.5)))
+    assert [body["mesh_size"] for body in built.used["body"]] == [0.5 * body["mesh_size"] for body in finer["body"]]
+    assert built.used["contact"] == used["contact"] and built.values["accuracy"] == 0.25 * used["accuracy"]
+    assert len(built.mesh.triangles) > 2 * len(assembly.assemble(wanted).mesh.triangles)
+
+
+# ---- figures
+
+@pytest.mark.parametrize("which", ["block", "mine"])
+def test_figures_of_several_bodies(which, request):
+    """Energies, velocities, forces and shapes are drawn; the title names the bodies' materials."""
+    found = request.getfixturevalue(which)
+    found = found[0] if which == "mine" else found
+    assert {path.name for path in (found.folder / "figures").iterdir()} == {"energies.png", "force.png", "shapes.png", "velocity.png"}
+    assert all(path.stat().st_size > 5000 for path in (found.folder / "figures").iterdir())
+    assert ("target: neo-Hookean, E = 4 MPa" if which == "mine" else "disc on block: St. Venant") in figures.title(found.scene)
+    assert "rebound velocity, " + ("x, target" if which == "mine" else "y, block") in report.report(found)
+
+
+def test_bodies_are_drawn_where_they_are(mine):
+    """The displacement moves the bodies from their reference places, side by side, to those of the scene; the post moves on."""
+    found = mine[0]
+    t, path = vtu.series(found.folder / "fields.pvd")[-1]
+    points = figures.deformed(vtu.read(path), False).points
+    left, right, *_ = bodies.limits([figures.deformed(vtu.read(path), False)])
+    xs = [np.interp(t, found.history["t"], found.history[f"x_{b}"]) for b in (1, 2)]
+    assert points[:, 0].min() == pytest.approx(xs[0] - 0.05, abs=0.004) and left < points[:, 0].min() < points[:, 0].max() < right
+    assert bodies.obstacles_of(found.scene)[0].velocity.tolist() == [-1, 0]
+
+
+# ---- what is refused
+
+def call(*words: str) -> subprocess.CompletedProcess:
+    return subprocess.run([sys.executable, "-m", "orchestrate", *words], cwd=parameters.ROOT, capture_output=True, text=True)
+
+
+def freefem_run(*flags: str, script: str = "bodies") -> subprocess.CompletedProcess:
+    program = freefem.find()
+    return subprocess.run([program.command, "-nw", "-ne", "-v", "0", f"edp/{script}.edp", *flags], cwd=parameters.ROOT, env=program.environment, capture_output=True, text=True)
+
+
+def values(folder) -> dict:
+    """The parameters of a scene of bodies as flags."""
+    used = run.read_scene(folder)
+    return {name: value for name, value in (used | used["contact"]).items() if name in parameters.names("bodies")}
+
+
+@pytest.mark.parametrize("words, said", [
+    (("disc-normal", "--set", "block_width=3"), "block_width: disc-plane takes no such parameter (accepted: in disc-block)"),
+    (("disc-block", "--mesh", "MESH"), "mesh: disc-block takes no such parameter (accepted: in disc-plane|bodies)"),
+    (("two-discs", "--mesh", "MESH"), "mesh: is of one body"),
+    (("two-discs", "--set", "body.3.young=1e6"), "body.3.young: there is no body.3 in the scene (accepted: body.1 to body.2)"),
+    (("two-discs", "--set", "radius=1"), "radius: '1' belongs to no such key"),
+    (("two-discs", "--set", "body.1.position=[0,0]"), "body.1.position: 'left' overlaps 'right' (body.2)"),
+    (("two-discs", "--set", "contact.friction_dynamic=0.5"), "contact.friction_dynamic: 0.5 is larger than friction_static 0.3"),
+])
+def test_what_python_refuses(words, said, tmp_path):
+    """Exit code 10, one line, nothing left behind."""
+    (tmp_path / "m.msh").write_text((MESH := "4 2 4\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n1 2 3 0\n1 3 4 0\n1 2 1\n2 3 1\n3 4 1\n4 1 1\n"))
+    done = call("run", *(str(tmp_path / "m.msh") if word == "MESH" else word for word in words), "--out", str(tmp_path / "out"), "--quiet")
+    assert done.returncode == 10 and done.stderr.count("\n") == 1 and said in done.stderr, done.stderr + MESH
+    assert [path.name for path in tmp_path.iterdir()] == ["m.msh"]
+
+
+@pytest.fixture(scope="module")
+def inputs(tmp_path_factory):
+    """mesh.msh and scene.dat of two discs that touch."""
+    folder = tmp_path_factory.mktemp("inputs")
+    assembly.assemble(scene.load("two-discs").override({"accuracy": 0.4})).write(folder)
+    return folder
+
+
+@pytest.mark.parametrize("file, old, new, said", [
+    ("scene.dat", "ffimpact-bodies 1", "ffimpact-bodies 2", "does not begin with 'ffimpact-bodies 1'"),
+    ("scene.dat", "neohookean 7000000.0", "neohookean seven", "has a word where a number belongs"),
+    ("scene.dat", "pairs 0", "pairs 1", "ends too early"),
+    ("scene.dat", "left neohookean", "left rubber", "the law 'rubber' of left is not known"),
+    ("scene.dat", "neohookean 7000000.0", "neohookean -7000000.0", "left has young -7e+06"),
+    ("scene.dat", " -0.06 0.0 ", " 0.0 0.0 ", "overlap by 0.0"),
+    ("mesh.msh", " 1\n", " 7\n", "mesh: a triangle of region 7 (accepted: the bodies, 0 to 1)"),
+    ("scene.dat", None, None, "bodies: the file"),
+    ("mesh.msh", None, None, "mesh: the file"),
+])
+def test_what_a_direct_run_refuses(file, old, new, said, inputs, tmp_path):
+    """bodies.edp on a bad data file or mesh: exit code 10, one line, nothing left behind."""
+    for name in ("scene.dat", "mesh.msh"):
+        text = (inputs / name).read_text()
+        if name == file and old:
+            head, triangles = text.split("\n", 1)
+            text = f"{head}\n{triangles}".replace(old, new, 1) if name == "scene.dat" else _other_region(text)
+        if name != file or old:
+            (tmp_path / name).write_text(text)
+    done = freefem_run("-mesh", str(tmp_path / "mesh.msh"), "-bodies", str(tmp_path / "scene.dat"), "-accuracy", "0.4", "-out", str(tmp_path / "out"))
+    assert done.returncode == 10 and said in done.stderr and done.stderr.count("\n") == 1, done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def _other_region(text: str) -> str:
+    """The mesh with the last triangle in region 7."""
+    lines = text.splitlines()
+    n, t, _ = map(int, lines[0].split())
+    lines[n + t] = f"{lines[n + t].rsplit(' ', 1)[0]} 7"
+    return "\n".join(lines) + "\n"
+
+
+@pytest.mark.parametrize("script, flags, said", [
+    ("bodies", ("-accuracy", "0.4"), "bodies: -bodies FILE is missing"),
+    ("bodies", ("-radius", "1"), "radius: bodies takes no such parameter (accepted: in disc-plane|disc-block)"),
+    ("disc-block", ("-bodies", "x"), "bodies: disc-block takes no such parameter (accepted: in bodies)"),
+    ("disc-plane", ("-block_height", "1"), "block_height: disc-plane takes no such parameter (accepted: in disc-block)"),
+])
+def test_flags_of_another_script_are_refused(script, flags, said):
+    """A direct run refuses, with exit code 10, what its script would not look at."""
+    done = freefem_run(*flags, script=script)
+    assert done.returncode == 10 and said in done.stderr and done.stderr.count("\n") == 1
+
+
+def test_scripts_describe_themselves():
+    """The scripts that there are, and of two bodies the columns of each."""
+    assert describe()["scripts"] == "disc-plane|disc-block|bodies" and describe(script="disc-block")["bodies"] == 2
+    assert set(multibody.built_in()) == {"two-discs", "three-in-a-row", "disc-bowl", "disc-corner", "disc-step"} < set(scene.built_in())
