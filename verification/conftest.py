@@ -16,7 +16,7 @@ def measure():
 
 @pytest.fixture(scope="session")
 def disc(tmp_path_factory):
-    """disc(name=value, ...): edp/disc-plane.edp run without Python with these flags."""
+    """disc(name=value, ...): edp/disc-plane.edp run without Python with these flags; disc(script="disc-block", ...) another."""
     @cache
     def go(**given) -> runs.Outcome:
         return runs.disc(tmp_path_factory.mktemp("disc"), **given)

@@ -33,9 +33,9 @@ def measure(script: str, **given: Value | Path) -> dict[str, float]:
     return _measured(script, _flags(given))
 
 
-def disc(folder: Path, **given: Value | Path) -> Outcome:
-    """edp/disc-plane.edp with these flags, run into `folder`."""
-    _start("edp/disc-plane.edp", (*_flags(given), "-out", str(folder)), ROOT)
+def disc(folder: Path, script: str = "disc-plane", **given: Value | Path) -> Outcome:
+    """edp/<script>.edp with these flags, run into `folder`."""
+    _start(f"edp/{script}.edp", (*_flags(given), "-out", str(folder)), ROOT)
     return Outcome(results.read_summary(folder), results.read_history(folder))
 
 

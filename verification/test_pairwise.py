@@ -1,0 +1,103 @@
+"""Pairwise contact (14), (15) in the march: a disc on a free block without friction (edp/disc-block.edp, paper, section 3.2)."""
+
+import signal
+import subprocess
+import time
+
+import numpy as np
+import pytest
+
+from orchestrate import freefem, results
+from orchestrate.failure import Failure
+from orchestrate.parameters import ROOT
+
+SCENE = {"radius": 0.5, "speed": 10, "nu": 0.4, "law": "neohookean", "accuracy": 0.02}
+CONSERVED = 1e-9            # over the energy, the momentum and their arms at the start
+
+
+@pytest.fixture(name="block")
+def _block(disc):
+    return lambda **given: disc(script="disc-block", **(SCENE | given))
+
+
+def drift(values: np.ndarray, scale: float) -> float:
+    return abs(values - values[0]).max() / scale
+
+
+@pytest.mark.parametrize("given", [{}, {"law": "svk"}, {"angle": 60}, {"angle": 60, "law": "svk", "spin": 20}, {"degree": 1}, {"exponent": 2}], ids=str)
+def test_energy_and_momenta_are_conserved(block, given):
+    """Total energy, both momenta and the angular momentum, all over an impact that does touch."""
+    run = block(pairing="pairwise", **given)
+    momentum = abs(run.history["momentum_y"][0])
+    assert run.summary["status"] == "ok" and run.summary["impulse_y_1"] > momentum
+    assert run.summary["energy_drift"] < CONSERVED
+    for name, scale in (("momentum_x", momentum), ("momentum_y", momentum), ("angular_momentum", momentum * SCENE["radius"])):
+        assert drift(run.history[name], scale) < CONSERVED, name
+
+
+@pytest.mark.parametrize("law", ["neohookean", "svk"])
+def test_it_agrees_with_closest_points(block, law):
+    """With a range of an element and of half of one: both rebound velocities to 1 % of the speed, the impulse to 1 %, the contact time to 4 %."""
+    nearest, usual = block(law=law).summary, block(law=law, pairing="pairwise").summary
+    width = 0.06                         # the element is 0.12 m
+    for found in (usual, block(law=law, pairing="pairwise", pairing_range=width).summary):
+        for name in ("rebound_vy_1", "rebound_vy_2"):
+            assert found[name] == pytest.approx(nearest[name], abs=0.01 * SCENE["speed"])
+        assert found["impulse_y_1"] == pytest.approx(nearest["impulse_y_1"], rel=0.01)
+        assert found["thresholded_contact_time"] == pytest.approx(nearest["thresholded_contact_time"], rel=0.04)
+
+
+def test_half_and_whole_are_the_same(block):
+    """The mirror images of half a body count as the points of the whole one do."""
+    half, whole = (block(pairing="pairwise", symmetry=part).summary for part in ("half", "full"))
+    for name in ("rebound_vy_1", "rebound_vy_2", "impulse_y_1", "contact_time", "energy_initial"):
+        assert half[name] == pytest.approx(whole[name], rel=1e-6)
+
+
+def test_a_range_below_the_distance_of_points_is_said(block):
+    """Points that slip through between each other: the run says so, as it does not with a range of an element."""
+    assert any("slip through" in said for said in block(pairing="pairwise", pairing_range=0.02, end_time=0.01).summary["warnings"])
+    assert not any("slip through" in said for said in block(pairing="pairwise").summary["warnings"])
+
+
+def test_the_printed_form_keeps_energy_and_chatters(block):
+    """-k d jumps where points come into range: energy is kept by the scheme, but the bodies part and touch many times."""
+    found = block(pairing="pairwise-printed", chatter="continue", end_time=0.015)
+    assert found.summary["energy_drift"] < CONSERVED and drift(found.history["momentum_y"], abs(found.history["momentum_y"][0])) < CONSERVED
+    assert found.summary["contact_intervals"] > 5 and block().summary["contact_intervals"] == 1
+
+
+@pytest.mark.parametrize("given, words", [
+    ({"friction_static": 0.3}, "pairing: pairwise has no slip, and so no friction (accepted: friction_static 0, or closest-point)"),
+    ({"pairing": "pairwise-printed", "exponent": 2}, "pairing: pairwise-printed has a law of its own"),
+    ({"pairing_range": 0}, "pairing_range: 0 is out of range (accepted: auto, 1e-12 to 1e+09)"),
+    ({"pairing": "pairs"}, "pairing: 'pairs' is not known (accepted: closest-point|pairwise|pairwise-printed)"),
+    ({"script": "disc-plane"}, "pairing: pairwise is between bodies, and here is one (accepted: closest-point)")], ids=str)
+def test_refusals(disc, given, words):
+    with pytest.raises(Failure) as failure:
+        disc(**({"script": "disc-block", "pairing": "pairwise"} | SCENE | given))
+    assert "exit code 10" in str(failure.value) and words in str(failure.value)
+
+
+def test_a_killed_run_goes_on_to_the_same_answer(tmp_path):
+    """From a checkpoint in the middle of the contact to the history of a run that was not killed, to the last bit."""
+    program = freefem.find()
+    flags = [text for name, value in (SCENE | {"pairing": "pairwise", "checkpoint_every": 10}).items() for text in (f"-{name}", str(value))]
+
+    def start(out, *more):
+        return subprocess.Popen([program.command, "-nw", "-ne", "-v", "0", "edp/disc-block.edp", *flags, "-out", str(out), *more], cwd=ROOT,
+                                env=program.environment, stdout=subprocess.DEVNULL)
+    assert start(tmp_path / "whole").wait(120) == 0
+    killed = start(tmp_path / "killed")
+    part = tmp_path / "killed/history.part"
+    for _ in range(6000):
+        if killed.poll() is not None or (tmp_path / "killed/checkpoint").exists() and part.exists() and len(part.read_text().splitlines()) > 25:
+            break
+        time.sleep(0.01)
+    killed.send_signal(signal.SIGKILL)
+    assert killed.wait(10) == -signal.SIGKILL
+    assert start(tmp_path / "killed", "-restart", str(tmp_path / "killed/checkpoint")).wait(120) == 0
+    assert results.read_summary(tmp_path / "killed")["resumed_at"] > 0
+    whole, resumed = (results.read_history(tmp_path / name) for name in ("whole", "killed"))
+    for name in whole:
+        assert np.array_equal(whole[name], resumed[name]), name
