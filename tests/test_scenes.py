@@ -1,6 +1,8 @@
 """Scenes of several bodies through every way in: disc-block, a TOML file of one's own, direct runs, sweeps, figures."""
 
 import json
+import os
+import signal
 import subprocess
 import sys
 
@@ -133,7 +135,7 @@ def test_a_killed_run_goes_on(mine, monkeypatch):
         if len(calls) > 1:
             return real(program, script, flags, log, progress, lock)
         with subprocess.Popen([program.command, "-nw", "-ne", "-v", "0", f"edp/{script}.edp", *flags], cwd=parameters.ROOT, env=program.environment,
-                              stdout=subprocess.DEVNULL, pass_fds=[lock]) as child:
+                              stdout=subprocess.DEVNULL, pass_fds=[lock], process_group=0) as child:
             while not (log.parent / "checkpoint").exists() and child.poll() is None:
                 pass
             child.kill()
