@@ -53,7 +53,8 @@ def _parser() -> argparse.ArgumentParser:
 
     command = commands.add_parser("run", help="run a scene, or reuse its finished result")
     command.add_argument("scene", metavar="SCENE", help="a built-in scene (see list) or the path of a TOML file")
-    command.add_argument("--set", metavar="NAME=VALUE", nargs="+", action="extend", default=[], help="set a parameter (see parameters)")
+    command.add_argument("--set", metavar="NAME=VALUE", nargs="+", action="extend", default=[], help="set a parameter (see parameters); of a scene of bodies "
+                         "any entry: body.2.young=1e6")
     command.add_argument("--out", metavar="DIR", type=Path, help="the result folder (default: results/SCENE)")
     command.add_argument("--mesh", metavar="FILE", type=Path, help="a mesh of a body of your own, FreeFEM's or gmsh's .msh; labels 1: may touch, 2: symmetry axis, "
                          "others: free, never touch")
@@ -97,7 +98,8 @@ def _parameters(options: argparse.Namespace) -> None:
     for name in parameters.names():
         p = parameters.table()[name]
         default = p.default if isinstance(p.default, str) else f"{p.default:g}"
-        print(f"{name:<21}{default:<17}{p.unit:<9}{p.help}; accepted: {p.accepted}")
+        only = f"; in {p.scripts[0]} only" if len(p.scripts) == 1 else ""
+        print(f"{name:<21}{default:<17}{p.unit:<9}{p.help}; accepted: {p.accepted}{only}")
 
 
 def _figures(options: argparse.Namespace) -> None:

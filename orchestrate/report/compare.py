@@ -12,7 +12,7 @@ from ..failure import BadInput, Failure
 from ..folder import result_folder
 from ..parameters import ROOT, overrides
 from ..places import shown
-from ..results import RunResult
+from ..results import RunResult, suffixes
 from ..run import run
 from . import report
 from .figures import BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE
@@ -48,7 +48,7 @@ def main(argv: list[str]) -> int:
 
 
 def draw(results: dict[str, RunResult], path: Path) -> None:
-    """Normal force, friction force, total energy and velocities over time, a colour a run; friction only where there is any."""
+    """Normal force, friction force, total energy and velocities (of each body) over time, a colour a run; friction only where there is any."""
     rubs = any(result.history["friction_force"].any() for result in results.values())
     with plt.rc_context(STYLE):
         figure, grid = plt.subplots(2, 2, figsize=(8.2, 5.6), sharex=True)
@@ -57,14 +57,15 @@ def draw(results: dict[str, RunResult], path: Path) -> None:
             h, used = result.history, result.scene
             t, per = 1e3 * h["t"], "" if "vz" in h else "/m"
             force.plot(t, 1e-3 * h["normal_force"], color=colour,
-                       label=f"{name}: {LAWS.get(used['law'], used['law'])}, ν = {used['nu']:g}, {result.summary['dofs']} dofs")
+                       label=f"{name}: {_material(used)}{result.summary['dofs']} dofs")
             drag.plot(t, 1e-3 * h["friction_force"] if rubs else h["max_penetration"] * 1e3, color=colour)
             energy.plot(t, h["kinetic"] + h["elastic"] + h["contact"], color=colour)
             energy.plot(t, h["elastic"], color=colour, linestyle="--")
-            velocity.plot(t, h["vy"], color=colour, linestyle="--")
-            if np.any(h["vx"]):
-                velocity.plot(t, h["vx"], color=colour)
-                velocity.plot(t, -used["radius"] * h["spin"], color=colour, linestyle=":")
+            for of in suffixes(h):
+                velocity.plot(t, h[f"vy{of}"], color=colour, linestyle="--")
+                if np.any(h[f"vx{of}"]):
+                    velocity.plot(t, h[f"vx{of}"], color=colour)
+                    velocity.plot(t, -result.summary[f"reach{of}"] * h[f"spin{of}"], color=colour, linestyle=":")
         for axes in (drag, velocity):
             axes.axhline(0, color=GREY, linewidth=0.6)
         force.set(ylabel=f"normal force [kN{per}]", ylim=(0, None))
@@ -77,6 +78,11 @@ def draw(results: dict[str, RunResult], path: Path) -> None:
         figure.legend(*force.get_legend_handles_labels(), loc="outside upper center", ncols=1)
         figure.savefig(path)
         plt.close(figure)
+
+
+def _material(used: dict) -> str:
+    """Law and nu, where the scene has one of them."""
+    return f"{LAWS.get(used['law'], used['law'])}, ν = {used['nu']:g}, " if "law" in used else ""
 
 
 def _key(axes: plt.Axes, lines: dict[str, str]) -> None:
