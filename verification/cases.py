@@ -6,6 +6,8 @@ from pathlib import Path
 
 from orchestrate.report.report import REFERENCE
 
+from .bars import bouncing, two
+from .blocks import blocks
 from .case import Case, Row
 from .hertz import cylinder, ellipse
 from .impact import bars, rigids
@@ -52,4 +54,10 @@ CASES = (
     Case("V12", "normal impact against NGSolve and GetFEM", "accuracy", 0.005, independent,
          note="Their converged values, written independently on the same equations. The contact time scatters with mesh and step, by up "
               "to 1.5 % on the coarser ones."),
+    Case("V13", "two bars, head-on: contact 2L/c, stress ρcv, velocities exchanged", "element size / length", 0.01, two,
+         note="v/c = 10⁻⁴, penalty 1000 E/L; the second bar has elements of nine tenths of the first one's."),
+    Case("V14", "bouncing bar under gravity: contacts in [1, 5/3] and [11/3, 13/3]", "element size / length", 0.01, bouncing,
+         note="Gravity and height a thousandth of those of Doyen, Ern and Piperno, for the linear theory. Contact: a force above 1 % of the largest."),
+    Case("V16", "two blocks with unlike meshes pressed together: the same pressure everywhere", "element size / width", 0.01, blocks,
+         note="Penalty 10 E/width. Where both bodies take both roles the pressure at a contact point deviates with penalty × element size / E."),
 )

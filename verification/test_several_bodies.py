@@ -1,9 +1,15 @@
 """Two and more deformable bodies that hit each other: what a step and a run conserve, and what they must agree with."""
 
+import math
+
 import numpy as np
 import pytest
 
-from .scenes import HITS
+from .bars import bouncing_bar, two_bars
+from .blocks import pressed
+from .scenes import HITS, disc, plane, scene
+
+UNIFORM = {"mesh_size": 0.012, "contact_mesh_size": 0.012, "penalty": 1e10}      # the same meshes wherever the bodies touch
 
 
 @pytest.mark.parametrize("degree", [2, 1])
@@ -31,3 +37,115 @@ def test_march_conserves(march, hit):
     for axis in "xy":
         assert np.ptp(history[f"momentum_{axis}"]) < 1e-12 * scale
     assert np.ptp(history["angular_momentum"]) < 1e-9 * scale * 0.05
+
+
+# ---- what must agree with each other
+
+def differ(run, other, *names: str) -> float:
+    """The largest relative difference of some numbers of two summaries."""
+    return max(abs(run.summary[name] / other.summary[name] - 1) for name in names)
+
+
+MEASURES = ("impulse", "contact_time", "peak_force")
+
+
+def test_two_equal_discs_are_a_disc_on_a_plane_of_doubled_penalty(march):
+    """Head-on, to 0.5 %: impulse, contact time, rebound."""
+    two = march(scene(disc(-0.0501, 0, 4, 0), disc(0.0501, 0, -4, 0), penalty=1e10))
+    one = march(scene(disc(-0.0501, 0, 4, 0), obstacles=(plane(normal=(-1, 0)),), penalty=2e10))
+    assert differ(two, one, "impulse", "contact_time") < 5e-3
+    assert two.summary["rebound_vx_1"] == pytest.approx(one.summary["rebound_vx"], rel=5e-3)
+
+
+def test_stiff_heavy_block_is_a_plane(march):
+    """A block ten thousand times as stiff and heavy, to 1 %: impulse, contact time, rebound."""
+    block = {"shape": "rectangle", "width": 0.4, "height": 0.2, "position": [0, -0.1], "young": 7e10, "density": 1.722e7, "nu": 0.3}
+    free = march(scene(disc(0, 0.0501, 0, -8), block, penalty=1e10))
+    fixed = march(scene(disc(0, 0.0501, 0, -8), obstacles=(plane(),), penalty=1e10))
+    assert differ(free, fixed, "impulse", "contact_time") < 0.01
+    assert free.summary["rebound_vy_1"] == pytest.approx(fixed.summary["rebound_vy"], rel=0.01)
+
+
+@pytest.mark.parametrize("first, second", [("neohookean", "neohookean"), ("svk", "neohookean")])
+@pytest.mark.parametrize("friction", [0, 0.3])
+def test_order_of_the_bodies(march, first, second, friction):
+    """Bodies of unlike material and law, swapped in the file: nothing beyond round-off, which friction makes more of, changes."""
+    bodies = [disc(-0.055, 0, 4, 1, law=first), disc(0.055, 0.02, -3, 0, law=second, young=2e6, nu=0.3, density=900)]
+    there, back = (march(scene(*each, friction=friction, **UNIFORM)) for each in (bodies, bodies[::-1]))
+    assert differ(there, back, *MEASURES) < 1e-4
+    assert there.summary["rebound_vy_1"] == pytest.approx(back.summary["rebound_vy_2"], rel=1e-4)
+
+
+@pytest.mark.parametrize("kind, side", [("bowl", 1), ("circle", -1)])
+def test_obstacle_of_great_radius_is_a_plane(march, kind, side):
+    """Ten thousand radii of the disc: the gaps differ by 1e-4 of those inside the contact, in opposite directions."""
+    curved = march(scene(disc(0, 0.0501, 0, -8), obstacles=({"kind": kind, "centre": [0, side * 500], "radius": 500},), **UNIFORM))
+    flat = march(scene(disc(0, 0.0501, 0, -8), obstacles=(plane(),), **UNIFORM))
+    assert 1e-9 < differ(curved, flat, *MEASURES) < 1e-4
+
+
+@pytest.mark.parametrize("angle", [30, 137])
+def test_inclined_scene_is_the_level_one_turned(march, angle):
+    """Plane, motion, body and load turned together, with friction: to the scatter that its steps make of round-off."""
+    c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+
+    def turned(x: float, y: float) -> tuple[float, float]:
+        return c * x - s * y, s * x + c * y
+    forces = [dict(zip(("body_force_x", "body_force_y"), force)) for force in ((1.0, -20.0), turned(1.0, -20.0))]
+    level = march(scene(disc(0, 0.0501, 4, -7), obstacles=(plane(),), friction=0.3, slip_velocity=0.05, **UNIFORM, **forces[0]))
+    inclined = march(scene(disc(*turned(0, 0.0501), *turned(4, -7), angle=angle), obstacles=(plane(normal=turned(0, 1)),), friction=0.3,
+                           slip_velocity=0.05, **UNIFORM, **forces[1]))
+    assert differ(inclined, level, *MEASURES, "friction_work", "spin") < 1e-4
+
+
+def test_moving_plane_on_a_resting_disc(march):
+    """Galilei: as a disc on a resting plane, to round-off; the plane's work is the energy that the disc has in the end."""
+    struck = march(scene(disc(0, 0.0501, 0, 0), obstacles=(plane(velocity=[0, 8]),), **UNIFORM))
+    fallen = march(scene(disc(0, 0.0501, 0, -8), obstacles=(plane(),), **UNIFORM))
+    assert differ(struck, fallen, *MEASURES) < 1e-9
+    assert struck.summary["rebound_vy"] == pytest.approx(fallen.summary["rebound_vy"] + 8, rel=1e-9)
+    assert struck.history["external_work"][-1] == pytest.approx(8 * fallen.summary["impulse"], rel=1e-9)
+    assert struck.summary["energy_drift"] < 1e-9
+
+
+def test_moving_plane_on_two_discs(march):
+    """The same with a second disc resting on the first, friction between all: energy balance with the plane's work."""
+    struck = march(scene(disc(0, 0.0501, 0, 0), disc(0, 0.1502, 0, 0), obstacles=(plane(velocity=[0, 8]),), friction=0.2, **UNIFORM))
+    fallen = march(scene(disc(0, 0.0501, 0, -8), disc(0, 0.1502, 0, -8), obstacles=(plane(),), friction=0.2, **UNIFORM))
+    assert differ(struck, fallen, *MEASURES) < 1e-6 and struck.summary["energy_drift"] < 1e-9
+
+
+def test_disc_falls_from_rest(march):
+    """Dropped by 1 m: the energy of the touch, not the nothing at the start, is what tolerances are of."""
+    run = march(scene(disc(0, 1.05, 0, 0), obstacles=(plane(),), gravity=10, **UNIFORM))
+    assert run.summary["energy_drift"] < 1e-9 and run.summary["steps"] < 100
+    assert run.summary["contact_start"] == pytest.approx(math.sqrt(2 / 10), rel=1e-6)
+
+
+def test_disc_between_two_others(march):
+    """Hit from both sides at once it stays where it is, and the others leave alike, as far as their meshes are alike: to 1 %."""
+    run = march(scene(disc(-0.101, 0, 5, 0), disc(0, 0, 0, 0), disc(0.101, 0, -5, 0), friction=0.3))
+    assert abs(run.summary["rebound_vx_2"]) < 0.05 and run.summary["energy_drift"] < 1e-9
+    assert run.summary["rebound_vx_1"] == pytest.approx(-run.summary["rebound_vx_3"], rel=0.01)
+
+
+# ---- exact solutions
+
+@pytest.mark.parametrize("law", ["svk", "neohookean"])
+def test_two_bars_head_on(tmp_path, law):
+    """V13 on 25 elements: stress to 1 %, contact time and exchanged velocities, which wait for a front of width h^(2/3), to 4 %."""
+    rows = {row.what: row.error for row in two_bars(tmp_path, 25, law)}
+    assert rows.pop("stress") < 0.01 and max(rows.values()) < 0.04
+
+
+def test_bouncing_bar(tmp_path):
+    """V14 on 12 elements: begin and end of both contacts to 3 %."""
+    assert max(row.error for row in bouncing_bar(tmp_path, 12)) < 0.03
+
+
+def test_blocks_pressed_together(tmp_path):
+    """V16 with 4 and 8 elements: pressure even to 3 and 2 %, the better the finer; all of both faces in contact, forces in balance."""
+    coarse, fine = ({row.what: row.error for row in pressed(tmp_path / f"{n}", n)} for n in (4, 8))
+    uneven = "pressure: root mean square deviation"
+    assert fine[uneven] < 0.02 and fine[uneven] < 0.7 * coarse[uneven] < 0.7 * 0.03
+    assert fine["area"] < 1e-9 and fine["force on the planes"] < 1e-6

@@ -1,0 +1,63 @@
+"""V13 and V14: two bars head-on, and a bar that bounces under gravity; nu = 0 and strains so small that they are those of the linear bar."""
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from .case import FRONT, Row
+from .measure import bodies
+
+SPEED = 1e-4                # over the wave speed
+
+
+def _bar(height: float, width: float, **more) -> dict:
+    size = min(height, width) / 3
+    return {"shape": "rectangle", "height": height, "width": width, "mesh_size": size, "contact_mesh_size": size} | more
+
+
+def _contacts(history: dict[str, np.ndarray]) -> np.ndarray:
+    """Times at which the normal force rises above or falls below a hundredth of its largest, in turn."""
+    touching = history["normal_force"] > 0.01 * history["normal_force"].max()
+    return history["t"][np.flatnonzero(np.diff(touching.astype(int)))]
+
+
+def two_bars(folder: Path, elements: int, law: str = "neohookean") -> Iterator[Row]:
+    """V13, L = 10, E = rho = 1: two bars at +-v; contact 2 L/c, stress rho c v (middle 80 %), velocities exchanged. The second one has
+    elements of nine tenths of the first one's: its nodes lie elsewhere along the bar."""
+    size = 10 / elements
+    left = _bar(3 * size, 10, position=[-5, 0], velocity=[SPEED, 0])
+    right = _bar(3 * size, 10, position=[5, 0], velocity=[-SPEED, 0]) | {"mesh_size": 0.9 * size, "contact_mesh_size": 0.9 * size}
+    run = bodies(folder, {"accuracy": 0.05, "law": law, "young": 1, "nu": 0, "density": 1, "dt": size / 2, "chatter": "continue", "body": [left, right],
+                          "contact": {"penalty": 1e3}})
+    summary, history = run.summary, run.history
+    time = summary["contact_time"]
+    plateau = (history["t"] > 0.1 * time) & (history["t"] < 0.9 * time)
+    stress = -np.average(history["force_x_1"][plateau], weights=history["dt"][plateau]) / (3 * size)
+    yield Row("contact time", 1 / elements, time, 20, FRONT)
+    yield Row("stress", 1 / elements, stress, SPEED, FRONT)
+    yield Row("velocity: left", 1 / elements, summary["rebound_vx_1"], -SPEED, FRONT)
+    yield Row("velocity: right", 1 / elements, summary["rebound_vx_2"], SPEED, FRONT)
+
+
+def bouncing_bar(folder: Path, elements: int) -> Iterator[Row]:
+    """V14, L = 10, E = 900, rho = 1, g = 0.01, dropped from 0.005: contacts in [1, 5/3] and [11/3, 13/3]."""
+    size = 10 / elements
+    run = bodies(folder, {"accuracy": 0.05, "law": "svk", "young": 900, "nu": 0, "density": 1, "gravity": 1e-2, "end_time": 4.6, "dt": size / 60,
+                          "chatter": "continue", "body": [_bar(10, 3 * size, position=[0, 5.005])],
+                          "obstacle": [{"kind": "plane", "point": [0, 0], "normal": [0, 1]}], "contact": {"penalty": 9e6}})
+    times = _contacts(run.history)
+    expected = (1, 5 / 3, 11 / 3, 13 / 3)
+    for what, k in (("first: begins", 0), ("first: ends", 1), ("second: begins", 2), ("second: ends", 3)):
+        yield Row(what, 1 / elements, times[k] if len(times) == 4 else math.nan, expected[k], FRONT)
+
+
+def two(folder: Path) -> Iterator[Row]:
+    for elements in (25, 50, 100):
+        yield from two_bars(folder, elements)
+
+
+def bouncing(folder: Path) -> Iterator[Row]:
+    for elements in (12, 25, 50):
+        yield from bouncing_bar(folder, elements)

@@ -1,0 +1,29 @@
+"""V16: two blocks with unlike meshes, pressed together (pressed.edp): the same pressure everywhere."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from .case import Row
+from .measure import measure, prepared
+
+PENALTY = 10                # times E / length; the unevenness goes with penalty times element size over E
+
+
+def pressed(folder: Path, elements: int) -> Iterator[Row]:
+    """Two blocks of 1 x 0.5, E = 1, between planes that press them by 0.3 %; elements of 1/elements, and seven tenths of it above."""
+    def block(y: float, size: float) -> dict:
+        return {"shape": "rectangle", "width": 1, "height": 0.5, "position": [0, y], "mesh_size": size, "contact_mesh_size": size}
+    planes = [{"kind": "plane", "point": [0, 0], "normal": [0, 1]},
+              {"kind": "plane", "point": [0, 1], "normal": [0, -1], "velocity": [0, -1e-4]}]
+    scene = {"law": "neohookean", "young": 1, "nu": 0.3, "density": 1, "accuracy": 0.05, "integrator": "backward-euler", "dt": 1,
+             "end_time": 30, "tolerance": 1e-10, "body": [block(0.25, 1 / elements), block(0.75, 0.7 / elements)], "obstacle": planes,
+             "contact": {"penalty": PENALTY}}
+    found = measure("pressed", **prepared(folder, scene), out=folder)
+    yield Row("area", 1 / elements, found["area"], 1)
+    yield Row("force on the planes", 1 / elements, found["balance"], 0)
+    yield Row("pressure: root mean square deviation", 1 / elements, found["uneven"], 0, 1)
+
+
+def blocks(folder: Path) -> Iterator[Row]:
+    for elements in (4, 8, 16):
+        yield from pressed(folder / f"{elements}", elements)
