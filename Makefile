@@ -5,7 +5,7 @@ READY := .venv/.ready
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup disc-normal disc-oblique disc-rolling disc-block friction-laws oblique contact-time-svk law-comparison contact-time-neohookean calibrate stick-slip verify paper movie test robustness bench bench-quick textbook skipping costs promise scaling materials pairing-comparison refine refine-oblique clean
+.PHONY: help setup disc-normal disc-oblique disc-rolling disc-block friction-laws oblique contact-time-svk law-comparison contact-time-neohookean calibrate stick-slip verify paper movie test robustness bench bench-quick textbook skipping costs promise scaling materials disc-block-errors pairing-comparison refine refine-oblique clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
@@ -63,9 +63,10 @@ robustness: $(READY) ## malformed input, kills, hard runs drawn at random, and e
 	@$(PYTHON) -m orchestrate stress
 	@$(PYTHON) -m orchestrate stress-map
 
+disc-block-errors: override ARGS += --page docs/disc-block.md
 pairing-comparison: override ARGS += --page docs/pairing.md
 promise scaling materials: override ARGS += --page docs/$@.md
-bench textbook skipping costs promise scaling materials pairing-comparison refine: $(READY)
+bench textbook skipping costs promise scaling materials disc-block-errors pairing-comparison refine: $(READY)
 	@$(PYTHON) -m orchestrate $@ $(ARGS)
 bench: ## run time against error: meshes, steps, integrators, and other programs where installed
 bench-quick: $(READY) ## the same for one case, coarse
@@ -76,6 +77,7 @@ costs: ## where the time goes, its floor, and how it grows with the mesh
 promise: ## whether accuracy means what it says, over forty scenes drawn at random
 scaling: ## one impact in many units and materials has one dimensionless answer
 materials: ## twelve materials at three speeds, against a stiffer contact on a finer mesh
+disc-block-errors: ## the disc on the free block (section 3.2) over law, nu, stiffness and mesh, with error bars; NGSolve beside it
 pairing-comparison: ## closest point against pairs of points (14), (15): rebound, energy and time over epsilon and k
 refine: ## refine mesh and step, report the observed convergence
 refine-oblique: $(READY) ## the same for the oblique disc, with the slip velocity down to 0.01 m/s

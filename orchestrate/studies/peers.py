@@ -1,4 +1,4 @@
-"""Other programs on the same disc (verification/peers/*_disc.py): found where they are installed, run one process at a time.
+"""Other programs on the same disc, or the same two bodies (verification/peers/): found where they are installed, run one process at a time.
 
 NGSolve: `pip install ngsolve==6.2.2608`, in this Python or in the one that $NGSOLVE_PYTHON names. GetFEM: Debian's python3-getfem,
 in /usr/bin/python3 or in $GETFEM_PYTHON. Nothing else needs them.
@@ -42,21 +42,31 @@ def run(program: str, form: str, mesh_size: float, contact_mesh_size: float, dt:
     program: ngsolve or getfem; form: plain, tuned or (NGSolve) tuned-realcompile; sizes [m], step dt [s], limit [s].
     Further flags by the names of the peers: law, nu, speed, penalty, young, density, tolerance, history.
     """
-    python = find(program)
-    if not python:
-        return None, f"{program} is not installed ({INSTALL[program]})"
     flags |= {"form": form, "dt": dt, "mesh_size": mesh_size, "contact_mesh_size": contact_mesh_size}
     with tempfile.TemporaryDirectory() as folder:
         if program == "getfem":     # on our mesh; netgen makes its own with the same sizes
             flags["mesh"] = str(Path(folder) / "mesh.msh")
             mesh.write(mesh.disc(RADIUS, mesh_size, contact_mesh_size, half=True), Path(flags["mesh"]))
-        words = [word for name, value in flags.items() for word in (f"--{name.replace('_', '-')}", str(value))]
-        try:
-            done = subprocess.run([python, ROOT / f"verification/peers/{program}_disc.py", *words], env=os.environ | ONE_THREAD,
-                                  cwd=folder, capture_output=True, text=True, timeout=limit,
-                                  preexec_fn=partial(die_with_parent, os.getpid(), SIGKILL))
-        except subprocess.TimeoutExpired:
-            return None, f"no end after {limit:g} s: killed"
+        return _printed(program, f"{program}_disc.py", folder, limit, flags)
+
+
+def two_bodies(limit: float, **flags: Value) -> tuple[dict | None, str]:
+    """The same of verification/peers/ngsolve_two_bodies.py, SI units; flags by its names: law, nu, penalty, speed, refine ..."""
+    with tempfile.TemporaryDirectory() as folder:
+        return _printed("ngsolve", "ngsolve_two_bodies.py", folder, limit, flags)
+
+
+def _printed(program: str, script: str, folder: str, limit: float, flags: dict[str, Value]) -> tuple[dict | None, str]:
+    """(the last line that the script prints, read as JSON, "") or (None, the reason there is nothing)."""
+    python = find(program)
+    if not python:
+        return None, f"{program} is not installed ({INSTALL[program]})"
+    words = [word for name, value in flags.items() for word in (f"--{name.replace('_', '-')}", str(value))]
+    try:
+        done = subprocess.run([python, ROOT / "verification/peers" / script, *words], env=os.environ | ONE_THREAD, cwd=folder,
+                              capture_output=True, text=True, timeout=limit, preexec_fn=partial(die_with_parent, os.getpid(), SIGKILL))
+    except subprocess.TimeoutExpired:
+        return None, f"no end after {limit:g} s: killed"
     said, complaint = done.stdout.strip().splitlines(), done.stderr.strip().splitlines()
     if done.returncode != 0 or not said:
         return None, f"exit code {done.returncode}: {complaint[-1] if complaint else 'no output'}"
