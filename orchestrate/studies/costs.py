@@ -20,7 +20,7 @@ from ..places import shown
 from ..report.figures import BLUE, GREY, ORANGE, STYLE
 from . import study
 
-PHASES = ("assembly", "factor", "solve", "contact", "output", "audit", "setup", "other")
+PHASES = ("assembly", "factor", "solve", "contact", "search", "output", "audit", "setup", "other")
 LIMIT = 900.0                                   # seconds a run may take
 DOFS = (1e3, 3e3, 1e4, 3e4, 1e5, 2e5)           # wanted
 STEPS, DT = 20, 2e-5                            # of the growth runs, from the touch on
