@@ -9,7 +9,7 @@ from .bars import bouncing_bar, two_bars
 from .blocks import pressed
 from .scenes import HITS, disc, plane, scene
 
-UNIFORM = {"mesh_size": 0.012, "contact_mesh_size": 0.012, "penalty": 1e10}      # the same meshes wherever the bodies touch
+UNIFORM = {"mesh_size": 0.02, "contact_mesh_size": 0.02, "penalty": 1e10}      # the same meshes wherever the bodies touch
 
 
 @pytest.mark.parametrize("degree", [2, 1])
@@ -84,18 +84,18 @@ def test_obstacle_of_great_radius_is_a_plane(march, kind, side):
     assert 1e-9 < differ(curved, flat, *MEASURES) < 1e-4
 
 
-@pytest.mark.parametrize("angle", [30, 137])
-def test_inclined_scene_is_the_level_one_turned(march, angle):
-    """Plane, motion, body and load turned together, with friction: to the scatter that its steps make of round-off."""
+@pytest.mark.parametrize("angle, friction, scatter", [(30, 0, 1e-3), (137, 0, 1e-3), (137, 0.3, 5e-3)])
+def test_inclined_scene_is_the_level_one_turned(march, angle, friction, scatter):
+    """Plane, motion, body and load turned together: to what the tolerance of the steps leaves, and with friction to the scatter it makes of that."""
     c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
 
     def turned(x: float, y: float) -> tuple[float, float]:
         return c * x - s * y, s * x + c * y
     forces = [dict(zip(("body_force_x", "body_force_y"), force)) for force in ((1.0, -20.0), turned(1.0, -20.0))]
-    level = march(scene(disc(0, 0.0501, 4, -7), obstacles=(plane(),), friction=0.3, slip_velocity=0.05, **UNIFORM, **forces[0]))
-    inclined = march(scene(disc(*turned(0, 0.0501), *turned(4, -7), angle=angle), obstacles=(plane(normal=turned(0, 1)),), friction=0.3,
-                           slip_velocity=0.05, **UNIFORM, **forces[1]))
-    assert differ(inclined, level, *MEASURES, "friction_work", "spin") < 1e-4
+    level = march(scene(disc(0, 0.0501, 4, -7), obstacles=(plane(),), friction=friction, slip_velocity=0.05, **UNIFORM, **forces[0]))
+    inclined = march(scene(disc(*turned(0, 0.0501), *turned(4, -7), angle=angle), obstacles=(plane(normal=turned(0, 1)),),
+                           friction=friction, slip_velocity=0.05, **UNIFORM, **forces[1]))
+    assert differ(inclined, level, *MEASURES, *(["friction_work", "spin"] if friction else [])) < scatter
 
 
 def test_moving_plane_on_a_resting_disc(march):
@@ -119,7 +119,7 @@ def test_disc_falls_from_rest(march):
     """Dropped by 1 m: the energy of the touch, not the nothing at the start, is what tolerances are of."""
     run = march(scene(disc(0, 1.05, 0, 0), obstacles=(plane(),), gravity=10, **UNIFORM))
     assert run.summary["energy_drift"] < 1e-9 and run.summary["steps"] < 100
-    assert run.summary["contact_start"] == pytest.approx(math.sqrt(2 / 10), rel=1e-6)
+    assert run.summary["contact_start"] == pytest.approx(math.sqrt(2 / 10), rel=1e-4)
 
 
 def test_disc_between_two_others(march):
@@ -127,6 +127,28 @@ def test_disc_between_two_others(march):
     run = march(scene(disc(-0.101, 0, 5, 0), disc(0, 0, 0, 0), disc(0.101, 0, -5, 0), friction=0.3))
     assert abs(run.summary["rebound_vx_2"]) < 0.05 and run.summary["energy_drift"] < 1e-9
     assert run.summary["rebound_vx_1"] == pytest.approx(-run.summary["rebound_vx_3"], rel=0.01)
+
+
+@pytest.mark.parametrize("friction", [0, 0.3])
+def test_disc_slides_over_many_elements(march, friction):
+    """A small disc in a long touch passes over seven elements of a block: energy exact, and no step changes the force by a tenth of its peak."""
+    small = {"shape": "disc", "radius": 0.02, "position": [-0.06, 0.0201], "velocity": [12, -0.3]}
+    block = {"shape": "rectangle", "width": 0.16, "height": 0.04, "position": [0, -0.02]}
+    history = march(scene(small, block, friction=friction, slip_velocity=0.5, end_time=8e-3, penalty=1e8, mesh_size=0.01,
+                          contact_mesh_size=0.01)).history
+    force, touching = history["normal_force"], history["normal_force"] > 0
+    assert np.ptp(history["x_1"][touching]) > 0.07 and np.ptp(history["momentum_x"]) < 1e-12 * history["momentum_x_1"].max()
+    assert np.abs(history["balance"]).max() < 1e-9 * history["kinetic"][0] and (history["friction_work"][-1] > 0) == (friction > 0)
+    assert np.abs(np.diff(force)).max() < 0.1 * force.max()
+
+
+@pytest.mark.parametrize("integrator, loss, growth", [("midpoint", 0.02, 0.02), ("newmark", 0.02, 0.02), ("bdf2", 0.1, 1e-3), ("backward-euler", 0.6, 1e-6)])
+def test_other_integrators(march, integrator, loss, growth):
+    """They keep momentum exactly and energy as they can: damping ones do not gain any."""
+    run = march(scene(disc(-0.055, 0, 3, 0), disc(0.055, 0.02, -3, 0), friction=0.2, integrator=integrator))
+    open_ = run.history["balance"] / run.summary["energy_initial"]
+    assert -loss < open_.min() and open_.max() < growth
+    assert np.ptp(run.history["momentum_x"]) < 1e-12 * run.history["momentum_x_1"].max()
 
 
 # ---- exact solutions
