@@ -16,7 +16,7 @@ from . import peers, study
 
 CASES = [{"law": law, "nu": nu, "penalty": k} for law, nu, k in itertools.product(("svk", "neohookean"), (0.3, 0.45), (1e9, 1e10))]
 ACCURACIES = (0.02, 0.005)
-FINER = 2                   # elements and steps of the reference are so many times smaller than those of the most accurate run
+FINER = 1.5               # elements and steps of the reference are so many times smaller than those of the most accurate run
 REFERENCE = "reference"     # in the place of an accuracy
 SPEED = 10.0                # m/s of the disc
 LIMIT = 1800.0              # seconds a run may take
@@ -32,7 +32,7 @@ MOMENTUM = 1e-8             # of the disc's momentum
 ENERGY = 1e-9               # of the energy at the start
 # NGSolve: two of the cases at two refinements of its mesh, seconds each; what its answers differ by is the finer's error bar
 PEER_CASES = [{"law": law, "nu": 0.45, "penalty": 1e9} for law in ("svk", "neohookean")]
-REFINEMENTS = (0.5, 1.0)
+REFINEMENTS = (0.35, 0.7)
 
 
 def main(argv: list[str]) -> int:
