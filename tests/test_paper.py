@@ -119,6 +119,14 @@ def test_the_papers_law_decides_on_the_block(tmp_path, monkeypatch, broken, verd
     assert FIND["rebounds"](Stub(tmp_path, **altered())).verdict == verdict
 
 
+def test_the_block_is_the_papers_with_either_law():
+    """Section 3.2: radius 0.5 m, 10 m x 2 m, 10 m/s straight down, E = 7 MPa, 1722 kg/m3, no friction, no gravity; only the law differs."""
+    svk, other = (scene.load(name).values for name in paper.BLOCK)
+    assert {name for name in svk if svk[name] != other[name]} == {"law"} and (svk["law"], other["law"]) == ("svk", "neohookean")
+    assert [svk[name] for name in ("radius", "block_width", "block_height", "speed", "angle", "young", "density", "friction_static", "gravity")] == [
+        0.5, 10, 2, 10, 90, 7e6, 1722, 0, 0]
+
+
 def test_longer_contact_must_exceed_both_error_bars(tmp_path, monkeypatch):
     """Figure 7b."""
     monkeypatch.setattr(paper, "_distance", lambda *_: (0.3, 0.01))

@@ -290,12 +290,11 @@ def monotone(results: Results) -> Finding:
 
 @states("Section 3.2", "a disc at 10 m/s on a free block: the disc is reflected")
 def rebounds(results: Results) -> Finding:
-    """Agrees where it moves up after the contact by more than the estimated error; judged with both laws, see _of_both."""
+    """Agrees where its velocity upwards after the contact is more than the estimated error of it."""
     def of(name: str) -> tuple[bool, str]:
         (_, disc), _, bar = _velocities(results, name)
         return disc > bar, f"{disc:.2f} ± {bar:.1g} m/s"
-    return _of_both(of, "Upwards after the contact", ".",
-                    [results.run(name) / "figures/velocity.png" for name in BLOCK], results)
+    return _of_both(of, "Upwards after the contact", ".", [results.run(name) / "figures/velocity.png" for name in BLOCK], results)
 
 
 @states("Section 3.2", "the block is directed downwards")
@@ -308,13 +307,14 @@ def downwards(results: Results) -> Finding:
         m, M = end["mass_1"], end["mass_2"]
         together = m * start / (m + M)
         missing = abs((m * disc + M * block) / (m * start) - 1)
-        held = missing < MOMENTUM and 2 * together < block < together
-        return held, (f"{block:.4f} ± {m / M * bar:.1g} m/s, e = {(block - disc) / start:.3f} (between {together:.3f} for e = 0 and {2 * together:.3f} m/s for e = 1; "
-                      f"momentum kept to {missing:.0e})")
+        return missing < MOMENTUM and 2 * together < block < together, (
+            f"{block:.4f} ± {m / M * bar:.1g} m/s, e = {(block - disc) / start:.3f} (between {together:.3f} for e = 0 and {2 * together:.3f} m/s for "
+            f"e = 1; momentum kept to {missing:.0e})")
     return _of_both(of, "Upwards after the contact", ".", [results.run("disc-block") / "figures/shapes.png"], results)
 
 
-@states("Section 3.2, figure 9a", "the variation of the disc's energy (drawn, not described): judged: in the contact it gives energy to the block, after it each keeps its own")
+@states("Section 3.2, figure 9a", "the variation of the disc's energy, drawn and not described; judged here: in the contact the disc gives energy to the "
+        "block, after it each keeps its own")
 def passes(results: Results) -> Finding:
     """Agrees where the disc ends with less than at the start and the block with more, and each keeps kinetic and elastic energy together to
     1e-9 of the start's in the flight after the last touch."""

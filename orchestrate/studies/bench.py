@@ -92,7 +92,7 @@ def main(argv: list[str]) -> int:
 
 HEAD = """# Run time against error
 One process, one thread; seconds are processor time: of ours the whole process, start-up and set-up included; of the other programs the
-march alone, without imports and set-up (0.2 to 0.4 s). Errors are
+march alone, without imports and set-up (up to 0.4 s). Errors are
 relative to the mean of our two finest runs; ± is half their difference, and no error below it is known. The force error is the L2
 norm over time of the difference of the force histories over that of the reference.
 
