@@ -24,8 +24,8 @@ disc-oblique: $(READY) ## a disc hits the plane at 60 degrees, with friction: as
 disc-rolling: $(READY) ## a disc is set down on the plane, slides and comes to roll (section 3.1)
 	@$(PYTHON) -m orchestrate run $@ $(ARGS)
 
-disc-block: $(READY) ## a disc falls on a free block of the same material (section 3.2)
-	@$(PYTHON) -m orchestrate run $@ $(ARGS)
+disc-block: $(READY) ## a disc falls on a free block of the same material: with the paper's law, and neo-Hookean (section 3.2)
+	@$(PYTHON) -m orchestrate compare disc-block disc-block-neohookean $(ARGS)
 
 friction-laws: $(READY) ## draw the friction laws (figure 3)
 	@$(PYTHON) -m orchestrate $@ $(ARGS)
@@ -46,7 +46,7 @@ verify: $(READY) ## exact solutions with convergence: bar, rod, Hertz, rigid bod
 	@$(PYTHON) -m orchestrate $@ $(ARGS)
 
 paper: override ARGS :=
-paper: disc-normal disc-oblique disc-rolling friction-laws $(SWEEPS) stick-slip verify ## all of the above, and results/paper/report.html
+paper: disc-normal disc-oblique disc-rolling disc-block friction-laws $(SWEEPS) stick-slip verify ## all of the above, and results/paper/report.html
 	@$(PYTHON) -m orchestrate $@
 
 movie: CASE := disc-oblique

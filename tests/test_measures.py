@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from orchestrate import run, scene
+from orchestrate import results, run, scene
 from orchestrate.studies import bench, costs, skipping, stress_map, study
 
 
@@ -47,6 +47,30 @@ def test_bench_on_coarse_runs(tmp_path, monkeypatch, capsys):
     text = (tmp_path / "bench.md").read_text()
     assert "Cheapest setting" in text and "- ngsolve" in text and "is not installed" in text and (tmp_path / "normal-svk.png").exists()
     assert text.strip() in capsys.readouterr().out
+
+
+def test_bench_of_two_bodies(tmp_path, monkeypatch):
+    """The disc on the block: errors of both bodies' answers, and the other program's against the same reference, or why it gave none."""
+    monkeypatch.setattr(bench, "settings", lambda *_: {"adaptive, P2": [{"accuracy": 0.1}]})
+    monkeypatch.setattr(bench, "references", lambda *_: [{"accuracy": 0.04}, {"accuracy": 0.03}])
+    asked, ours = [], {}
+
+    def other(limit, refine, history, **flags):
+        asked.append(flags)
+        if refine == bench.REFINEMENTS_QUICK[-1]:
+            return None, "is not installed"
+        runs = tmp_path / "disc-block-svk/runs"
+        ours.update(results.read_summary(runs / "accuracy=0.04"))
+        t, force = bench._force(runs / "accuracy=0.04")
+        np.savetxt(history, np.stack([t, force], axis=1), delimiter=",", header="t,normal_force", comments="")
+        return {"dofs": 1, "steps": 1, "cpu_seconds": 1.0} | {name: 1.1 * ours[answer] for answer, name in bench.NGSOLVE.items()}, ""
+
+    monkeypatch.setattr(bench.peers, "two_bodies", other)
+    assert bench.main(["--quick", "disc-block-svk", "--out", str(tmp_path)]) == 0
+    table = pd.read_csv(tmp_path / "bench.csv")
+    assert asked == [{"law": "svk", "penalty": 1e9}] * 2 and table.exit.tolist() == [0, 0, 1] and table.message[2] == "is not installed"
+    assert all(0 < table[f"{answer}_error"][0] < 30 for answer in bench.NGSOLVE)
+    assert table.rebound_vy_2_error[1] == pytest.approx(10, abs=0.5) and table.force_error[1] == pytest.approx(0, abs=1e-6) and table.force_error[0] > 0.1
 
 
 def test_skipping_changes_no_answer(tmp_path, monkeypatch, capsys):
