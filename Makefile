@@ -54,7 +54,7 @@ movie: $(READY) ## a film of a scene, built in or a file: make movie CASE=disc-o
 	@$(PYTHON) -m orchestrate $@ $(CASE) $(ARGS)
 
 test: $(READY) ## run all tests: the program's, and beside them on the other core the exact cases
-	@log=$$(mktemp); trap 'kill %1 2> /dev/null; rm -f $$log' EXIT; $(PYTHON) -m pytest -q verification $(ARGS) > $$log 2>&1 & beside=$$!; \
+	@log=$$(mktemp); trap 'kill $$beside 2> /dev/null; rm -f $$log' EXIT; $(PYTHON) -m pytest -q verification $(ARGS) > $$log 2>&1 & beside=$$!; \
 	$(PYTHON) -m pytest -q tests $(ARGS); code=$$?; wait $$beside || code=$$?; cat $$log; exit $$code
 
 robustness: $(READY) ## malformed input, kills, hard runs drawn at random, and every combination of hard parameters: nothing is silently wrong, lost or left behind
