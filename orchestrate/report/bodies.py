@@ -93,9 +93,10 @@ def energies(history: dict[str, np.ndarray], bodies: dict[str, str]) -> plt.Figu
         axes.axhline(0, color=GREY, linewidth=0.6)
         axes.set_ylabel(unit)
         axes.legend(**ABOVE, ncols=2 if axes is together and len(bodies) < 4 else 3)
-    error = np.abs(history["balance"]) / (np.abs(total).max() or 1.0)
+    largest = max(np.abs(values).max() for values in (total, *(values for values, _ in lines.values()), history["kinetic"], history["elastic"]))
+    error = np.abs(history["balance"]) / (largest or 1.0)       # not of the total alone: bodies at rest under gravity have none
     balance.semilogy(t, np.where(error > 0, error, np.nan), color=BLACK, linewidth=0.9)
-    balance.set_ylabel("|balance| / largest total")
+    balance.set_ylabel("|balance| / largest energy")
     return figure
 
 
