@@ -235,6 +235,18 @@ def test_what_python_refuses(words, said, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["m.msh"]
 
 
+def test_one_body_and_nothing_else(inputs, tmp_path):
+    """A body with nothing to touch is refused: by Python before a run, by the script where a data file has no more."""
+    alone = dict(law="svk", young=7e6, nu=0.4, density=1000, body=[dict(shape="disc", radius=0.1, position=[0, 0], velocity=[0, -1])])
+    with pytest.raises(BadInput, match="^obstacle: is missing, and a second body too"):
+        multibody.read(alone, tmp_path, "alone").prepare(tmp_path)
+    lines = (inputs / "scene.dat").read_text().split("\n")
+    kept = [*lines[:2], "bodies 1", lines[3], "circles 0", "obstacles 0", "pairs 0", ""]
+    (tmp_path / "scene.dat").write_text("\n".join(kept))
+    done = freefem_run("-mesh", str(inputs / "mesh.msh"), "-bodies", str(tmp_path / "scene.dat"), "-out", str(tmp_path / "out"))
+    assert done.returncode == 10 and "nothing could ever touch" in done.stderr and done.stderr.count("\n") == 1, done.stderr
+
+
 @pytest.fixture(scope="module")
 def inputs(tmp_path_factory):
     """mesh.msh and scene.dat of two discs that touch."""
