@@ -116,6 +116,8 @@ class Multibody:
         """The flags of a run in the folder `where`, and the text of its scene.toml. Puts into the folder what the flags name: the
         mesh of all bodies, and what bodies.edp reads of them."""
         from . import assembly
+        if len(self.bodies) == 1 and not self.obstacles:
+            raise BadInput("obstacle: is missing, and a second body too (accepted: one table [[obstacle]] or more, or several [[body]])")
         built = assembly.assemble(self)
         built.write(where)
         return built.values | {"mesh": where / "mesh.msh", "bodies": where / "scene.dat"}, to_toml(built.used)

@@ -235,6 +235,18 @@ def test_what_python_refuses(words, said, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["m.msh"]
 
 
+def test_one_body_and_nothing_else(inputs, tmp_path):
+    """A body with nothing to touch is refused: by Python before a run, by the script where a data file has no more."""
+    alone = dict(law="svk", young=7e6, nu=0.4, density=1000, body=[dict(shape="disc", radius=0.1, position=[0, 0], velocity=[0, -1])])
+    with pytest.raises(BadInput, match="^obstacle: is missing, and a second body too"):
+        multibody.read(alone, tmp_path, "alone").prepare(tmp_path)
+    lines = (inputs / "scene.dat").read_text().split("\n")
+    kept = [*lines[:2], "bodies 1", lines[3], "circles 0", "obstacles 0", "pairs 0", ""]
+    (tmp_path / "scene.dat").write_text("\n".join(kept))
+    done = freefem_run("-mesh", str(inputs / "mesh.msh"), "-bodies", str(tmp_path / "scene.dat"), "-out", str(tmp_path / "out"))
+    assert done.returncode == 10 and "nothing could ever touch" in done.stderr and done.stderr.count("\n") == 1, done.stderr
+
+
 @pytest.fixture(scope="module")
 def inputs(tmp_path_factory):
     """mesh.msh and scene.dat of two discs that touch."""
@@ -250,7 +262,19 @@ def inputs(tmp_path_factory):
     ("scene.dat", "left neohookean", "left rubber", "the law 'rubber' of left is not known"),
     ("scene.dat", "neohookean 7000000.0", "neohookean -7000000.0", "left has young -7e+06"),
     ("scene.dat", " -0.06 0.0 ", " 0.0 0.0 ", "overlap by 0.0"),
-    ("mesh.msh", " 1\n", " 7\n", "mesh: a triangle of region 7 (accepted: the bodies, 0 to 1)"),
+    ("scene.dat", "circles 2\n0", "circles 2\n9", "circle 1 of body 9, of 0 to 1"),
+    ("scene.dat", "obstacles 0", "obstacles 1\nplane 3 0 0 1 0 0", "an obstacle 'plane' of 3 numbers (a plane has 4"),
+    ("scene.dat", "obstacles 0", "obstacles 1\nplane 4 0 0 0 0 0 0", "an obstacle 'plane' whose normal is 0"),
+    ("scene.dat", "obstacles 0", "obstacles 1\npolyline 6 0 0 1 1 1 1 0 0", "with two vertices at one place"),
+    ("scene.dat", "pairs 0", "pairs 1\n0 -2 1e9 0 0", "pair 1 is of 0 and -2, not of a body, 0 to 1"),
+    ("scene.dat", "pairs 0", "pairs 1\n0 1 -5 0 0", "pair 1 has penalty -5"),
+    ("scene.dat", "disc 0.05", "disc 0", "the disc has radius 0"),
+    ("mesh.msh", "region", lambda region, last: 7 if last else region, "mesh: a triangle of region 7 (accepted: the bodies, 0 to 1)"),
+    ("mesh.msh", "region", lambda region, last: 1 - region, "mesh: region 0, left, has its centre at ("),
+    ("mesh.msh", "region", lambda region, last: 1, "mesh: no triangle of region 0, left"),
+    ("mesh.msh", "region", lambda region, last: 0 if last else region, "has neighbours of another (accepted: a region a body)"),
+    ("mesh.msh", "corner", lambda corner, last: 99999 if last else corner, "names a vertex that is not there"),
+    ("mesh.msh", "cut", None, "mesh: the file ends at triangle "),
     ("scene.dat", None, None, "bodies: the file"),
     ("mesh.msh", None, None, "mesh: the file"),
 ])
@@ -258,9 +282,11 @@ def test_what_a_direct_run_refuses(file, old, new, said, inputs, tmp_path):
     """bodies.edp on a bad data file or mesh: exit code 10, one line, nothing left behind."""
     for name in ("scene.dat", "mesh.msh"):
         text = (inputs / name).read_text()
-        if name == file and old:
-            head, triangles = text.split("\n", 1)
-            text = f"{head}\n{triangles}".replace(old, new, 1) if name == "scene.dat" else _other_region(text)
+        if name == file == "scene.dat" and old:
+            assert old in text
+            text = text.replace(old, new, 1)
+        if name == file == "mesh.msh" and old:
+            text = _other_triangles(text, old, new)
         if name != file or old:
             (tmp_path / name).write_text(text)
     done = freefem_run("-mesh", str(tmp_path / "mesh.msh"), "-bodies", str(tmp_path / "scene.dat"), "-accuracy", "0.4", "-out", str(tmp_path / "out"))
@@ -268,11 +294,17 @@ def test_what_a_direct_run_refuses(file, old, new, said, inputs, tmp_path):
     assert not (tmp_path / "out").exists()
 
 
-def _other_region(text: str) -> str:
-    """The mesh with the last triangle in region 7."""
+def _other_triangles(text: str, what: str, new) -> str:
+    """The mesh with the region, or first corner, of its triangles as `new` says of them, or cut among them."""
     lines = text.splitlines()
     n, t, _ = map(int, lines[0].split())
-    lines[n + t] = f"{lines[n + t].rsplit(' ', 1)[0]} 7"
+    if what == "cut":
+        return "\n".join(lines[:n + 2]) + "\n"
+    for k in range(n + 1, n + t + 1):
+        words = lines[k].split()
+        column = {"corner": 0, "region": 3}[what]
+        words[column] = str(new(int(words[column]), k == n + t))
+        lines[k] = " ".join(words)
     return "\n".join(lines) + "\n"
 
 

@@ -2,6 +2,7 @@
 forces, and deformed shapes among the obstacles."""
 
 from pathlib import Path
+from textwrap import wrap
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -10,10 +11,12 @@ from .. import obstacles, vtu
 from ..obstacles import Obstacle
 from ..parameters import Value
 from ..results import suffixes
-from .figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, SHAPES, STRESS, Body, deformed, draw_body, is_half, per_metre
+from .figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, SHAPES, STRESS, Body, as_written, deformed, draw_body, is_half, per_metre
 
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, "#56b4e9", "#e69f00")    # of bodies
 ACROSS = 3       # panels side by side
+WIDEST, MOST_LINES = 120, 4       # of each part of a title: letters in a line, lines
+NAMED = 6        # of many bodies the first and the last that titles and legends name
 GRID = 300       # points along the longer side of a picture, at which obstacles are looked for
 DOTS = (0, (1, 1.5))
 ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 1), "handlelength": 1.4, "columnspacing": 1.0, "fontsize": 7}
@@ -39,7 +42,20 @@ def title(scene: dict[str, Value]) -> str:
     materials = {}
     for body in scene["body"]:
         materials.setdefault(material(body), []).append(body["name"])
-    return "\n".join([scene["title"], *(f"{', '.join(of)}: {words}" for words, of in materials.items())])
+    lines = [as_written(scene["title"]), *(f"{', '.join(ends(of, '...'))}: {words}" for words, of in materials.items())]
+    return "\n".join("\n".join(wrap(line, WIDEST)[:MOST_LINES]) for line in lines)
+
+
+def ends(items: list, between=None) -> list:
+    """The first and the last of many, `between` in the place of the others where it is given."""
+    return items if len(items) <= 2 * NAMED else [*items[:NAMED], *[between] * (between is not None), *items[-NAMED:]]
+
+
+def legend(axes: plt.Axes, ncols: int = 3) -> None:
+    """What the lines are, above the panel, where they have names."""
+    lines, words = axes.get_legend_handles_labels()
+    if words:
+        axes.legend(ends(lines), ends(words), **ABOVE, ncols=ncols)
 
 
 def draw(history: dict[str, np.ndarray], scene: dict[str, Value], snapshots: list[tuple[float, Path]]) -> dict[str, plt.Figure]:
@@ -92,10 +108,11 @@ def energies(history: dict[str, np.ndarray], bodies: dict[str, str]) -> plt.Figu
     for axes in (*own, together):
         axes.axhline(0, color=GREY, linewidth=0.6)
         axes.set_ylabel(unit)
-        axes.legend(**ABOVE, ncols=2 if axes is together and len(bodies) < 4 else 3)
-    error = np.abs(history["balance"]) / (np.abs(total).max() or 1.0)
+        legend(axes, ncols=2 if axes is together and len(bodies) < 4 else 3)
+    largest = max(np.abs(values).max() for values in (total, *(values for values, _ in lines.values()), history["kinetic"], history["elastic"]))
+    error = np.abs(history["balance"]) / (largest or 1.0)       # not of the total alone: bodies at rest under gravity have none
     balance.semilogy(t, np.where(error > 0, error, np.nan), color=BLACK, linewidth=0.9)
-    balance.set_ylabel("|balance| / largest total")
+    balance.set_ylabel("|balance| / largest energy")
     return figure
 
 
@@ -110,7 +127,7 @@ def velocities(history: dict[str, np.ndarray], bodies: dict[str, str]) -> plt.Fi
             axes.plot(1e3 * history["t"], history[name + of], color=colour, label=body)
         axes.set_ylabel(components[name])
     if len(bodies) > 1:
-        grid[0].legend(**ABOVE, ncols=3)
+        legend(grid[0])
     return figure
 
 
@@ -131,8 +148,8 @@ def forces(history: dict[str, np.ndarray], bodies: dict[str, str]) -> plt.Figure
         for (name, column), colour in zip(columns.items(), COLOURS * len(columns) if len(columns) > 1 else (BLACK,)):
             axes.plot(t, 1e-3 * history[column], color=colour, label=name)
         axes.set_ylabel(words)
-    if len(bodies) > 1:
-        grid[-1].legend(**ABOVE, ncols=3)
+    if len(columns) > 1:               # no forces on bodies where nothing touched
+        legend(grid[-1])
     return figure
 
 

@@ -4,6 +4,7 @@ the friction force, what slides and sticks, and the flight, as figures 4 to 6 of
 from dataclasses import dataclass
 from pathlib import Path
 from textwrap import wrap
+from warnings import filterwarnings
 
 import matplotlib
 
@@ -25,6 +26,7 @@ STYLE = {"font.size": 9, "axes.titlesize": 9, "axes.spines.top": False, "axes.sp
 STRESS = "von Mises stress [MPa]"
 SHAPES = 9   # small multiples at most
 DASHED = (0, (4, 2))
+filterwarnings("ignore", "Glyph .* missing from", UserWarning)    # a letter that the font lacks is an empty box in the title
 
 
 def draw(folder: Path, warnings: list[str]) -> list[Path]:
@@ -86,6 +88,11 @@ def title(scene: dict[str, Value]) -> str:
         text += (f"\nfriction {scene['friction_static']:g} static, {scene['friction_dynamic']:g} dynamic, "
                  f"{scene['regularization']}, ε = {scene['slip_velocity']:g} m/s")
     return text
+
+
+def as_written(text: str) -> str:
+    """A user's text as figures show it: no formula where it has dollars, no control characters."""
+    return "".join(letter if letter.isprintable() else " " for letter in text).replace("$", r"\$")
 
 
 def per_metre(history: dict[str, np.ndarray]) -> str:

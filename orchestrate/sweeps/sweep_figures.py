@@ -22,7 +22,7 @@ from matplotlib.ticker import LogLocator, NullLocator
 from .. import parameters
 from ..failure import BadInput
 from ..report import report
-from ..report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE
+from ..report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE, as_written
 from ..results import read_history
 from ..studies import study
 
@@ -91,7 +91,7 @@ def draw(sweep, rows: pd.DataFrame, out: Path) -> None:
         return
     with plt.rc_context(STYLE):
         figure = {"lines": _lines, "map": _map, "histories": _histories}[sweep.figure["kind"]](sweep, rows, out)
-        figure.suptitle(sweep.title, fontsize=9, color=BLACK)
+        figure.suptitle(as_written(sweep.title), fontsize=9, color=BLACK)
         with study.complete(out / "sweep.png") as part:
             figure.savefig(part)
         plt.close(figure)
