@@ -76,6 +76,8 @@ def _body(path: str, given: dict, top: dict, folder: Path) -> Body:
     table = Table(path, given, (*COMMON, *SHAPES[given["shape"]]))
     body_mesh = _mesh(table, folder) if given["shape"] == "mesh" else None
     outline = _mesh_outline(body_mesh) if body_mesh else _outline(table)
+    if outline.half_thickness < SHORTEST:
+        raise BadInput(f"{path}: is {2 * outline.half_thickness:.3g} m thick (accepted: from {2 * SHORTEST:g} m)")
     centre = outline.area_centre
     if body_mesh:
         body_mesh = mesh.Mesh(body_mesh.points - centre, body_mesh.triangles, body_mesh.edges, body_mesh.labels)
@@ -177,7 +179,9 @@ def _simple(path: str, corners: np.ndarray) -> None:
 
 def _mesh(table: Table, folder: Path) -> mesh.Mesh:
     """The mesh of a body's file, checked by the scripts as any mesh file is."""
-    name = table.text("file", "")
+    name, file = table.text("file", ""), None
+    if "\0" in name or not _may_be_read(folder / name):
+        raise BadInput(f"{table.path}.file: {name!r} is no file (accepted: FreeFEM's or gmsh's .msh)")
     try:
         text = mesh.load(folder / name)
         with tempfile.NamedTemporaryFile(suffix=".msh") as file:
@@ -190,8 +194,16 @@ def _mesh(table: Table, folder: Path) -> mesh.Mesh:
             size = float(np.ptp(found.points, axis=0).max()) if len(found.points) else 0.0
             describe({"mesh": file.name, "radius": size / 2 if SHORTEST < size < LONGEST else 1.0})
     except BadInput as error:
-        raise BadInput(f"{table.path}.file: {str(error).removeprefix('mesh: ')}") from None
+        raise BadInput(f"{table.path}.file: {str(error).removeprefix('mesh: ').replace(file.name if file else name, name)}") from None
     return found
+
+
+def _may_be_read(path: Path) -> bool:
+    """Not a folder, and not a pipe or device, which would be waited for."""
+    try:
+        return path.is_file() or not path.exists()
+    except OSError:                 # too long a name, a folder that may not be entered: said where it is opened
+        return True
 
 
 def _mesh_outline(found: mesh.Mesh) -> Outline:

@@ -3,6 +3,7 @@
 import copy
 import itertools
 import math
+import os
 import subprocess
 
 import numpy as np
@@ -534,3 +535,25 @@ def test_plane_geometry():
     assert len(crossing_sides(square, square + 0.5)) == 2 and len(crossing_sides(square, square + 1.1)) == 0
     assert len(crossing_sides(square, square + [1, 0.5])) > 0
     assert self_crossing(square) is None and self_crossing(square[[0, 2, 1, 3]]) == (0, 2)
+
+
+@pytest.mark.parametrize("file", ["\0", "folder", "pipe"])
+def test_a_mesh_that_is_no_file(file, tmp_path):
+    """A folder, a pipe that nobody writes to, a name that no file has: refused at once, by name."""
+    (tmp_path / "folder").mkdir()
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(BadInput, match=r"^body.1.file: '.*' is no file"):
+        multibody.read(SCENE | {"body": [dict(shape="mesh", file=file, position=[0, 1])]}, tmp_path, "mine")
+
+
+def test_a_broken_mesh_file_is_named_as_given(tmp_path):
+    """The message has the user's name of the file, and no other."""
+    (tmp_path / "mine.msh").write_text("3 1 3\n0 0")
+    with pytest.raises(BadInput, match="^body.1.file: mine.msh is not a 2D mesh of FreeFEM"):
+        multibody.read(SCENE | {"body": [dict(shape="mesh", file="mine.msh", position=[0, 1])]}, tmp_path, "mine")
+
+
+def test_a_sliver_is_refused_by_its_thickness():
+    """A polygon thinner than any length that is accepted."""
+    with pytest.raises(BadInput, match=r"^body.1: is 1e-12 m thick \(accepted: from 2e-09 m\)"):
+        read(with_body(shape="polygon", vertices=[[0, 0], [1, 0], [1, 1e-12]]))
