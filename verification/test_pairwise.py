@@ -72,7 +72,7 @@ def test_the_printed_form_keeps_energy_and_chatters(block):
     ({"pairing": "pairwise-printed", "exponent": 2}, "pairing: pairwise-printed has a law of its own"),
     ({"pairing_range": 0}, "pairing_range: 0 is out of range (accepted: auto, 1e-12 to 1e+09)"),
     ({"pairing": "pairs"}, "pairing: 'pairs' is not known (accepted: closest-point|pairwise|pairwise-printed)"),
-    ({"script": "disc-plane"}, "pairing: pairwise is between bodies, and here is one (accepted: closest-point)")], ids=str)
+    ({"script": "disc-plane"}, "pairing: disc-plane takes no such parameter (accepted: in disc-block|bodies)")], ids=str)
 def test_refusals(disc, given, words):
     with pytest.raises(Failure) as failure:
         disc(**({"script": "disc-block", "pairing": "pairwise"} | SCENE | given))
