@@ -67,7 +67,7 @@ def staging(folder: Path) -> Iterator[tuple[Path, int]]:
     finished. What is in it at first was left by a run that was killed."""
     stage = folder.with_name(folder.name + ".part")
     with ExitStack() as leaving:
-        leaving.callback(_take_away, [parent for parent in stage.parents if not parent.exists()])
+        leaving.callback(_take_away, [made for made in (stage, *stage.parents) if not made.exists()])   # a signal may come at any moment
         lock = leaving.enter_context(_open(_lock(stage, folder)))
         if not folder.exists() and _is_complete(stage):   # killed between the two renames of replace
             os.rename(stage, folder)
