@@ -135,10 +135,11 @@ def test_a_killed_run_goes_on(mine, monkeypatch):
         if len(calls) > 1:
             return real(program, script, flags, log, progress, lock)
         with subprocess.Popen([program.command, "-nw", "-ne", "-v", "0", f"edp/{script}.edp", *flags], cwd=parameters.ROOT, env=program.environment,
-                              stdout=subprocess.DEVNULL, pass_fds=[lock], process_group=0) as child:
+                              stdout=subprocess.PIPE, pass_fds=[lock], process_group=0) as child:
             while not (log.parent / "checkpoint").exists() and child.poll() is None:
                 pass
             child.kill()
+            child.communicate()   # to the end of its children too: one that moves a file into place has the lock
         log.write_text("")
         return -9, ""
     monkeypatch.setattr(freefem, "run", once_killed)

@@ -67,6 +67,11 @@ def draw(history: dict[str, np.ndarray], scene: dict[str, Value], snapshots: lis
     return drawn
 
 
+def width(body: int) -> float:
+    """Of the line of a body (from 0): thinner from body to body, so that one under another is seen."""
+    return max(1.0, 3.2 - 1.0 * body)
+
+
 def panels(count: int, height: float = 2.4) -> tuple[plt.Figure, list[plt.Axes]]:
     """A figure of so many panels over the same time [ms]."""
     columns = min(count, 2 if count == 4 else ACROSS)
@@ -87,12 +92,12 @@ def energies(history: dict[str, np.ndarray], bodies: dict[str, str]) -> plt.Figu
     t, unit = 1e3 * history["t"], f"energy [J{per_metre(history)}]"
     several = len(bodies) > 1
     figure, (*own, together, balance) = panels(len(bodies) * several + 2)
-    for axes, (name, of), colour in zip(own, bodies.items(), COLOURS * len(bodies)):
+    for body, (axes, (name, of), colour) in enumerate(zip(own, bodies.items(), COLOURS * len(bodies))):
         kinetic, elastic = history[f"kinetic{of}"], history[f"elastic{of}"]
         axes.plot(t, kinetic + elastic, color=colour, label=name)
         axes.plot(t, kinetic, color=colour, linestyle="--", linewidth=1.0, label="kinetic")
         axes.plot(t, elastic, color=colour, linestyle=DOTS, linewidth=1.0, label="elastic")
-        together.plot(t, kinetic + elastic, color=colour, label=name)
+        together.plot(t, kinetic + elastic, color=colour, linewidth=width(body), label=name)
     if not several:
         together.plot(t, history["kinetic"], color=BLUE, linestyle="--", linewidth=1.0, label="kinetic")
         together.plot(t, history["elastic"], color=ORANGE, linestyle=DOTS, linewidth=1.0, label="elastic")
@@ -123,8 +128,8 @@ def velocities(history: dict[str, np.ndarray], bodies: dict[str, str]) -> plt.Fi
     figure, grid = panels(len(moving), 2.8)
     for axes, name in zip(grid, moving):
         axes.axhline(0, color=GREY, linewidth=0.6)
-        for (body, of), colour in zip(bodies.items(), COLOURS * len(bodies)):
-            axes.plot(1e3 * history["t"], history[name + of], color=colour, label=body)
+        for body, ((called, of), colour) in enumerate(zip(bodies.items(), COLOURS * len(bodies))):
+            axes.plot(1e3 * history["t"], history[name + of], color=colour, linewidth=width(body) if len(bodies) > 1 else None, label=called)
         axes.set_ylabel(components[name])
     if len(bodies) > 1:
         legend(grid[0])

@@ -15,6 +15,7 @@ from ..places import shown
 from ..results import RunResult, suffixes
 from ..run import run
 from . import report
+from .bodies import names
 from .figures import BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE
 
 
@@ -61,7 +62,9 @@ def draw(results: dict[str, RunResult], path: Path) -> None:
             drag.plot(t, 1e-3 * h["friction_force"] if rubs else h["max_penetration"] * 1e3, color=colour)
             energy.plot(t, h["kinetic"] + h["elastic"] + h["contact"], color=colour)
             energy.plot(t, h["elastic"], color=colour, linestyle="--")
-            for of in suffixes(h):
+            for of, body in zip(suffixes(h), names(used)):
+                if of and colour == BLUE:                            # once
+                    velocity.annotate(body, (t[-1], h[f"vy{of}"][-1]), xytext=(-4, 4), textcoords="offset points", ha="right")
                 velocity.plot(t, h[f"vy{of}"], color=colour, linestyle="--")
                 if np.any(h[f"vx{of}"]):
                     velocity.plot(t, h[f"vx{of}"], color=colour)
