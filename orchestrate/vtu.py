@@ -1,4 +1,4 @@
-"""Reads the field snapshots of a run: ASCII .vtu files of triangles, and the .pvd list of their times."""
+"""Reads the field snapshots of a run: ASCII .vtu files of triangles or tetrahedra, and the .pvd list of their times."""
 
 import xml.etree.ElementTree as xml
 from dataclasses import dataclass
@@ -8,14 +8,15 @@ import numpy as np
 
 from .failure import Unreadable
 
-TRIANGLE, QUADRATIC_TRIANGLE = 5, 22   # VTK's cell types
+TRIANGLE, QUADRATIC_TRIANGLE, QUADRATIC_TETRAHEDRON = 5, 22, 24   # VTK's cell types
 SPLIT = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]   # a quadratic triangle (corners 0-2, middles 3-5) as four
+FACES = [[0, 1, 2, 4, 5, 6], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [0, 2, 3, 6, 9, 7]]   # of a quadratic tetrahedron, as quadratic triangles
 
 
 @dataclass(frozen=True)
 class Snapshot:
     """points (n, 2) reference coordinates in m; triangles (t, 3) straight; fields by name, SI units: (n,), (n, 3) for vectors,
-    (n, 6) for the Cauchy stress (xx yy zz xy yz xz)."""
+    (n, 6) for the Cauchy stress (xx yy zz xy yz xz). Of a body in three dimensions all that lies in its plane of symmetry z = 0."""
 
     points: np.ndarray
     triangles: np.ndarray
@@ -23,22 +24,37 @@ class Snapshot:
 
 
 def read(path: Path) -> Snapshot:
-    """One snapshot; quadratic triangles are split into four straight ones. Unreadable where it is not such a file."""
+    """One snapshot; quadratic triangles, and the faces of quadratic tetrahedra in the plane z = 0, are split into four straight ones.
+    Unreadable where it is not such a file."""
     try:
         piece = xml.parse(path).getroot().find("UnstructuredGrid/Piece")
         points = _array(piece.find("Points/DataArray"))
         cells = {array.get("Name"): _array(array).astype(int) for array in piece.iterfind("Cells/DataArray")}
-        kinds = set(cells["types"])
-        if kinds == {QUADRATIC_TRIANGLE}:
+        kinds, on_plane = set(cells["types"]), np.ones(len(points), dtype=bool)
+        if kinds == {QUADRATIC_TETRAHEDRON}:
+            on_plane = np.abs(points[:, 2]) < 1e-9 * np.ptp(points, axis=0).max()
+            triangles = _in_plane(cells["connectivity"].reshape(-1, 10), on_plane, points)[:, SPLIT].reshape(-1, 3)
+        elif kinds == {QUADRATIC_TRIANGLE}:
             triangles = cells["connectivity"].reshape(-1, 6)[:, SPLIT].reshape(-1, 3)
         elif kinds == {TRIANGLE}:
             triangles = cells["connectivity"].reshape(-1, 3)
         else:
             raise ValueError(f"cell types {sorted(kinds)} are not supported")
         fields = {array.get("Name"): _array(array) for array in piece.iterfind("PointData/DataArray")}
-        return Snapshot(points[:, :2], triangles, fields)
+        row = np.cumsum(on_plane) - 1
+        return Snapshot(points[on_plane, :2], row[triangles], {name: field[on_plane] for name, field in fields.items()})
     except (OSError, xml.ParseError, AttributeError, KeyError, ValueError, IndexError) as error:
         raise Unreadable(f"{path} cannot be read: {error}") from None
+
+
+def _in_plane(tetrahedra: np.ndarray, on_plane: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """The faces (f, 6) of quadratic tetrahedra (t, 10) all of whose nodes are marked in `on_plane`, each once, counter-clockwise in x, y."""
+    faces = tetrahedra[:, FACES].reshape(-1, 6)
+    faces = faces[on_plane[faces].all(axis=1)]
+    faces = faces[np.unique(np.sort(faces[:, :3], axis=1), axis=0, return_index=True)[1]]
+    (ax, ay), (bx, by), (cx, cy) = (points[faces[:, k], :2].T for k in range(3))
+    clockwise = (bx - ax) * (cy - ay) < (by - ay) * (cx - ax)
+    return np.where(clockwise[:, None], faces[:, [0, 2, 1, 5, 4, 3]], faces)
 
 
 def series(pvd: Path) -> list[tuple[float, Path]]:

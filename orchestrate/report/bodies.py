@@ -24,7 +24,7 @@ ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 1), "handlelength": 1.4,
 
 def are_several(scene: dict[str, Value]) -> bool:
     """Whether a scene, as used, has several bodies or obstacles of its own; else it is a body on the plane y = 0."""
-    return scene.get("script") != "disc-plane" and "script" in scene
+    return scene.get("script") in ("disc-block", "bodies")
 
 
 def names(scene: dict[str, Value]) -> list[str]:

@@ -411,8 +411,8 @@ class Body:
 
 
 def is_half(scene: dict[str, Value]) -> bool:
-    """Whether only the half of the body to the right of its axis was computed."""
-    return scene.get("symmetry") == "half"
+    """Whether only the half of the body to the right of its axis was computed: of a body in three dimensions a quarter."""
+    return scene.get("symmetry") == ("quarter" if scene.get("script") == "ball-plane" else "half")
 
 
 def deformed(snapshot: vtu.Snapshot, half: bool) -> Body:
