@@ -1,0 +1,111 @@
+"""The ball in three dimensions: operators, laws, energies and momenta, and impacts on the plane, on coarse meshes."""
+
+import numpy as np
+import pytest
+
+from verification.test_ellipticity import STATES
+
+LAWS = ["svk", "neohookean"]
+COARSE = {"mesh_size": 0.025, "contact_mesh_size": 0.015}
+VOLUME = 4 / 3 * np.pi * 0.05**3
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_homogeneous_deformation_is_exact(measure, law):
+    """V1: F, P, energy and the smallest stretch of x = F X at every quadrature point of the curved ball, to round-off; the work excess of finite
+    steps is that of their energies."""
+    found = measure("ball-homogeneous", law=law, symmetry="full", **COARSE)
+    assert found["gradient"] < 1e-13 and found["stress"] < 1e-12 and found["energy"] < 1e-12 and found["stretch"] < 1e-12
+    assert found["excess"] < 1e-13 and (found["largest"] > 0.1 or law == "svk")
+
+
+@pytest.mark.parametrize("symmetry", ["quarter", "half", "full"])
+def test_mass_surface_and_contact_points_are_those_of_the_sphere(measure, symmetry):
+    """Of all copies: mass 4/3 pi R^3 rho to 2e-3 on a coarse mesh and to a tenth of that on one with half the size, fourth order; points
+    on the sphere."""
+    coarse = measure("ball-homogeneous", law="svk", symmetry=symmetry, **COARSE)
+    fine = measure("ball-homogeneous", law="svk", symmetry=symmetry, mesh_size=0.0125, contact_mesh_size=0.0075)
+    assert abs(coarse["mass"]) < 2e-3 and abs(fine["mass"]) < abs(coarse["mass"]) / 8
+    assert abs(coarse["surface"]) < 2e-3 and abs(fine["surface"]) < abs(coarse["surface"]) / 8
+    assert coarse["sphere"] < 1e-14 and coarse["rows"] < 1e-3 and fine["rows"] < coarse["rows"] / 4
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("degree", [1, 2])
+def test_tangent_is_the_derivative_of_the_residual(measure, law, degree):
+    """V2: to 1e-6 of central differences, at large strains, on the curved ball."""
+    found = measure("ball-tangent", law=law, nu=0.3, integrator="midpoint", degree=degree, **COARSE)
+    assert found["state"] == 0 and found["strain"] > 0.5
+    assert found["tangent"] < 1e-6
+    assert found["area"] == pytest.approx(VOLUME, rel=3e-3 if degree == 2 else 0.15)
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_spinning_ball_keeps_energy_and_momenta(measure, law):
+    """V3: a vibrating free half ball (z >= 0) over 10 turns of 30 steps each: energy, momentum and angular momentum to 1e-10; turning and moving a
+    deformed body changes neither its energy nor det F."""
+    found = measure("ball-spinning", law=law, spin=200, exponent=3, tolerance=5e-14, mesh_size=0.035, contact_mesh_size=0.035, symmetry="half")
+    assert found["state"] == 0 and found["strain"] > 0.02
+    assert found["energy"] < 1e-10 and found["momentum"] < 1e-10 and found["angular"] < 1e-10
+    assert found["rigid"] < 1e-11
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("nu", [0, 0.3, 0.45])
+def test_ellipticity_is_the_least_of_all_directions(measure, law, nu):
+    """A hundred random states: the smallest eigenvalue of the acoustic tensor as in the textbook is in none of 20,000 directions below that of
+    the program, which looks in the principal planes of C, and comes within the spacing of the directions of it."""
+    found = measure("ball-ellipticity", law=law, nu=nu, **COARSE)
+    closed = np.array([found[f"closed{i}"] for i in STATES])
+    entries = np.array([[found[f"C{name}_{i}"] for i in STATES] for name in ("11", "12", "13", "12", "22", "23", "13", "23", "33")])
+    ratio, one = 2 * nu / (1 - 2 * nu), np.eye(3)
+    golden = np.arange(20000) + 0.5
+    height, turn = 1 - golden / 20000, np.pi * (1 + 5**0.5) * golden                       # half a sphere, evenly
+    N = np.stack([np.sqrt(1 - height**2) * np.cos(turn), np.sqrt(1 - height**2) * np.sin(turn), height])
+    for C, least in zip(entries.T.reshape(-1, 3, 3), closed):
+        F = np.linalg.cholesky(C).T
+        if law == "svk":
+            S, FN = ratio * (np.trace(C) - 3) / 2 * one + C - one, F @ N
+            Q = np.einsum("id,ij,jd->d", N, S, N)[:, None, None] * one + (ratio + 1) * np.einsum("id,jd->dij", FN, FN) + F @ F.T
+        else:
+            g = np.linalg.inv(F).T @ N
+            Q = one + (ratio * (1 - np.log(np.linalg.det(F))) + 1) * np.einsum("id,jd->dij", g, g)
+        eigenvalues = np.linalg.eigvalsh(Q)
+        largest = eigenvalues.max()
+        assert -1e-10 * largest <= eigenvalues.min() - least <= 1e-3 * largest
+    assert (closed < 0).any() or law == "neohookean"
+
+
+IMPACT = {"law": "neohookean", "accuracy": 0.1, "mesh_size": 0.025, "contact_mesh_size": 0.012}
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_impact_keeps_the_energy_and_its_impulse_is_the_change_of_momentum(disc, law):
+    """The whole contact at 2 m/s: energy to 1e-9, impulse and momentum to 1e-9, the centre of mass on its axis."""
+    run = disc(script="ball-plane", **IMPACT | {"law": law, "speed": 2})
+    s, h = run.summary, run.history
+    mass = 2 * s["energy_initial"] / 2**2
+    assert s["status"] == "ok" and s["contact_intervals"] >= 1 and s["rebound_vy"] > 1.8
+    assert mass == pytest.approx(1722 * VOLUME, rel=2e-3)
+    assert s["energy_drift"] < 1e-9 and s["momentum_drift"] < 1e-9
+    assert s["impulse"] == pytest.approx(mass * (2 + s["rebound_vy"]), rel=1e-9)
+    assert not h["momentum_x"].any() and not h["momentum_z"].any() and not h["z"].any()
+
+
+def test_quarter_half_and_full_are_one_run(disc):
+    """On meshes that are mirror images of each other, to what the iteration leaves open."""
+    quarter, *others = (disc(script="ball-plane", symmetry=symmetry, end_time=0.001, **IMPACT).history for symmetry in ("quarter", "half", "full"))
+    for other in others:
+        for name in ("normal_force", "kinetic", "elastic", "contact", "vy", "y", "contact_size", "min_stretch"):
+            assert other[name] == pytest.approx(quarter[name], rel=1e-6, abs=1e-6 * abs(quarter[name]).max()), name
+        for name in ("vx", "vz", "x", "z", "spin"):
+            assert abs(other[name]).max() < 1e-8, name
+
+
+def test_impact_is_that_of_a_body_of_revolution(disc):
+    """Neo-Hookean at 8 m/s against the axisymmetric ball, which knows nothing of tetrahedra: contact time between thresholds, impulse and rebound."""
+    given = {"law": "neohookean", "speed": 8, "penalty": 1e10, "accuracy": 0.01}
+    solid, revolved = disc(script="ball-plane", **given).summary, disc(script="ball-axisymmetric", **given | {"accuracy": 0.005}).summary
+    assert solid["thresholded_contact_time"] == pytest.approx(revolved["thresholded_contact_time"], rel=0.01)
+    assert solid["impulse"] == pytest.approx(revolved["impulse"], rel=2e-3)
+    assert solid["rebound_vy"] == pytest.approx(revolved["rebound_vy"], rel=2e-3)
