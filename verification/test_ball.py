@@ -109,3 +109,41 @@ def test_impact_is_that_of_a_body_of_revolution(disc):
     assert solid["thresholded_contact_time"] == pytest.approx(revolved["thresholded_contact_time"], rel=0.01)
     assert solid["impulse"] == pytest.approx(revolved["impulse"], rel=2e-3)
     assert solid["rebound_vy"] == pytest.approx(revolved["rebound_vy"], rel=2e-3)
+
+
+@pytest.mark.parametrize("regularization", ["linear", "linear-printed", "sqrt", "tanh"])
+@pytest.mark.parametrize("transition", ["jump", "smooth"])
+def test_friction_in_space_is_the_law_in_every_direction(measure, regularization, transition):
+    """Along z = 0 it is the law in the plane to round-off, turned it turns; forces, drag and coupling are derivatives of each other to 1e-6."""
+    found = measure("ball-friction", friction_static=0.7, friction_dynamic=0.5, regularization=regularization, friction_transition=transition,
+                    symmetry="full", **COARSE)
+    assert found["plane"] < 1e-13 and found["turned"] < 1e-13
+    assert found["stiff"] < 1e-6 and found["drag"] < 1e-6 and found["coupling"] < 1e-6
+    assert found["depth"] < 5e-3 and found["others"] == 0
+
+
+OBLIQUE = {"law": "neohookean", "accuracy": 0.2, "speed": 8, "angle": 45, "spin": 20, "mesh_size": 0.03, "contact_mesh_size": 0.015}
+
+
+def test_oblique_impact_with_friction_keeps_its_balances(disc):
+    """Static and dynamic friction and spin, half the ball: energy with the work of friction and both momenta to 1e-9."""
+    s = disc(script="ball-plane", friction_static=0.7, friction_dynamic=0.5, end_time=0.001, **OBLIQUE).summary
+    assert s["energy_drift"] < 1e-9 and s["momentum_drift"] < 1e-9 and s["friction_work"] > 0.1
+    assert s["skipped"] and "half of the body (symmetry)" in s["skipped"]
+
+
+def test_half_and_full_are_one_run_with_friction(disc):
+    """With one coefficient, where a step has one solution."""
+    half, full = (disc(script="ball-plane", symmetry=symmetry, friction_static=0.5, end_time=0.001, **OBLIQUE) for symmetry in ("half", "full"))
+    for name in ("normal_force", "friction_force", "friction_work", "vx", "vy", "spin", "elastic"):
+        assert full.history[name] == pytest.approx(half.history[name], rel=1e-6, abs=1e-6 * abs(half.history[name]).max()), name
+    assert abs(full.history["vz"]).max() < 1e-8
+
+
+def test_gross_slip_takes_mu_times_the_normal_impulse(disc):
+    """A grazing ball that slides throughout: the impulse along the plane is mu times the normal one, less what the outward spreading turns aside."""
+    run = disc(script="ball-plane", **OBLIQUE | {"angle": 20, "spin": 0, "friction_static": 0.1})
+    s, h = run.summary, run.history
+    assert s["sticking_time"] < 0.02 * s["contact_time"]
+    assert -(h["momentum_x"][-1] - h["momentum_x"][0]) == pytest.approx(0.1 * s["impulse"], rel=0.01)
+    assert s["spin"] < -5 and s["energy_drift"] < 1e-9
