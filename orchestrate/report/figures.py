@@ -55,11 +55,11 @@ def draw(folder: Path, warnings: list[str]) -> list[Path]:
 def _on_a_plane(history: dict[str, np.ndarray], contact: dict[str, np.ndarray], scene: dict[str, Value],
                 snapshots: list[tuple[float, Path]]) -> dict[str, plt.Figure]:
     """The figures by name of one body on the plane y = 0; `contact` is the history from the first touch on."""
-    drawn = {"energies": _energies(contact), "velocity": _velocity(contact)}
+    drawn = {"energies": _energies(contact, scene), "velocity": _velocity(contact)}
     if history["friction_force"].any():
         drawn |= {"force": _friction(history, scene), "rolling": _rolling(history, scene)}
     else:
-        drawn["force"] = _force(contact)
+        drawn["force"] = _force(contact, scene)
     if snapshots:
         half = is_half(scene)
         drawn["shapes"] = _shapes(snapshots, half)
@@ -95,12 +95,12 @@ def as_written(text: str) -> str:
     return "".join(letter if letter.isprintable() else " " for letter in text).replace("$", r"\$")
 
 
-def per_metre(history: dict[str, np.ndarray]) -> str:
+def per_metre(scene: dict[str, Value]) -> str:
     """Plane strain is per metre of thickness, a ball is not."""
-    return "" if "vz" in history else "/m"
+    return "" if scene.get("script", "").startswith("ball") else "/m"
 
 
-def _energies(history: dict[str, np.ndarray]) -> plt.Figure:
+def _energies(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
     """Energies [J/m] over time, and below them the error of their balance, relative to the energy at the start.
 
     Figure 6a: where friction takes energy or gravity gives it the total is not constant, the dashed balance is.
@@ -124,7 +124,7 @@ def _energies(history: dict[str, np.ndarray]) -> plt.Figure:
         top.plot(t, total, color=BLACK, linewidth=1.0, label="total")
     top.plot(t, balance, color=BLACK, linestyle="--", label=words)
     least = min(values.min() for values, _ in lines.values())
-    top.set(ylabel=f"energy [J{per_metre(history)}]", ylim=(min(0, 1.05 * least), 1.05 * max(total.max(), balance.max())))
+    top.set(ylabel=f"energy [J{per_metre(scene)}]", ylim=(min(0, 1.05 * least), 1.05 * max(total.max(), balance.max())))
     columns = len(lines) + 1 if len(lines) == 3 else 3
     top.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncols=columns, handlelength=1.6, columnspacing=1.4)
     error = np.abs(history["balance"]) / start
@@ -135,11 +135,11 @@ def _energies(history: dict[str, np.ndarray]) -> plt.Figure:
     return figure
 
 
-def _force(history: dict[str, np.ndarray]) -> plt.Figure:
+def _force(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
     """Normal force [kN/m] over time."""
     figure, axes = plt.subplots(figsize=(5.2, 3.2))
     axes.plot(1e3 * history["t"], 1e-3 * history["normal_force"], color=BLUE)
-    axes.set(xlabel="time [ms]", ylabel=f"normal force [kN{per_metre(history)}]", ylim=(0, None))
+    axes.set(xlabel="time [ms]", ylabel=f"normal force [kN{per_metre(scene)}]", ylim=(0, None))
     axes.margins(x=0)
     return figure
 
@@ -149,7 +149,7 @@ def _friction(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fi
 
     The broken lines are the coefficients times the normal force: a body of which all points slide one way is on the dynamic one.
     """
-    t, per = 1e3 * history["t"], per_metre(history)
+    t, per = 1e3 * history["t"], per_metre(scene)
     normal, friction = 1e-3 * history["normal_force"], 1e-3 * history["friction_force"]
     figure, grid = plt.subplots(2, 2, figsize=(7.6, 4.8), sharex="col", width_ratios=[1.7, 1])
     (force, share), (drag, zoom) = grid
@@ -411,8 +411,8 @@ class Body:
 
 
 def is_half(scene: dict[str, Value]) -> bool:
-    """Whether only the half of the body to the right of its axis was computed."""
-    return scene.get("symmetry") == "half"
+    """Whether only the half of the body, or of a meridian plane of it, to the right of its axis was computed."""
+    return scene.get("symmetry") == "half" or scene.get("script", "").endswith("axisymmetric")
 
 
 def deformed(snapshot: vtu.Snapshot, half: bool) -> Body:
