@@ -17,9 +17,9 @@ COARSE = ("-law", "neohookean", "-nu", "0.4", "-accuracy", "0.4")
 ODD = "it's; touch pwned #$(touch pwned)`touch pwned`\"\\ *"     # a name that a shell would make something of
 
 
-def start(*flags: str, cwd: Path, **options) -> subprocess.Popen:
+def start(*flags: str, cwd: Path, script: str = "disc-plane", **options) -> subprocess.Popen:
     program = freefem.find()
-    return subprocess.Popen([program.command, "-nw", "-ne", "-v", "0", parameters.ROOT / "edp/disc-plane.edp", *flags], cwd=cwd, text=True,
+    return subprocess.Popen([program.command, "-nw", "-ne", "-v", "0", parameters.ROOT / f"edp/{script}.edp", *flags], cwd=cwd, text=True,
                             env=program.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)
 
 
