@@ -88,7 +88,7 @@ def panels(count: int, height: float = 2.4) -> tuple[plt.Figure, list[plt.Axes]]
     return figure, list(grid.flat[:count])
 
 
-def energies(history: dict[str, np.ndarray], bodies: dict[str, str], per: str) -> plt.Figure:
+def energies(history: dict[str, np.ndarray], bodies: dict[str, str], per: str = "/m") -> plt.Figure:
     """Energies [J/m] over time: a panel a body; one of all, with the contact's, which belongs to no body; the error of the balance."""
     t, unit = 1e3 * history["t"], f"energy [J{per}]"
     several = len(bodies) > 1
@@ -137,7 +137,7 @@ def velocities(history: dict[str, np.ndarray], bodies: dict[str, str]) -> plt.Fi
     return figure
 
 
-def forces(history: dict[str, np.ndarray], bodies: dict[str, str], per: str) -> plt.Figure:
+def forces(history: dict[str, np.ndarray], bodies: dict[str, str], per: str = "/m") -> plt.Figure:
     """Contact forces [kN/m] over time: normal and friction forces of all contacts, and the components on each of several bodies."""
     t, unit = 1e3 * history["t"], f"[kN{per}]"
     lines = {f"normal force {unit}": {"": "normal_force"}}
