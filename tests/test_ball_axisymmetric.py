@@ -43,7 +43,7 @@ def test_units_are_those_of_a_ball(result):
     assert figures.per_metre(result.scene) == "" and figures.per_metre({"script": "disc-plane"}) == "/m"
     printed = (result.folder / "log.txt").read_text()
     assert " N s, peak force " in printed and "J/m" not in printed and "N/m" not in printed
-    assert {path.stem for path in (result.folder / "figures").iterdir()} == {"energies", "force", "velocity", "shapes"}
+    assert {path.stem for path in (result.folder / "figures").iterdir()} == {"energies", "force", "velocity", "shapes", "contact"}
 
 
 def test_scene_as_used_is_a_scene_again(result):
