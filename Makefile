@@ -49,7 +49,7 @@ verify: $(READY) ## exact solutions with convergence: bar, rod, Hertz, rigid bod
 	@$(PYTHON) -m orchestrate $@ $(ARGS)
 
 paper: override ARGS :=
-paper: disc-normal disc-oblique disc-rolling disc-block friction-laws $(SWEEPS) stick-slip verify ## all of the above, and results/paper/report.html
+paper: disc-normal disc-oblique disc-rolling disc-block ball-axisymmetric friction-laws $(SWEEPS) stick-slip verify ## all of the above, and results/paper/report.html
 	@$(PYTHON) -m orchestrate $@
 
 movie: CASE := disc-oblique
