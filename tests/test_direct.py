@@ -17,9 +17,9 @@ COARSE = ("-law", "neohookean", "-nu", "0.4", "-accuracy", "0.4")
 ODD = "it's; touch pwned #$(touch pwned)`touch pwned`\"\\ *"     # a name that a shell would make something of
 
 
-def start(*flags: str, cwd: Path, **options) -> subprocess.Popen:
+def start(*flags: str, cwd: Path, script: str = "disc-plane", **options) -> subprocess.Popen:
     program = freefem.find()
-    return subprocess.Popen([program.command, "-nw", "-ne", "-v", "0", parameters.ROOT / "edp/disc-plane.edp", *flags], cwd=cwd, text=True,
+    return subprocess.Popen([program.command, "-nw", "-ne", "-v", "0", parameters.ROOT / f"edp/{script}.edp", *flags], cwd=cwd, text=True,
                             env=program.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)
 
 
@@ -42,7 +42,7 @@ def test_any_name_will_do(tmp_path, name):
     flags = ("-checkpoint_every", "5", "-fields", "2")
     given = name if name != "-out" else "./-out"
     assert call(*COARSE, *flags, "-out", given, cwd=tmp_path)[0::2] == (0, "")
-    assert RESULTS | {"fields.pvd", "fields/0000.vtu", "fields/0001.vtu"} == names(tmp_path / name)
+    assert RESULTS | {"fields.pvd", "fields/0000.vtu", "fields/0001.vtu", "fields/contact.csv"} == names(tmp_path / name)
     mesh.write(mesh.disc(0.05, 0.02, 0.01, True), tmp_path / name / "my.msh")
     assert call(*COARSE, "-mesh", f"{given}/my.msh", "-out", "out", cwd=tmp_path)[0::2] == (0, "")
     code, _, error = call(*COARSE, "-restart", f"{given}/x", "-out", "out", cwd=tmp_path)

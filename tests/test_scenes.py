@@ -185,7 +185,7 @@ def test_figures_of_several_bodies(which, request):
     """Energies, velocities, forces and shapes are drawn; the title names the bodies' materials."""
     found = request.getfixturevalue(which)
     found = found[0] if which == "mine" else found
-    assert {path.name for path in (found.folder / "figures").iterdir()} == {"energies.png", "force.png", "shapes.png", "velocity.png"}
+    assert {path.name for path in (found.folder / "figures").iterdir()} == {"contact.png", "energies.png", "force.png", "shapes.png", "velocity.png"}
     assert all(path.stat().st_size > 5000 for path in (found.folder / "figures").iterdir())
     assert ("target: neo-Hookean, E = 4 MPa" if which == "mine" else "disc on block: St. Venant") in figures.title(found.scene)
     assert "rebound velocity, " + ("x, target" if which == "mine" else "y, block") in report.report(found)
@@ -221,7 +221,7 @@ def values(folder) -> dict:
 
 @pytest.mark.parametrize("words, said", [
     (("disc-normal", "--set", "block_width=3"), "block_width: disc-plane takes no such parameter (accepted: in disc-block)"),
-    (("disc-block", "--mesh", "MESH"), "mesh: disc-block takes no such parameter (accepted: in disc-plane|bodies)"),
+    (("disc-block", "--mesh", "MESH"), "mesh: disc-block takes no such parameter (accepted: in disc-plane|ball-axisymmetric|bodies)"),
     (("two-discs", "--mesh", "MESH"), "mesh: is of one body"),
     (("two-discs", "--set", "body.3.young=1e6"), "body.3.young: there is no body.3 in the scene (accepted: body.1 to body.2)"),
     (("two-discs", "--set", "radius=1"), "radius: '1' belongs to no such key"),
@@ -311,7 +311,7 @@ def _other_triangles(text: str, what: str, new) -> str:
 
 @pytest.mark.parametrize("script, flags, said", [
     ("bodies", ("-accuracy", "0.4"), "bodies: -bodies FILE is missing"),
-    ("bodies", ("-radius", "1"), "radius: bodies takes no such parameter (accepted: in disc-plane|disc-block)"),
+    ("bodies", ("-radius", "1"), "radius: bodies takes no such parameter (accepted: in disc-plane|disc-block|ball-axisymmetric)"),
     ("disc-block", ("-bodies", "x"), "bodies: disc-block takes no such parameter (accepted: in bodies)"),
     ("disc-plane", ("-block_height", "1"), "block_height: disc-plane takes no such parameter (accepted: in disc-block)"),
 ])
@@ -323,5 +323,5 @@ def test_flags_of_another_script_are_refused(script, flags, said):
 
 def test_scripts_describe_themselves():
     """The scripts that there are, and of two bodies the columns of each."""
-    assert describe()["scripts"] == "disc-plane|disc-block|bodies" and describe(script="disc-block")["bodies"] == 2
+    assert describe()["scripts"] == "disc-plane|disc-block|ball-axisymmetric|bodies" and describe(script="disc-block")["bodies"] == 2
     assert set(multibody.built_in()) == {"two-discs", "three-in-a-row", "disc-bowl", "disc-corner", "disc-step"} < set(scene.built_in())

@@ -9,7 +9,7 @@ from orchestrate.report.report import REFERENCE
 from .bars import bouncing, two
 from .blocks import blocks
 from .case import Case, Row
-from .hertz import cylinder, ellipse
+from .hertz import cylinder, ellipse, impacts
 from .impact import bars, rigids
 from .manufactured import in_space, in_time
 from .measure import disc
@@ -29,7 +29,7 @@ def independent(folder: Path) -> Iterator[Row]:
 
 CASES = (
     Case("V1 space", "manufactured motions at large strain, L² error of the displacement", "element size", 0.15, in_space,
-         by_order=True, note="Both laws on the unit square and on the disc with curved elements, energy-momentum steps so small "
+         by_order=True, note="Both laws on the unit square, and on the disc and the ball (axisymmetric) with curved elements, energy-momentum steps so small "
                              "that only the error in space is seen."),
     Case("V1 time", "manufactured motions at large strain, L² error of the displacement", "time step", 0.15, in_time,
          by_order=True, note="A motion that P2 holds exactly, so that only the error in time is seen."),
@@ -42,6 +42,9 @@ CASES = (
     Case("V6", "cylinder pressed on a plane: Hertz", "element size / b", 0.02, cylinder, beside=ellipse,
          note="b/R = 0.005, neo-Hookean, ν = 0.3, penalty 10 E*/h; b and p₀ are those of the ellipse fitted to the tractions at "
               "the contact points."),
+    Case("V7", "ball on a plane, and two balls head-on (V15): Hertz' impact", "radius of the contact / radius", 0.02, impacts,
+         note="Bodies of revolution, neo-Hookean, ν = 0.3, closing at 1 m/s down to 1 mm/s, mesh, step and penalty of the default accuracy: "
+              "what is seen is the finite ball, stiffer than Hertz' half-space by a share of the order of the contact's radius."),
     Case("V8", "rigid body on the penalty: depth and contact time", "time step [s]", 0.01, rigids,
          note="E = 10¹² Pa; the depth is the largest at the steps. m = 1.5 and 2 besides m = 1."),
     Case("V9", "stiff block: sliding to a stop, starting to slide, creeping", "time step [s]", 0.01, block,

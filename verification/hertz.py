@@ -1,4 +1,4 @@
-"""V6: a cylinder pressed on the plane (hertz.edp): half-width and largest pressure of Hertz."""
+"""Hertz: V6, a cylinder pressed on the plane (hertz.edp); V7, the impact of a ball on it; V15, of two balls (two-balls.edp)."""
 
 import math
 from collections.abc import Iterator
@@ -12,8 +12,9 @@ from orchestrate.failure import Failure
 from orchestrate.report.figures import BLACK, BLUE, ORANGE
 
 from .case import Row
-from .measure import measure
+from .measure import Outcome, disc, measure, outcome
 
+BALL = dict(law="neohookean", young=1e8, nu=0.3, density=2500, radius=0.01)
 NARROW = 0.005              # half-width b over the radius: the small load
 
 
@@ -49,3 +50,36 @@ def ellipse(axes: plt.Axes, folder: Path) -> None:
                   label=f"elements of {size:g} b")
     axes.set(xlabel="$x/b$", ylabel="$p/p_0$", xlim=(0, 1.4), ylim=(-0.03, 1.15))
     axes.legend(loc="upper right")
+
+
+def impact(mass: float, radius: float, stiffness: float, speed: float) -> tuple[float, float, float]:
+    """Hertz' impact of a mass [kg] on a plane, or of two with their reduced mass, radius and stiffness E* [Pa]: contact time [s], largest
+    force [N], radius of the contact [m]."""
+    depth = (15 * mass * speed**2 / (16 * stiffness * math.sqrt(radius))) ** 0.4
+    return 2.868 * (mass**2 / (radius * stiffness**2 * speed)) ** 0.2, 4 / 3 * stiffness * math.sqrt(radius) * depth**1.5, math.sqrt(radius * depth)
+
+
+def ball(folder: Path, speed: float, **more) -> Iterator[Row]:
+    """A ball on the plane over the contact's radius beside its own: Hertz' half-space is its limit, the difference of first order."""
+    return _compare("ball", disc(folder, script="ball-axisymmetric", speed=speed, **(BALL | more)), speed, 1, BALL | more)
+
+
+def balls(folder: Path, speed: float, **more) -> Iterator[Row]:
+    """Two equal balls that approach with this speed, head-on."""
+    measure("two-balls", speed=speed, out=folder, **(BALL | more))
+    return _compare("two balls", outcome(folder), speed, 0.5, BALL | more)
+
+
+def _compare(what: str, found: Outcome, speed: float, share: float, of: dict) -> Iterator[Row]:
+    """share: 1 of a ball on the plane, 1/2 of two, whose mass, radius and E* are halved."""
+    mass = 4 / 3 * math.pi * of["radius"] ** 3 * of["density"]
+    time, force, width = impact(share * mass, share * of["radius"], share * of["young"] / (1 - of["nu"] ** 2), speed)
+    size = width / of["radius"]
+    yield Row(f"{what}: contact time", size, found.summary["contact_time"], time, 1)
+    yield Row(f"{what}: largest force", size, found.summary["peak_force"], force, 1)
+
+
+def impacts(folder: Path) -> Iterator[Row]:
+    for speed in (1, 0.1, 0.01, 0.001):
+        yield from ball(folder / f"ball-{speed:g}", speed)
+        yield from balls(folder / f"balls-{speed:g}", speed)

@@ -36,6 +36,11 @@ def measure(script: str, **given: Value | Path) -> dict[str, float]:
 def disc(folder: Path, script: str = "disc-plane", **given: Value | Path) -> Outcome:
     """edp/<script>.edp with these flags, run into `folder`."""
     _start(f"edp/{script}.edp", (*_flags(given), "-out", str(folder)), ROOT)
+    return outcome(folder)
+
+
+def outcome(folder: Path) -> Outcome:
+    """The finished run in `folder`."""
     return Outcome(results.read_summary(folder), results.read_history(folder))
 
 
@@ -43,7 +48,7 @@ def bodies(folder: Path, tables: dict, **given: Value | Path) -> Outcome:
     """edp/bodies.edp for the scene in these tables (orchestrate.multibody), with more flags, run into `folder`/run."""
     out = folder / "run"
     _start("edp/bodies.edp", (*_flags(prepared(folder, tables) | given), "-out", str(out)), ROOT)
-    return Outcome(results.read_summary(out), results.read_history(out))
+    return outcome(out)
 
 
 def prepared(folder: Path, tables: dict) -> dict[str, Value | Path]:

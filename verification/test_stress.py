@@ -35,26 +35,28 @@ def test_homogeneous_deformation_has_the_stress_of_the_closed_form(measure, tmp_
 
 
 def longer(found: dict, name: str) -> np.ndarray:
-    """Entries 11, 22, 12 of M or H at the ten points of work-excess.edp, (3, 10), in extended precision."""
-    return np.array([[found[f"{name}{entry}_{i}"] for i in range(10)] for entry in ("11", "22", "12")]).astype(np.longdouble)
+    """Entries 11, 22, 12, 33 of M or H at the ten points of work-excess.edp, (4, 10), in extended precision; in plane strain 33 is 1 or 0."""
+    out = {"M": 1.0, "H": 0.0}[name]
+    return np.array([[found.get(f"{name}{entry}_{i}", out) for i in range(10)] for entry in ("11", "22", "12", "33")]).astype(np.longdouble)
 
 
 def neo(C: np.ndarray) -> np.ndarray:
-    """W/mu of (6) in plane strain, C (3, points)."""
-    log = np.log(C[0] * C[1] - C[2] ** 2)
-    return (C[0] + C[1] - 2) / 2 - log / 2 + LAMBDA / MU * log**2 / 8
+    """W/mu of (6), C (4, points)."""
+    log = np.log((C[0] * C[1] - C[2] ** 2) * C[3])
+    return (C[0] + C[1] + C[3] - 3) / 2 - log / 2 + LAMBDA / MU * log**2 / 8
 
 
 @pytest.mark.parametrize("size", [1e-4, 1e-2, 0.2, 0.35])
-def test_work_of_a_step_against_extended_precision(measure, size):
+@pytest.mark.parametrize("body", ["", "-axisymmetric"])
+def test_work_of_a_step_against_extended_precision(measure, size, body):
     """Energy and work excess of the neo-Hookean law, small steps and large ones, also side by side: 13 digits of H times
     the modulus, where the difference of two energies would keep as many of the modulus."""
-    found = measure("work-excess", law="neohookean", young=YOUNG, nu=NU, speed=size)
+    found = measure(f"work-excess{body}", law="neohookean", young=YOUNG, nu=NU, speed=size)
     M, H = longer(found, "M"), longer(found, "H")
     det = M[0] * M[1] - M[2] ** 2
-    inverse = np.array([M[1], M[0], -M[2]]) / det
-    S = np.array([1, 1, 0])[:, None] * np.longdouble(1) + (LAMBDA / MU * np.log(det) / 2 - 1) * inverse   # over mu
-    excess = 2 * (neo(M + H) - neo(M - H) - (S * H * np.array([1, 1, 2])[:, None]).sum(axis=0))
+    inverse = np.array([M[1] / det, M[0] / det, -M[2] / det, 1 / M[3]])
+    S = np.array([1, 1, 0, 1])[:, None] * np.longdouble(1) + (LAMBDA / MU * np.log(det * M[3]) / 2 - 1) * inverse   # over mu
+    excess = 2 * (neo(M + H) - neo(M - H) - (S * H * np.array([1, 1, 2, 1])[:, None]).sum(axis=0))
     error = abs(np.array([found[f"excess{i}"] for i in range(10)]) - excess)
     assert (error <= 1e-12 * abs(excess) + 3e-14 * abs(H).max(axis=0)).all(), error / abs(H).max(axis=0)
     assert [found[f"energy{i}"] for i in range(10)] == pytest.approx(neo(M).astype(float), rel=1e-12, abs=3e-15 * size)

@@ -13,6 +13,7 @@ from ..parameters import Value
 from ..results import suffixes
 from .figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, SHAPES, STRESS, Body, as_written, deformed, draw_body, is_half, per_metre
 
+ALONE = ("disc-plane", "ball-axisymmetric", "ball-plane")     # scripts of one body on the plane
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, "#56b4e9", "#e69f00")    # of bodies
 ACROSS = 3       # panels side by side
 WIDEST, MOST_LINES = 120, 4       # of each part of a title: letters in a line, lines
@@ -24,7 +25,7 @@ ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 1), "handlelength": 1.4,
 
 def are_several(scene: dict[str, Value]) -> bool:
     """Whether a scene, as used, has several bodies or obstacles of its own; else it is a body on the plane y = 0."""
-    return scene.get("script") in ("disc-block", "bodies")
+    return "script" in scene and scene["script"] not in ALONE
 
 
 def names(scene: dict[str, Value]) -> list[str]:
@@ -61,7 +62,7 @@ def legend(axes: plt.Axes, ncols: int = 3) -> None:
 def draw(history: dict[str, np.ndarray], scene: dict[str, Value], snapshots: list[tuple[float, Path]]) -> dict[str, plt.Figure]:
     """The figures by name; `history` from the first touch on."""
     bodies = dict(zip(names(scene), suffixes(history)))
-    drawn = {"energies": energies(history, bodies), "velocity": velocities(history, bodies), "force": forces(history, bodies)}
+    drawn = {"energies": energies(history, bodies, per_metre(scene)), "velocity": velocities(history, bodies), "force": forces(history, bodies, per_metre(scene))}
     if snapshots:
         drawn["shapes"] = shapes(snapshots, scene)
     return drawn
@@ -87,9 +88,9 @@ def panels(count: int, height: float = 2.4) -> tuple[plt.Figure, list[plt.Axes]]
     return figure, list(grid.flat[:count])
 
 
-def energies(history: dict[str, np.ndarray], bodies: dict[str, str]) -> plt.Figure:
+def energies(history: dict[str, np.ndarray], bodies: dict[str, str], per: str = "/m") -> plt.Figure:
     """Energies [J/m] over time: a panel a body; one of all, with the contact's, which belongs to no body; the error of the balance."""
-    t, unit = 1e3 * history["t"], f"energy [J{per_metre(history)}]"
+    t, unit = 1e3 * history["t"], f"energy [J{per}]"
     several = len(bodies) > 1
     figure, (*own, together, balance) = panels(len(bodies) * several + 2)
     for body, (axes, (name, of), colour) in enumerate(zip(own, bodies.items(), COLOURS * len(bodies))):
@@ -136,9 +137,9 @@ def velocities(history: dict[str, np.ndarray], bodies: dict[str, str]) -> plt.Fi
     return figure
 
 
-def forces(history: dict[str, np.ndarray], bodies: dict[str, str]) -> plt.Figure:
+def forces(history: dict[str, np.ndarray], bodies: dict[str, str], per: str = "/m") -> plt.Figure:
     """Contact forces [kN/m] over time: normal and friction forces of all contacts, and the components on each of several bodies."""
-    t, unit = 1e3 * history["t"], f"[kN{per_metre(history)}]"
+    t, unit = 1e3 * history["t"], f"[kN{per}]"
     lines = {f"normal force {unit}": {"": "normal_force"}}
     if history["friction_force"].any():
         lines[f"friction force {unit}"] = {"": "friction_force"}

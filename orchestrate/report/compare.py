@@ -16,7 +16,7 @@ from ..results import RunResult, suffixes
 from ..run import run
 from . import report
 from .bodies import names
-from .figures import BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE
+from .figures import BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE, per_metre
 
 
 def main(argv: list[str]) -> int:
@@ -56,7 +56,7 @@ def draw(results: dict[str, RunResult], path: Path) -> None:
         (force, drag), (energy, velocity) = grid
         for (name, result), colour in zip(results.items(), (BLUE, ORANGE, GREEN, PURPLE) * len(results)):
             h, used = result.history, result.scene
-            t, per = 1e3 * h["t"], "" if "vz" in h else "/m"
+            t, per = 1e3 * h["t"], per_metre(used)
             force.plot(t, 1e-3 * h["normal_force"], color=colour,
                        label=f"{name}: {_material(used)}{result.summary['dofs']} dofs")
             drag.plot(t, 1e-3 * h["friction_force"] if rubs else h["max_penetration"] * 1e3, color=colour)

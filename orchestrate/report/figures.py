@@ -32,7 +32,7 @@ filterwarnings("ignore", "Glyph .* missing from", UserWarning)    # a letter tha
 def draw(folder: Path, warnings: list[str]) -> list[Path]:
     """Draws all figures of the run in `folder` into folder/figures, with its warnings below; the files. Unreadable where the
     folder is broken. energies.png is the last: where it is, all are."""
-    from . import bodies
+    from . import bodies, contact as contacts
     history, scene = read_history(folder), read_scene(folder)
     snapshots = vtu.series(folder / "fields.pvd")
     target = folder / "figures"
@@ -44,6 +44,9 @@ def draw(folder: Path, warnings: list[str]) -> list[Path]:
             drawn = bodies.draw(contact, scene, snapshots)
         else:
             drawn = _on_a_plane(history, contact, scene, snapshots)
+        if (folder / "fields/contact.csv").exists():
+            along = contacts.draw(contacts.read(folder), bodies.names(scene) if bodies.are_several(scene) else ["body"], is_half(scene))
+            drawn |= {"contact": along} if along else {}
         for name, figure in reversed(drawn.items()):
             figure.suptitle(title(scene), fontsize=9)
             footer(figure, warnings)
@@ -55,11 +58,11 @@ def draw(folder: Path, warnings: list[str]) -> list[Path]:
 def _on_a_plane(history: dict[str, np.ndarray], contact: dict[str, np.ndarray], scene: dict[str, Value],
                 snapshots: list[tuple[float, Path]]) -> dict[str, plt.Figure]:
     """The figures by name of one body on the plane y = 0; `contact` is the history from the first touch on."""
-    drawn = {"energies": _energies(contact), "velocity": _velocity(contact)}
+    drawn = {"energies": _energies(contact, scene), "velocity": _velocity(contact)}
     if history["friction_force"].any():
         drawn |= {"force": _friction(history, scene), "rolling": _rolling(history, scene)}
     else:
-        drawn["force"] = _force(contact)
+        drawn["force"] = _force(contact, scene)
     if snapshots:
         half = is_half(scene)
         drawn["shapes"] = _shapes(snapshots, half)
@@ -95,12 +98,12 @@ def as_written(text: str) -> str:
     return "".join(letter if letter.isprintable() else " " for letter in text).replace("$", r"\$")
 
 
-def per_metre(history: dict[str, np.ndarray]) -> str:
+def per_metre(scene: dict[str, Value]) -> str:
     """Plane strain is per metre of thickness, a ball is not."""
-    return "" if "vz" in history else "/m"
+    return "" if scene.get("script", "").startswith("ball") else "/m"
 
 
-def _energies(history: dict[str, np.ndarray]) -> plt.Figure:
+def _energies(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
     """Energies [J/m] over time, and below them the error of their balance, relative to the energy at the start.
 
     Figure 6a: where friction takes energy or gravity gives it the total is not constant, the dashed balance is.
@@ -124,7 +127,7 @@ def _energies(history: dict[str, np.ndarray]) -> plt.Figure:
         top.plot(t, total, color=BLACK, linewidth=1.0, label="total")
     top.plot(t, balance, color=BLACK, linestyle="--", label=words)
     least = min(values.min() for values, _ in lines.values())
-    top.set(ylabel=f"energy [J{per_metre(history)}]", ylim=(min(0, 1.05 * least), 1.05 * max(total.max(), balance.max())))
+    top.set(ylabel=f"energy [J{per_metre(scene)}]", ylim=(min(0, 1.05 * least), 1.05 * max(total.max(), balance.max())))
     columns = len(lines) + 1 if len(lines) == 3 else 3
     top.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncols=columns, handlelength=1.6, columnspacing=1.4)
     error = np.abs(history["balance"]) / start
@@ -135,11 +138,11 @@ def _energies(history: dict[str, np.ndarray]) -> plt.Figure:
     return figure
 
 
-def _force(history: dict[str, np.ndarray]) -> plt.Figure:
+def _force(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
     """Normal force [kN/m] over time."""
     figure, axes = plt.subplots(figsize=(5.2, 3.2))
     axes.plot(1e3 * history["t"], 1e-3 * history["normal_force"], color=BLUE)
-    axes.set(xlabel="time [ms]", ylabel=f"normal force [kN{per_metre(history)}]", ylim=(0, None))
+    axes.set(xlabel="time [ms]", ylabel=f"normal force [kN{per_metre(scene)}]", ylim=(0, None))
     axes.margins(x=0)
     return figure
 
@@ -149,7 +152,7 @@ def _friction(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fi
 
     The broken lines are the coefficients times the normal force: a body of which all points slide one way is on the dynamic one.
     """
-    t, per = 1e3 * history["t"], per_metre(history)
+    t, per = 1e3 * history["t"], per_metre(scene)
     normal, friction = 1e-3 * history["normal_force"], 1e-3 * history["friction_force"]
     figure, grid = plt.subplots(2, 2, figsize=(7.6, 4.8), sharex="col", width_ratios=[1.7, 1])
     (force, share), (drag, zoom) = grid
@@ -411,8 +414,9 @@ class Body:
 
 
 def is_half(scene: dict[str, Value]) -> bool:
-    """Whether only the half of the body to the right of its axis was computed: of a body in three dimensions a quarter."""
-    return scene.get("symmetry") == ("quarter" if scene.get("script") == "ball-plane" else "half")
+    """Whether only the half of the body, or of a meridian plane of it, to the right of its axis was computed; of a body in three dimensions a quarter."""
+    script = scene.get("script", "")
+    return scene.get("symmetry") == ("quarter" if script == "ball-plane" else "half") or script.endswith("axisymmetric")
 
 
 def deformed(snapshot: vtu.Snapshot, half: bool) -> Body:

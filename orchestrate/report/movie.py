@@ -150,9 +150,9 @@ class Stage:
             outlined = [withStroke(linewidth=2.5, foreground=BLACK)]
             self.marks = [self.above.plot([], [], color="white", linewidth=1.2, path_effects=outlined)[0],
                           self.above.plot([], [], color="white", marker="o", markersize=5, markeredgecolor=BLACK)[0]]
-        self._draw_force(panel(0.85, 0.55, width, below), result.history)
+        self._draw_force(panel(0.85, 0.55, width, below), result.history, per_metre(result.scene))
 
-    def _draw_force(self, axes: plt.Axes, history: dict[str, np.ndarray]) -> None:
+    def _draw_force(self, axes: plt.Axes, history: dict[str, np.ndarray], per: str) -> None:
         """Normal force, and friction force where there is any [kN/m], over the time of the film."""
         inside = history["t"] >= self.motion.times[0]
         self.t = 1e3 * history["t"][inside]
@@ -162,7 +162,7 @@ class Stage:
         for name, colour in forces.items():
             axes.plot(self.t, self.forces[name], color=colour, label=name)
         axes.margins(x=0.005)
-        axes.set(xlabel="time [ms]", ylabel=f"contact force [kN{per_metre(history)}]")
+        axes.set(xlabel="time [ms]", ylabel=f"contact force [kN{per}]")
         self.now = axes.axvline(self.t[0], color=BLACK, linewidth=0.8)
         self.dots = {name: axes.plot([], [], "o", color=colour, markersize=5, clip_on=False)[0] for name, colour in forces.items()}
         if len(forces) > 1:

@@ -100,7 +100,7 @@ def _scene(scene: dict[str, Value]) -> list[str]:
     if contact.get("friction_static"):
         words += f", friction {contact['friction_static']:g} static, {contact['friction_dynamic']:g} dynamic"
     if "body" not in scene:
-        return [f"{scene['law']}, nu = {scene['nu']:g}, {scene['speed']:g} m/s, angle {scene['angle']:g} degrees, {words}"]
+        return [f"{scene['law']}, nu = {scene['nu']:g}, {scene['speed']:g} m/s, angle {scene.get('angle', 90):g} degrees, {words}"]
     return [*(f"{body['name']}: {body['shape']}, {body['law']}, young = {body['young']:g}, nu = {body['nu']:g}" for body in scene["body"]),
             *(f"{one['name']}: rigid {one['kind']}" for one in scene["obstacle"]), words]
 

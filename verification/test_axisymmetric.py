@@ -1,0 +1,78 @@
+"""V1, V2, V7 and V15 of bodies of revolution: their operators, the impact of a ball and of two."""
+
+import math
+
+import pytest
+
+from . import hertz, manufactured
+from .case import LAWS
+
+KEPT = ("energy", "radial", "axial", "even")
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("degree", [1, 2])
+def test_homogeneous_strain_is_exact(measure, tmp_path, law, degree):
+    """F = diag(1.2, 0.7, 1.2) of radius, axis and hoop: stresses, energy and inner forces are those of the volume of the elements to round-off, a ball
+    that is moved along its axis has none; volume and mass of curved elements are those of the ball."""
+    found = measure("homogeneous-ball", law=law, degree=degree, accuracy=0.02, out=tmp_path)
+    assert max(abs(found[name]) for name in KEPT) < 1e-12 and found["resting"] < 1e-13
+    assert found["mass"] == pytest.approx(found["volume"], rel=1e-4)
+    if degree == 2:
+        assert found["mass"] == pytest.approx(1, rel=2e-4)
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("degree", [1, 2])
+def test_tangent_is_the_derivative_of_the_residual(measure, law, degree):
+    """On curved elements at large strain, hoops included, and it is the matrix that is factorised."""
+    found = measure("tangent-ball", law=law, degree=degree, integrator="newmark", accuracy=0.1)
+    assert found["state"] == 0 and found["strain"] > 1
+    assert found["tangent"] < 1e-6 and found["solve"] < 1e-10 and found["stray"] < 1e-12
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_order_in_space(law):
+    """The L2 error of a motion with sines falls with h^3 up to the axis, and is no more than a twentieth above that on the disc."""
+    coarse, fine = (manufactured.disc(law, h, "axisymmetric") for h in (0.25, 0.125))
+    assert coarse["state"] == fine["state"] == 0 and fine["smallest"] < 0.95
+    assert math.log2(coarse["error"] / fine["error"]) == pytest.approx(3, abs=0.15)
+    assert fine["error"] < 1.05 * manufactured.disc(law, 0.125)["error"]
+    assert math.log2((1 - coarse["mass"]) / (1 - fine["mass"])) == pytest.approx(4, abs=0.15)
+
+
+def test_impact_of_hertz(tmp_path):
+    """Contact time and largest force of a slow ball within 2 %, nearer than those of a faster one; two balls likewise."""
+    for impact in (hertz.ball, hertz.balls):
+        fast, slow = (list(impact(tmp_path / f"{impact.__name__}-{speed:g}", speed)) for speed in (1, 0.01))
+        assert all(row.error < 0.02 for row in slow)
+        assert all(row.error < before.error for row, before in zip(slow, fast))
+
+
+def test_two_balls_are_one_on_a_plane(disc, tmp_path):
+    """Each at half the speed, their common tangent plane is at rest: one of them against it, with twice the penalty."""
+    sizes = dict(mesh_size=3e-3, contact_mesh_size=3e-4)
+    hertz.balls(tmp_path, 1, penalty=2e12, **sizes)
+    pair = hertz.outcome(tmp_path).summary
+    one = disc(script="ball-axisymmetric", speed=0.5, penalty=4e12, **hertz.BALL, **sizes).summary
+    assert pair["contact_time"] == pytest.approx(one["contact_time"], rel=5e-3)
+    assert pair["thresholded_contact_time"] == pytest.approx(one["thresholded_contact_time"], rel=1e-3)
+    assert pair["impulse"] == pytest.approx(one["impulse"], rel=1e-4)
+    assert pair["peak_force"] == pytest.approx(one["peak_force"], rel=2e-3)
+    assert pair["rebound_vy_1"] == pytest.approx(one["rebound_vy"], rel=1e-4) and pair["rebound_vy_2"] == pytest.approx(-pair["rebound_vy_1"], rel=1e-9)
+    assert pair["momentum_drift"] < 1e-9 and pair["energy_drift"] < 1e-9
+
+
+@pytest.mark.parametrize("flags", [{"law": "neohookean"}, {"law": "svk", "speed": 3}, {"law": "neohookean", "friction_static": 0.4, "friction_dynamic": 0.2},
+                                   {"law": "neohookean", "gravity": 50, "height": 0.01, "exponent": 1.5}, {"law": "neohookean", "degree": 1}], ids=str)
+def test_balance_of_energy_and_momentum(disc, flags):
+    """Kinetic, elastic and contact energy, what friction took and gravity gave: constant to 1e-9 in every step; the impulse is the change of momentum."""
+    found = disc(script="ball-axisymmetric", accuracy=0.02, **flags)
+    summary, history = found.summary, found.history
+    assert summary["energy_drift"] < 1e-9 and summary["momentum_drift"] < 1e-9
+    mass = 2 * summary["energy_initial"] / history["vy"][0] ** 2
+    if "height" not in flags:
+        assert summary["impulse"] == pytest.approx(mass * (history["vy"][-1] - history["vy"][0]), rel=1e-9)
+        assert mass == pytest.approx(4 / 3 * math.pi * 0.05**3 * 1722, rel=0.05 if flags.get("degree") == 1 else 1e-3)
+    assert (summary["friction_work"] > 1e-3 * summary["energy_initial"]) == ("friction_static" in flags)
+    assert not history["momentum_x"].any() and not history["spin"].any() and not history["friction_force"].any()
