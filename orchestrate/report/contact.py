@@ -21,7 +21,7 @@ def read(folder: Path) -> pd.DataFrame:
 
     t [s]; body (from 1); partner (k: body k, -k: obstacle k); s: along the body's outline from where it was first touched, the body to the left;
     X, Y, x, y: reference and present place; weight: share of the outline [m]; pressure (10), shear (11) [Pa] per reference length, means over the
-    step that ends at t; slip_velocity [m/s]; slides (1 or 0). Unreadable where it is not such a table.
+    step that ends at t; slip_velocity [m/s]; slides (1 or 0). In three dimensions also Z, z, shear_z, slip_velocity_z; weight [m2]. Unreadable where it is not such a table.
     """
     path = folder / "fields/contact.csv"
     try:
@@ -35,9 +35,11 @@ def read(folder: Path) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame, names: list[str], half: bool) -> plt.Figure | None:
     """A row of panels a body: pressure over the outline at some instants, over outline and time, and with friction the slip; None without contact.
-    Half a body is drawn with its mirror image."""
+    Half a body is drawn with its mirror image, of one in three dimensions the points nearest to the plane z = 0."""
     if table.empty:
         return None
+    if "Z" in table:
+        table = table[table.Z.abs() <= 0.15 * table.Z.abs().max()]
     largest = table.groupby("body").pressure.max().nlargest(MOST_BODIES)
     rubs, bodies = bool(table.shear.any()), sorted(largest.index)
     figure, grid = plt.subplots(len(bodies), 3 if rubs else 2, figsize=(8.4, 2.5 * len(bodies) + 0.6), squeeze=False)
