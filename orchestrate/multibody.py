@@ -24,6 +24,7 @@ import numpy as np
 
 from . import bodies, obstacles, parameters, scene
 from .bodies import MATERIAL, SIZES, Body
+from .describe import describe
 from .failure import BadInput
 from .obstacles import Obstacle
 from .estimate import LARGEST
@@ -89,12 +90,12 @@ class Multibody:
     @property
     def numbers(self) -> list[str]:
         """The numbers of summary.json."""
-        return scene.of_bodies("summary", len(self.bodies))
+        return scene.of_bodies("summary", describe(script=SCRIPT), len(self.bodies))
 
     @property
     def columns(self) -> list[str]:
         """The columns of history.csv."""
-        return scene.of_bodies("columns", len(self.bodies))
+        return scene.of_bodies("columns", describe(script=SCRIPT), len(self.bodies))
 
     @property
     def meshed(self) -> bool:

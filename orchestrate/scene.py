@@ -52,12 +52,12 @@ class Scene:
     @property
     def numbers(self) -> list[str]:
         """The numbers of summary.json."""
-        return of_bodies("summary", describe(script=self.script)["bodies"])
+        return of_bodies("summary", describe(script=self.script))
 
     @property
     def columns(self) -> list[str]:
         """The columns of history.csv."""
-        return of_bodies("columns", describe(script=self.script)["bodies"])
+        return of_bodies("columns", describe(script=self.script))
 
     @property
     def meshed(self) -> bool:
@@ -88,10 +88,10 @@ class Scene:
         return self.values | {"mesh": file}, ""
 
 
-def of_bodies(what: str, bodies: int) -> list[str]:
-    """The columns of history.csv, or the numbers of summary.json, of a scene of so many bodies; those of each of several have the
-    suffixes _1, _2 ..."""
-    said = describe()
+def of_bodies(what: str, said: dict, bodies: int = 0) -> list[str]:
+    """The columns of history.csv, or the numbers of summary.json, of a scene that describes itself so, with its or so many bodies; those of each
+    of several have the suffixes _1, _2 ..."""
+    bodies = bodies or said["bodies"]
     return said[what] + [f"{name}_{b}" for b in range(1, bodies + 1) for name in said[f"body_{what}"] if bodies > 1]
 
 
