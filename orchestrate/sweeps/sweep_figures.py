@@ -105,7 +105,7 @@ def findings(sweep, rows: pd.DataFrame, out: Path) -> list[str]:
     if kind == "lines":
         if not pd.api.types.is_numeric_dtype(rows[sweep.figure["x"]]):
             return []
-        return [trend(group, sweep.figure["x"], y, words) for y in sweep.figure["y"]
+        return [trend(group, sweep.figure["x"], y, words, sweep.figure["per"]) for y in sweep.figure["y"]
                 for words, group in _groups(sweep, rows, "by")]
     if kind == "map":
         return [line for words, group in _groups(sweep, rows, "by") for line in _set(sweep.figure, words, group)]
@@ -114,16 +114,16 @@ def findings(sweep, rows: pd.DataFrame, out: Path) -> list[str]:
             for panel, y, a, b, value, bar in distances(sweep, rows, out)]
 
 
-def label(name: str) -> str:
-    """The words and the unit of a parameter or a number of the summary, for an axis."""
+def label(name: str, per: str = "/m") -> str:
+    """The words and the unit of a parameter or a number of the summary, for an axis; per: "/m" in plane strain, "" of a ball."""
     parameter, words = _parameter(name), WORDS.get(name, name.replace("_", " "))
-    unit = _unit(name).strip() or (parameter.unit if parameter and not _quantity(name) else "")
+    unit = _unit(name, per).strip() or (parameter.unit if parameter and not _quantity(name) else "")
     return words if unit in ("-", "", "of the start") else f"{words} [{unit}]"
 
 
-def _quantity(name: str) -> report.Quantity | None:
+def _quantity(name: str, per: str = "/m") -> report.Quantity | None:
     """The row of the report, also of one of several bodies."""
-    return {quantity.key: quantity for quantity in report.rows(per_metre=True)}.get(re.sub("_[0-9]+$", "", name))
+    return {quantity.key: quantity for quantity in report.rows(per_metre=bool(per))}.get(re.sub("_[0-9]+$", "", name))
 
 
 def _parameter(name: str) -> parameters.Parameter | None:
@@ -137,9 +137,9 @@ def _factor(name: str) -> float:
     return quantity.factor if quantity else 1.0
 
 
-def _unit(name: str) -> str:
+def _unit(name: str, per: str = "/m") -> str:
     """The unit of a number of the summary, with a space in front."""
-    quantity = _quantity(name)
+    quantity = _quantity(name, per)
     return f" {quantity.unit}" if quantity and quantity.unit else ""
 
 
@@ -176,7 +176,7 @@ def _lines(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
             if not there.all():
                 axes.plot(group[x][~there], np.full((~there).sum(), 0.03), marker="x", linestyle="", markersize=4, color=colour,
                           transform=axes.get_xaxis_transform(), label=f"{words}: the run failed".removeprefix(": "))
-        axes.set_ylabel(label(y))
+        axes.set_ylabel(label(y, sweep.figure["per"]))
         axes.grid(alpha=0.3)
         if _is_logarithmic(rows[x]):
             axes.set_xscale("log")
@@ -244,10 +244,10 @@ def steps_against(group: pd.DataFrame, x: str, y: str) -> Trend | None:
                  int((against > 2 * steps).sum()), float(against.max()), float(np.median(steps)), float(np.median(np.abs(against))))
 
 
-def trend(group: pd.DataFrame, x: str, y: str, words: str) -> str:
+def trend(group: pd.DataFrame, x: str, y: str, words: str, per: str = "/m") -> str:
     """The same in words."""
     name = f"{words}: " * bool(words) + f"{y.replace('_', ' ')} over {x.replace('_', ' ')}"
-    found, factor, unit = steps_against(group, x, y), _factor(y), _unit(y)
+    found, factor, unit = steps_against(group, x, y), _factor(y), _unit(y, per)
     if not found:
         return f"{name}: too few points for a trend"
     size = abs(group[group.exit == 0][y]).mean()
@@ -287,7 +287,7 @@ def _map(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
         axes.set(title=words, xlabel=label(x))
         axes.spines[:].set_visible(False)
     grid[0, 0].set_ylabel(label(y))
-    figure.colorbar(picture, ax=grid, label=label(colour))
+    figure.colorbar(picture, ax=grid, label=label(colour, wanted["per"]))
     return figure
 
 
@@ -316,9 +316,10 @@ def _set(figure: dict, words: str, group: pd.DataFrame) -> list[str]:
     if figure["level"] is None:
         return []
     x, y, colour = (figure[key] for key in ("x", "y", "colour"))
+    unit = _unit(colour, figure.get("per", "/m"))
     lines = [f"{words}: " * bool(words) + f"{colour.replace('_', ' ')} = {_factor(colour) * figure['level']:g} ± "
-             f"{_factor(colour) * figure['band']:g}{_unit(colour)} is met, within an error bar of {_factor(colour) * _typical(group, colour):.2g}"
-             f"{_unit(colour)}, for"]
+             f"{_factor(colour) * figure['band']:g}{unit} is met, within an error bar of {_factor(colour) * _typical(group, colour):.2g}"
+             f"{unit}, for"]
     for value, ranges in level_set(figure, group).items():
         lines.append(f"  {_value(x, value)}: " + (f"{label(y)} " + spans(ranges) if ranges else f"no {label(y)}"))
     return lines
@@ -344,7 +345,7 @@ def _histories(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
             axes.margins(x=0)
             axes.grid(alpha=0.3)
             if k == 0:
-                axes.set_ylabel(f"{y.replace('_', ' ')}" + " [kN/m]" * ("force" in y))
+                axes.set_ylabel(f"{y.replace('_', ' ')}" + f" [kN{sweep.figure['per']}]" * ("force" in y))
     if grid[0, 0].get_legend_handles_labels()[0]:
         grid[0, 0].legend()
     return figure
