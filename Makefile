@@ -5,7 +5,7 @@ READY := .venv/.ready
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric disc-block friction-laws oblique contact-time-svk law-comparison contact-time-neohookean calibrate stick-slip verify paper movie test robustness bench bench-quick textbook skipping costs promise scaling materials disc-block-errors pairing-comparison refine refine-oblique clean
+.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique disc-block friction-laws oblique contact-time-svk law-comparison contact-time-neohookean calibrate stick-slip verify paper movie test robustness bench bench-quick textbook skipping costs promise scaling materials disc-block-errors pairing-comparison refine refine-oblique clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
@@ -26,6 +26,12 @@ disc-rolling: $(READY) ## a disc is set down on the plane, slides and comes to r
 
 ball-axisymmetric: $(READY) ## a ball falls normally on a rigid plane, as a body of revolution: as the paper may have run it, and converged (section 3.3)
 	@$(PYTHON) -m orchestrate compare ball-axisymmetric-svk ball-axisymmetric $(ARGS)
+
+ball: $(READY) ## the same ball in three dimensions, a quarter of it by symmetry (section 3.3)
+	@$(PYTHON) -m orchestrate run $@ $(ARGS)
+
+ball-oblique: $(READY) ## a ball hits the plane at 60 degrees, with friction, in three dimensions
+	@$(PYTHON) -m orchestrate run $@ $(ARGS)
 
 disc-block: $(READY) ## a disc falls on a free block of the same material: with the paper's law, and neo-Hookean (section 3.2)
 	@$(PYTHON) -m orchestrate compare disc-block disc-block-neohookean $(ARGS)
