@@ -3,7 +3,10 @@
 import numpy as np
 import pytest
 
+from orchestrate import vtu
+from verification.manufactured import SOFT
 from verification.test_ellipticity import STATES
+from verification.test_stress import NU, YOUNG, cauchy
 
 LAWS = ["svk", "neohookean"]
 COARSE = {"mesh_size": 0.025, "contact_mesh_size": 0.015}
@@ -19,15 +22,41 @@ def test_homogeneous_deformation_is_exact(measure, law):
     assert found["excess"] < 1e-13 and (found["largest"] > 0.1 or law == "svk")
 
 
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("degree", [1, 2])
+def test_snapshot_has_the_stress_of_the_closed_form(measure, tmp_path, law, degree):
+    """V1: Cauchy stress (all six components), von Mises stress and det F of the same motion in the file, to its 9 digits."""
+    measure("ball-homogeneous", law=law, degree=degree, young=YOUNG, nu=NU, symmetry="full", out=tmp_path, **COARSE)
+    F = np.array([[1.2, 0.3, -0.1], [-0.1, 0.7, 0.2], [0.15, -0.05, 1.1]])
+    found, sigma = vtu.read(tmp_path / "ball.vtu").fields, cauchy(law, F)
+    deviator = sigma - np.trace(sigma) / 3 * np.eye(3)
+    voigt = sigma[[0, 1, 2, 0, 1, 0], [0, 1, 2, 1, 2, 2]]   # xx yy zz xy yz xz
+    count = len(found["jacobian"])
+    assert count > 20 and found["cauchy_stress"] == pytest.approx(np.tile(voigt, (count, 1)), rel=1e-7)
+    assert found["von_mises"] == pytest.approx(np.full(count, np.sqrt(1.5 * (deviator**2).sum())), rel=1e-7)
+    assert found["jacobian"] == pytest.approx(np.full(count, np.linalg.det(F)), rel=1e-7)
+
+
 @pytest.mark.parametrize("symmetry", ["quarter", "half", "full"])
 def test_mass_surface_and_contact_points_are_those_of_the_sphere(measure, symmetry):
-    """Of all copies: mass 4/3 pi R^3 rho to 2e-3 on a coarse mesh and to a tenth of that on one with half the size, fourth order; points
-    on the sphere."""
+    """Of all copies: mass 4/3 pi R^3 rho and surface to 2e-3 on a coarse mesh and to an eighth of that on one with half the size; points on the
+    sphere."""
     coarse = measure("ball-homogeneous", law="svk", symmetry=symmetry, **COARSE)
     fine = measure("ball-homogeneous", law="svk", symmetry=symmetry, mesh_size=0.0125, contact_mesh_size=0.0075)
     assert abs(coarse["mass"]) < 2e-3 and abs(fine["mass"]) < abs(coarse["mass"]) / 8
     assert abs(coarse["surface"]) < 2e-3 and abs(fine["surface"]) < abs(coarse["surface"]) / 8
     assert coarse["sphere"] < 1e-14 and coarse["rows"] < 1e-3 and fine["rows"] < coarse["rows"] / 4
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_order_in_space(measure, law):
+    """V1: the L2 error of a manufactured motion with sines falls with the cube of the element size on curved tetrahedra, the mass with its fourth power;
+    the size by the number of elements, as the meshes are not nested."""
+    coarse, fine = (measure("manufactured-ball", law=law, mesh_size=h, contact_mesh_size=h, dt=0.005, end_time=0.025, tolerance=1e-12, **SOFT) for h in (0.35, 0.175))
+    finer = np.log2(fine["elements"] / coarse["elements"]) / 3
+    assert coarse["state"] == fine["state"] == 0 and fine["smallest"] < 0.95
+    assert np.log2(coarse["error"] / fine["error"]) / finer == pytest.approx(3, abs=0.15)
+    assert np.log2((1 - coarse["mass"]) / (1 - fine["mass"])) / finer == pytest.approx(4, abs=0.25)
 
 
 @pytest.mark.parametrize("law", LAWS)

@@ -10,7 +10,7 @@ LAMBDA, MU = YOUNG * NU / ((1 + NU) * (1 - 2 * NU)), YOUNG / (2 * (1 + NU))
 F = np.array([[1.2, 0.3, 0], [-0.1, 0.7, 0], [0, 0, 1]])   # of homogeneous.edp
 
 
-def cauchy(law: str) -> np.ndarray:
+def cauchy(law: str, F: np.ndarray = F) -> np.ndarray:
     """sigma = F S F^T / J [Pa], (3, 3), of the laws (5) and (6) in three dimensions."""
     C, J = F.T @ F, np.linalg.det(F)
     if law == "svk":
