@@ -131,8 +131,10 @@ def load(name: str) -> "Scene | multibody.Multibody":
 
 def _read(given: dict, path: Path) -> "Scene | multibody.Multibody":
     from . import multibody
-    if "body" in given:
+    if {"body", "obstacle", "contact"} & set(given):
         return multibody.read(given, path.parent, path.stem)
+    if not given:
+        raise BadInput("says nothing (accepted: a scene, as the built-in ones in orchestrate/scenes)")
     script, title = given.pop("script", "disc-plane"), given.pop("title", path.stem)
     scripts = [word for word in describe()["scripts"].split("|") if word != multibody.SCRIPT]
     if script == multibody.SCRIPT:

@@ -36,7 +36,7 @@ def test_folder_holds_what_the_contract_says(result):
     assert set(KEYS) <= set(result.summary)
     assert set(parameters.names("disc-plane")) <= set(result.scene)
     assert {p.name for p in (result.folder / "figures").iterdir()} == {
-        "energies.png", "force.png", "shapes.png", "velocity.png"}
+        "contact.png", "energies.png", "force.png", "shapes.png", "velocity.png"}
 
 
 def test_scripts_describe_what_they_write(result):

@@ -12,7 +12,7 @@ from orchestrate.report import compare, figures, report
 from orchestrate.studies import study
 
 COARSE = {"degree": 1, "mesh_size": 0.0125, "contact_mesh_size": 0.0125, "fields": 3}
-FRICTIONLESS = {"energies", "force", "shapes", "velocity"}
+FRICTIONLESS = {"contact", "energies", "force", "shapes", "velocity"}
 
 
 @pytest.fixture(scope="module")
@@ -79,7 +79,7 @@ def test_figures_of_unusual_runs(tmp_path, values):
     """Falls from rest, spins, runs that end inside the contact or keep one or no snapshot are drawn without an error."""
     result = run.run(scene.load("disc-oblique"), COARSE | values, tmp_path / "run")
     names = {path.stem for path in figures.draw(result.folder, [])}
-    assert FRICTIONLESS - {"shapes"} <= names and ("flight" in names) == (result.scene["fields"] > 2)
+    assert FRICTIONLESS - {"shapes", "contact"} <= names and ("flight" in names) == (result.scene["fields"] > 2)
 
 
 def test_report_tells_sliding_from_sticking(oblique):

@@ -112,3 +112,13 @@ def test_missing_scene_lists_the_built_in_ones():
     """A scene that does not exist is bad input that lists what there is."""
     with pytest.raises(BadInput, match="no such scene .built in: .*disc-normal"):
         scene.load("disc-nowhere")
+
+
+@pytest.mark.parametrize("text, said", [("", "says nothing .accepted: a scene"), ('[[obstacle]]\nkind = "plane"\n', "body: is missing .accepted: one table"),
+                                        ("[contact]\nfriction_static = 0.3\n", "body: is missing")])
+def test_a_file_without_bodies_is_no_scene(tmp_path, text, said):
+    """An empty file is not a run at the defaults; obstacles or contact without bodies say what is missing."""
+    path = tmp_path / "mine.toml"
+    path.write_text(text)
+    with pytest.raises(BadInput, match=said):
+        scene.load(str(path))

@@ -185,7 +185,7 @@ def test_figures_of_several_bodies(which, request):
     """Energies, velocities, forces and shapes are drawn; the title names the bodies' materials."""
     found = request.getfixturevalue(which)
     found = found[0] if which == "mine" else found
-    assert {path.name for path in (found.folder / "figures").iterdir()} == {"energies.png", "force.png", "shapes.png", "velocity.png"}
+    assert {path.name for path in (found.folder / "figures").iterdir()} == {"contact.png", "energies.png", "force.png", "shapes.png", "velocity.png"}
     assert all(path.stat().st_size > 5000 for path in (found.folder / "figures").iterdir())
     assert ("target: neo-Hookean, E = 4 MPa" if which == "mine" else "disc on block: St. Venant") in figures.title(found.scene)
     assert "rebound velocity, " + ("x, target" if which == "mine" else "y, block") in report.report(found)

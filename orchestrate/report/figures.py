@@ -32,7 +32,7 @@ filterwarnings("ignore", "Glyph .* missing from", UserWarning)    # a letter tha
 def draw(folder: Path, warnings: list[str]) -> list[Path]:
     """Draws all figures of the run in `folder` into folder/figures, with its warnings below; the files. Unreadable where the
     folder is broken. energies.png is the last: where it is, all are."""
-    from . import bodies
+    from . import bodies, contact as contacts
     history, scene = read_history(folder), read_scene(folder)
     snapshots = vtu.series(folder / "fields.pvd")
     target = folder / "figures"
@@ -44,6 +44,9 @@ def draw(folder: Path, warnings: list[str]) -> list[Path]:
             drawn = bodies.draw(contact, scene, snapshots)
         else:
             drawn = _on_a_plane(history, contact, scene, snapshots)
+        if (folder / "fields/contact.csv").exists():
+            along = contacts.draw(contacts.read(folder), bodies.names(scene) if bodies.are_several(scene) else ["body"], is_half(scene))
+            drawn |= {"contact": along} if along else {}
         for name, figure in reversed(drawn.items()):
             figure.suptitle(title(scene), fontsize=9)
             footer(figure, warnings)

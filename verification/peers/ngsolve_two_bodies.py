@@ -24,6 +24,7 @@ import netgen.occ as occ
 import ngsolve as ng
 import numpy as np
 from ngsolve import BND, Det, Grad, Id, IfPos, InnerProduct, Inv, Trace, ds, dx, log, x, y
+from peer import with_numbers
 
 FINE_ANGLE = 60             # degrees from the axis: where the discs' outline is fine and in contact
 ORDER = 4                   # of the quadrature of the stress and its energy
@@ -39,17 +40,12 @@ def arguments() -> argparse.Namespace:
                "density": (1722.0, "kg/m3"), "nu": (0.45, "-"), "penalty": (1e9, "Pa/m"), "speed": (10.0, "m/s, downwards, of the disc"),
                "lower-speed": (0.0, "m/s, upwards, of the lower body"), "refine": (1.0, "divides all mesh sizes"),
                "courant": (0.4, "step over the linear limit of stability"), "after": (0.3, "flight after the contact, in contact times")}
-    for name, (default, unit) in numbers.items():
-        parser.add_argument(f"--{name}", type=float, default=default, help=f"[{unit}] (default {default:g})")
     parser.add_argument("--law", choices=("svk", "neohookean"), default="neohookean")
     parser.add_argument("--lower", choices=("block", "disc"), default="block", help="the lower body (default block)")
     parser.add_argument("--contact", choices=("two-sided", "ngsolve"), default="two-sided")
     parser.add_argument("--realcompile", action="store_true", help="the stress by the C++ compiler: 12 s of set-up, then a fifth of its time")
     parser.add_argument("--history", type=Path, help="writes force, energies, velocities and least det F over time there (CSV)")
-    options = parser.parse_args()
-    options.lame_lambda = options.nu * options.young / ((1 + options.nu) * (1 - 2 * options.nu))
-    options.lame_mu = options.young / (2 * (1 + options.nu))
-    return options
+    return with_numbers(parser, numbers)
 
 
 def bodies_mesh(o: argparse.Namespace) -> ng.Mesh:

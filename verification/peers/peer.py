@@ -63,10 +63,15 @@ def arguments(program: str, forms: tuple[str, ...]) -> argparse.Namespace:
     numbers = {"mesh-size": (8e-3, "m"), "contact-mesh-size": (2.5e-3, "m"), "dt": (2e-5, "s"), "nu": (0.45, "-"),
                "speed": (8.0, "m/s"), "penalty": (1e10, "Pa/m"), "young": (7e6, "Pa"), "density": (1722.0, "kg/m3"),
                "radius": (0.05, "m"), "tolerance": (5e-12, "largest work of the residual in a step, over the energy")}
-    for name, (default, unit) in numbers.items():
-        parser.add_argument(f"--{name}", type=float, default=default, help=f"[{unit}] (default {default:g})")
     parser.add_argument("--law", choices=("svk", "neohookean"), default="svk")
     parser.add_argument("--history", type=Path, help="writes t,normal_force there: whole disc, mean of the step that ends at t")
+    return with_numbers(parser, numbers)
+
+
+def with_numbers(parser: argparse.ArgumentParser, numbers: dict[str, tuple[float, str]]) -> argparse.Namespace:
+    """The flags given, those of `numbers` (default, unit) among them, with lame_lambda and lame_mu [Pa] added."""
+    for name, (default, unit) in numbers.items():
+        parser.add_argument(f"--{name}", type=float, default=default, help=f"[{unit}] (default {default:g})")
     options = parser.parse_args()
     options.lame_lambda = options.nu * options.young / ((1 + options.nu) * (1 - 2 * options.nu))
     options.lame_mu = options.young / (2 * (1 + options.nu))

@@ -1,0 +1,88 @@
+"""The contact of a run along the outlines of its bodies: pressure at instants and over time, and with friction where it sticks and slides."""
+
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+from matplotlib.colors import ListedColormap
+
+from ..failure import Unreadable
+
+INSTANTS = 6                     # profiles at most
+MOST_BODIES = 4                  # those with the largest pressure
+SLIP = {"slips back": "#0072b2", "sticks": "#bbbbbb", "slips forward": "#d55e00"}    # v_T < 0, > 0: on the plane along x
+ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 1), "ncols": 3, "fontsize": 6.5, "handlelength": 1.0, "columnspacing": 0.8}
+COLUMNS = ["t", "body", "partner", "s", "X", "Y", "x", "y", "weight", "pressure", "shear", "slip_velocity", "slides"]
+
+
+def read(folder: Path) -> pd.DataFrame:
+    """fields/contact.csv of the run in `folder`: a row for every point of an outline that bears load, at the instants of the snapshots.
+
+    t [s]; body (from 1); partner (k: body k, -k: obstacle k); s: along the body's outline from where it was first touched, the body to the left;
+    X, Y, x, y: reference and present place; weight: share of the outline [m]; pressure (10), shear (11) [Pa] per reference length, means over the
+    step that ends at t; slip_velocity [m/s]; slides (1 or 0). Unreadable where it is not such a table.
+    """
+    path = folder / "fields/contact.csv"
+    try:
+        table = pd.read_csv(path)
+    except (OSError, ValueError) as error:
+        raise Unreadable(f"{path} cannot be read: {error}; run with --force") from None
+    if not set(COLUMNS) <= set(table):
+        raise Unreadable(f"{path} lacks the columns {', '.join(name for name in COLUMNS if name not in table)}; run with --force")
+    return table
+
+
+def draw(table: pd.DataFrame, names: list[str], half: bool) -> plt.Figure | None:
+    """A row of panels a body: pressure over the outline at some instants, over outline and time, and with friction the slip; None without contact.
+    Half a body is drawn with its mirror image."""
+    if table.empty:
+        return None
+    largest = table.groupby("body").pressure.max().nlargest(MOST_BODIES)
+    rubs, bodies = bool(table.shear.any()), sorted(largest.index)
+    figure, grid = plt.subplots(len(bodies), 3 if rubs else 2, figsize=(8.4, 2.5 * len(bodies) + 0.6), squeeze=False)
+    for row, body in zip(grid, bodies):
+        own = table[table.body == body].groupby(["t", "s"], as_index=False).first()     # twice only where an outline meets itself
+        if half:
+            own = pd.concat([own, own.assign(s=-own.s, shear=-own.shear, slip_velocity=-own.slip_velocity)]).drop_duplicates(["t", "s"])
+        _profiles(row[0], own)
+        times, places, pressure = _over_time(own, "pressure")
+        picture = row[1].pcolormesh(1e3 * times, 1e3 * places, 1e-6 * pressure.T, shading="nearest", cmap="viridis", vmin=0, rasterized=True)
+        figure.colorbar(picture, ax=row[1], label="pressure [MPa]")
+        if rubs:
+            _slip(row[2], own)
+        for axes in row[1:]:
+            axes.set(ylabel="along the outline [mm]", xlabel="time [ms]")
+        if len(names) > 1:
+            row[1].set_title(names[body - 1])
+    return figure
+
+
+def _profiles(axes: plt.Axes, own: pd.DataFrame) -> None:
+    """Pressure [MPa] along the outline [mm] at up to INSTANTS times."""
+    times = np.unique(own.t)
+    picked = times[np.unique(np.linspace(0, len(times) - 1, INSTANTS + 2).round().astype(int)[1:-1])] if len(times) > INSTANTS else times
+    for t, colour in zip(picked, plt.get_cmap("plasma")(np.linspace(0, 0.85, len(picked)))):
+        now = own[own.t == t].sort_values("s")
+        axes.plot(1e3 * now.s, 1e-6 * now.pressure, color=colour, linewidth=1.1, marker=".", markersize=2.5, label=f"{1e3 * t:.3g} ms")
+    axes.set(xlabel="along the outline [mm]", ylabel="pressure [MPa]", ylim=(0, None))
+    axes.legend(**ABOVE)
+
+
+def _over_time(own: pd.DataFrame, column: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Times (n) [s], places (m) [m] and the values (n, m) there; nan where there is no load, and for a while without any."""
+    wide = own.pivot(index="t", columns="s", values=column)
+    times = wide.index.to_numpy()
+    if len(times) > 2:
+        usual = 1.5 * np.median(np.diff(times))
+        gaps = [t for early, late in zip(times, times[1:]) if late - early > usual for t in (early + usual / 3, late - usual / 3)]
+        wide = wide.reindex(np.sort(np.concatenate([times, gaps])))
+    return wide.index.to_numpy(), wide.columns.to_numpy(), wide.to_numpy()
+
+
+def _slip(axes: plt.Axes, own: pd.DataFrame) -> None:
+    """Where the points under load stick and slide, over outline and time."""
+    state = own.assign(state=np.where(own.slides > 0, np.sign(own.slip_velocity), 0.0))
+    times, places, values = _over_time(state, "state")
+    axes.pcolormesh(1e3 * times, 1e3 * places, values.T, shading="nearest", cmap=ListedColormap(list(SLIP.values())), vmin=-1.5, vmax=1.5, rasterized=True)
+    axes.legend([plt.Rectangle((0, 0), 1, 1, color=colour) for colour in SLIP.values()], list(SLIP), **ABOVE)

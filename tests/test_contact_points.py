@@ -1,0 +1,114 @@
+"""fields/contact.csv: what bears load along the outlines, against the forces of the history."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from orchestrate import run, scene
+from orchestrate.failure import Unreadable
+from orchestrate.report import contact, report
+from orchestrate.results import RunResult
+
+CORNER = """
+title = "A disc in a corner"
+law = "neohookean"
+young = 7e6
+nu = 0.4
+density = 1722
+accuracy = 0.4
+fields = 8
+[[body]]
+name = "disc"
+shape = "disc"
+radius = 0.05
+position = [0.052, 0.052]
+velocity = [-4, -4]
+[[obstacle]]
+name = "floor"
+kind = "plane"
+point = [0, 0]
+normal = [0, 1]
+[[obstacle]]
+name = "wall"
+kind = "plane"
+point = [0, 0]
+normal = [1, 0]
+[contact]
+friction_static = 0.3
+"""
+
+
+@pytest.fixture(scope="module")
+def ran(tmp_path_factory):
+    """ran(name, **set): the scene, coarse, with 8 snapshots or as set."""
+    def at(name: str, **given) -> RunResult:
+        folder = tmp_path_factory.mktemp("run")
+        if name == "corner":
+            name = str(folder / "corner.toml")
+            (folder / "corner.toml").write_text(CORNER)
+        return run.run(scene.load(name), ({"accuracy": 0.4, "fields": 8} | given) if not name.endswith("toml") else given, folder / "out", estimate=False)
+    return at
+
+
+def summed(result: RunResult) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Forces [N/m] by instant and partner from contact.csv, and the rows of the history at the same instants."""
+    points = contact.read(result.folder)
+    points = points.assign(pressure=points.pressure * points.weight, shear=points.shear * points.weight)
+    forces = points.groupby(["t", "partner"])[["pressure", "shear"]].sum().unstack(fill_value=0)
+    history = pd.DataFrame(result.history)
+    return forces, history.iloc[[(history.t - t).abs().argmin() for t in forces.index]]
+
+
+@pytest.mark.parametrize("name, given", [("disc-normal", {}), ("disc-normal", {"symmetry": "full", "integrator": "newmark"}), ("disc-oblique", {}),
+                                         ("disc-oblique", {"degree": 1, "regularization": "tanh"})])
+def test_forces_on_a_plane(ran, name, given):
+    """Pressure and shear times weight add up to the normal and the friction force of the history, at every instant, of the whole body."""
+    forces, there = summed(ran(name, **given))
+    assert len(forces) > 8 and (there.normal_force > 0).all()
+    np.testing.assert_allclose(forces.pressure[-1], there.normal_force, rtol=1e-6)
+    np.testing.assert_allclose(forces.shear[-1], there.friction_force, rtol=1e-6, atol=1e-6 * there.normal_force.max())
+
+
+@pytest.mark.parametrize("given", [{}, {"pairing": "pairwise"}, {"angle": 60, "friction_static": 0.4}])
+def test_both_bodies_bear_the_force_between_them(ran, given):
+    """Of two bodies each carries the normal force once (each takes both roles: to 10 % on coarse elements), both together twice of it exactly."""
+    result = ran("disc-block", **given)
+    forces, there = summed(result)
+    if "pairing" not in given:      # its forces differ in direction
+        np.testing.assert_allclose(forces.pressure[[1, 2]].sum(axis=1), 2 * there.normal_force, rtol=1e-6)
+    shares = contact.read(result.folder).eval("load = pressure * weight").groupby("body").load.sum()
+    assert shares[1] == pytest.approx(shares[2], rel=0.1)
+    np.testing.assert_allclose(forces.shear[1].sum(), forces.shear[2].sum(), rtol=0.1, atol=1e-9)
+
+
+def test_two_obstacles_at_once(ran):
+    """A disc in a corner: forces on floor and wall are apart, numbered -1 and -2; the friction of each is within its cone."""
+    forces, there = summed(ran("corner"))
+    np.testing.assert_allclose(forces.pressure.sum(axis=1), there.normal_force, rtol=1e-6)
+    assert {-1, -2} == set(forces.pressure) and (np.abs(forces.shear) <= 0.3000001 * forces.pressure).all(axis=None)
+
+
+@pytest.mark.parametrize("symmetry", ["half", "full"])
+def test_arcs(ran, symmetry):
+    """s is the way along the circle, counterclockwise, 0 at the first touch."""
+    points = contact.read(ran("disc-normal", symmetry=symmetry).folder)
+    assert np.abs(points.s - 0.05 * np.arcsin(points.X / 0.05)).max() < (0.0015 if symmetry == "full" else 1e-4)   # a Gauss point beside the lowest one
+    assert (points.partner == -1).all() and (points.body == 1).all()
+
+
+def test_nothing_that_nobody_asked_for(ran):
+    """Without snapshots there is no file; the answers are those of the run with them."""
+    with_it, without = ran("disc-oblique"), ran("disc-oblique", fields=0)
+    assert not (without.folder / "fields").exists()
+    assert with_it.summary["impulse"] == without.summary["impulse"]
+
+
+def test_picture_and_broken_tables(ran):
+    """The figure is drawn where there was contact; a table that is none is refused by its name."""
+    result = ran("disc-oblique")
+    report.draw(result)
+    assert (result.folder / "figures/contact.png").stat().st_size > 10000
+    assert contact.draw(contact.read(result.folder).iloc[:0], ["body"], False) is None
+    (result.folder / "fields/contact.csv").write_text("t,body\n1,2\n")
+    with pytest.raises(Unreadable, match="contact.csv lacks the columns partner, s"):
+        contact.read(result.folder)
