@@ -1,0 +1,54 @@
+"""Points inside a body next to one of its vertices: a narrow block between two discs, whose corners press into them."""
+
+import numpy as np
+import pytest
+
+from orchestrate import run, scene
+
+NARROW = """
+title = "Two discs and a narrow block"
+law = "neohookean"
+young = 7e6
+nu = 0.45
+density = 1722
+accuracy = 0.05
+fields = 0
+[[body]]
+shape = "disc"
+radius = 0.05
+position = [-{x}, -{off}]
+velocity = [5, 0]
+[[body]]
+shape = "rectangle"
+width = {width}
+height = {height}
+position = [0, 0]
+[[body]]
+shape = "disc"
+radius = 0.05
+position = [{x}, {off}]
+velocity = [{speed}, 0]
+[contact]
+friction_static = {friction}
+"""
+
+
+@pytest.mark.parametrize("case", [dict(width=0.06, height=0.1, x=0.081, off=0, speed=0, friction=0.3), dict(width=0.1, height=0.06, x=0.102, off=0.04, speed=-5, friction=0)],
+                         ids=["struck, with friction", "pressed at its corners"])
+def test_vertices_cost_no_steps(case, tmp_path):
+    """Nearly every step converges, with few factorisations (an edge's normal and its vertex's took turns); energy and momenta are kept."""
+    (tmp_path / "narrow.toml").write_text(NARROW.format(**case))
+    found = run.run(scene.load(str(tmp_path / "narrow.toml")), {}, tmp_path / "run", estimate=False)
+    s, h = found.summary, found.history
+    assert s["rejected_steps"] <= 5 and s["factorizations"] <= 60 and s["newton_iterations"] < 20 * s["steps"]
+    assert s["energy_drift"] < 1e-9
+    brought = s["mass_1"] * 5
+    for name, scale in (("momentum_x", brought), ("momentum_y", brought), ("angular_momentum", 0.05 * brought)):
+        assert np.ptp(h[name]) < 1e-9 * scale, name
+    assert s["impulse_x_1"] + s["impulse_x_2"] + s["impulse_x_3"] == pytest.approx(0, abs=1e-7 * abs(s["impulse_x_1"]))
+
+
+def test_three_in_a_row_takes_no_small_steps(tmp_path):
+    """The scene's block is narrower than what strikes it; no step of it is refused."""
+    s = run.run(scene.load("three-in-a-row"), {"accuracy": 0.1, "fields": 0}, tmp_path / "run", estimate=False).summary
+    assert s["rejected_steps"] <= 5 and s["factorizations"] <= 60 and s["newton_iterations"] < 20 * s["steps"]
