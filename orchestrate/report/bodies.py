@@ -61,8 +61,8 @@ def legend(axes: plt.Axes, ncols: int = 3) -> None:
 
 def draw(history: dict[str, np.ndarray], scene: dict[str, Value], snapshots: list[tuple[float, Path]]) -> dict[str, plt.Figure]:
     """The figures by name; `history` from the first touch on."""
-    bodies = dict(zip(names(scene), suffixes(history)))
-    drawn = {"energies": energies(history, bodies, per_metre(scene)), "velocity": velocities(history, bodies), "force": forces(history, bodies, per_metre(scene))}
+    bodies, per = dict(zip(names(scene), suffixes(history))), per_metre(scene)
+    drawn = {"energies": energies(history, bodies, per), "velocity": velocities(history, bodies), "force": forces(history, bodies, per)}
     if snapshots:
         drawn["shapes"] = shapes(snapshots, scene)
     return drawn
