@@ -454,7 +454,7 @@ def test_a_file_is_named_with_what_is_wrong_in_it(tmp_path):
     (tmp_path / "mine.toml").write_text('[[body]]\nshape = "disk"\n')
     with pytest.raises(BadInput, match=r"mine.toml: body.1.shape: 'disk' is not known"):
         load(str(tmp_path / "mine.toml"))
-    with pytest.raises(BadInput, match=r"^none: no such scene \(built in: ball-axisymmetric, .*disc-block, "):
+    with pytest.raises(BadInput, match=r"^none: no such scene \(built in: ball, .*disc-block, "):
         load("none")
 
 
