@@ -17,7 +17,7 @@ VOLUME = 4 / 3 * np.pi * 0.05**3
 def test_homogeneous_deformation_is_exact(measure, law):
     """V1: F, P, energy and the smallest stretch of x = F X at every quadrature point of the curved ball, to round-off; the work excess of finite
     steps is that of their energies."""
-    found = measure("ball-homogeneous", law=law, symmetry="full", **COARSE)
+    found = measure("homogeneous-3d", law=law, symmetry="full", **COARSE)
     assert found["gradient"] < 1e-13 and found["stress"] < 1e-12 and found["energy"] < 1e-12 and found["stretch"] < 1e-12
     assert found["excess"] < 1e-13 and (found["largest"] > 0.1 or law == "svk")
 
@@ -26,7 +26,7 @@ def test_homogeneous_deformation_is_exact(measure, law):
 @pytest.mark.parametrize("degree", [1, 2])
 def test_snapshot_has_the_stress_of_the_closed_form(measure, tmp_path, law, degree):
     """V1: Cauchy stress (all six components), von Mises stress and det F of the same motion in the file, to its 9 digits."""
-    measure("ball-homogeneous", law=law, degree=degree, young=YOUNG, nu=NU, symmetry="full", out=tmp_path, **COARSE)
+    measure("homogeneous-3d", law=law, degree=degree, young=YOUNG, nu=NU, symmetry="full", out=tmp_path, **COARSE)
     F = np.array([[1.2, 0.3, -0.1], [-0.1, 0.7, 0.2], [0.15, -0.05, 1.1]])
     found, sigma = vtu.read(tmp_path / "ball.vtu").fields, cauchy(law, F)
     deviator = sigma - np.trace(sigma) / 3 * np.eye(3)
@@ -41,8 +41,8 @@ def test_snapshot_has_the_stress_of_the_closed_form(measure, tmp_path, law, degr
 def test_mass_surface_and_contact_points_are_those_of_the_sphere(measure, symmetry):
     """Of all copies: mass 4/3 pi R^3 rho and surface to 2e-3 on a coarse mesh and to an eighth of that on one with half the size; points on the
     sphere."""
-    coarse = measure("ball-homogeneous", law="svk", symmetry=symmetry, **COARSE)
-    fine = measure("ball-homogeneous", law="svk", symmetry=symmetry, mesh_size=0.0125, contact_mesh_size=0.0075)
+    coarse = measure("homogeneous-3d", law="svk", symmetry=symmetry, **COARSE)
+    fine = measure("homogeneous-3d", law="svk", symmetry=symmetry, mesh_size=0.0125, contact_mesh_size=0.0075)
     assert abs(coarse["mass"]) < 2e-3 and abs(fine["mass"]) < abs(coarse["mass"]) / 8
     assert abs(coarse["surface"]) < 2e-3 and abs(fine["surface"]) < abs(coarse["surface"]) / 8
     assert coarse["sphere"] < 1e-14 and coarse["rows"] < 1e-3 and fine["rows"] < coarse["rows"] / 4
@@ -52,7 +52,7 @@ def test_mass_surface_and_contact_points_are_those_of_the_sphere(measure, symmet
 def test_order_in_space(measure, law):
     """V1: the L2 error of a manufactured motion with sines falls with the cube of the element size on curved tetrahedra, the mass with its fourth power;
     the size by the number of elements, as the meshes are not nested."""
-    coarse, fine = (measure("manufactured-ball", law=law, mesh_size=h, contact_mesh_size=h, dt=0.005, end_time=0.025, tolerance=1e-12, **SOFT) for h in (0.35, 0.175))
+    coarse, fine = (measure("manufactured-3d", law=law, mesh_size=h, contact_mesh_size=h, dt=0.005, end_time=0.025, tolerance=1e-12, **SOFT) for h in (0.35, 0.175))
     finer = np.log2(fine["elements"] / coarse["elements"]) / 3
     assert coarse["state"] == fine["state"] == 0 and fine["smallest"] < 0.95
     assert np.log2(coarse["error"] / fine["error"]) / finer == pytest.approx(3, abs=0.15)
@@ -63,7 +63,7 @@ def test_order_in_space(measure, law):
 @pytest.mark.parametrize("degree", [1, 2])
 def test_tangent_is_the_derivative_of_the_residual(measure, law, degree):
     """V2: to 1e-6 of central differences, at large strains, on the curved ball."""
-    found = measure("ball-tangent", law=law, nu=0.3, integrator="midpoint", degree=degree, **COARSE)
+    found = measure("tangent-3d", law=law, nu=0.3, integrator="midpoint", degree=degree, **COARSE)
     assert found["state"] == 0 and found["strain"] > 0.5
     assert found["tangent"] < 1e-6
     assert found["area"] == pytest.approx(VOLUME, rel=3e-3 if degree == 2 else 0.15)
@@ -73,7 +73,7 @@ def test_tangent_is_the_derivative_of_the_residual(measure, law, degree):
 def test_spinning_ball_keeps_energy_and_momenta(measure, law):
     """V3: a vibrating free half ball (z >= 0) over 10 turns of 30 steps each: energy, momentum and angular momentum to 1e-10; turning and moving a
     deformed body changes neither its energy nor det F."""
-    found = measure("ball-spinning", law=law, spin=200, exponent=3, tolerance=5e-14, mesh_size=0.035, contact_mesh_size=0.035, symmetry="half")
+    found = measure("spinning-3d", law=law, spin=200, exponent=3, tolerance=5e-14, mesh_size=0.035, contact_mesh_size=0.035, symmetry="half")
     assert found["state"] == 0 and found["strain"] > 0.02
     assert found["energy"] < 1e-10 and found["momentum"] < 1e-10 and found["angular"] < 1e-10
     assert found["rigid"] < 1e-11
@@ -84,7 +84,7 @@ def test_spinning_ball_keeps_energy_and_momenta(measure, law):
 def test_ellipticity_is_the_least_of_all_directions(measure, law, nu):
     """A hundred random states: the smallest eigenvalue of the acoustic tensor as in the textbook is in none of 20,000 directions below that of
     the program, which looks in the principal planes of C, and comes within the spacing of the directions of it."""
-    found = measure("ball-ellipticity", law=law, nu=nu, **COARSE)
+    found = measure("ellipticity-3d", law=law, nu=nu, **COARSE)
     closed = np.array([found[f"closed{i}"] for i in STATES])
     entries = np.array([[found[f"C{name}_{i}"] for i in STATES] for name in ("11", "12", "13", "12", "22", "23", "13", "23", "33")])
     ratio, one = 2 * nu / (1 - 2 * nu), np.eye(3)
@@ -144,7 +144,7 @@ def test_impact_is_that_of_a_body_of_revolution(disc):
 @pytest.mark.parametrize("transition", ["jump", "smooth"])
 def test_friction_in_space_is_the_law_in_every_direction(measure, regularization, transition):
     """Along z = 0 it is the law in the plane to round-off, turned it turns; forces, drag and coupling are derivatives of each other to 1e-6."""
-    found = measure("ball-friction", friction_static=0.7, friction_dynamic=0.5, regularization=regularization, friction_transition=transition,
+    found = measure("friction-3d", friction_static=0.7, friction_dynamic=0.5, regularization=regularization, friction_transition=transition,
                     symmetry="full", **COARSE)
     assert found["plane"] < 1e-13 and found["turned"] < 1e-13
     assert found["stiff"] < 1e-6 and found["drag"] < 1e-6 and found["coupling"] < 1e-6
