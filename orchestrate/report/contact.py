@@ -33,14 +33,16 @@ def read(folder: Path) -> pd.DataFrame:
     return table
 
 
-def draw(table: pd.DataFrame, names: list[str], half: bool) -> plt.Figure | None:
+def draw(table: pd.DataFrame, names: list[str], half: bool, free: np.ndarray) -> plt.Figure | None:
     """A row of panels a body: pressure over the outline at some instants, over outline and time, and with friction the slip; None without contact.
-    Half a body is drawn with its mirror image, of one in three dimensions the points nearest to the plane z = 0."""
+    Half a body is drawn with its mirror image, of one in three dimensions the points nearest to the plane z = 0. `free`: times [s] at which nothing is
+    touched."""
     if table.empty:
         return None
     if "Z" in table:
         table = table[table.Z.abs() <= 0.15 * table.Z.abs().max()]
     largest = table.groupby("body").pressure.max().nlargest(MOST_BODIES)
+    instants = np.union1d(table.t, free[(free > table.t.min()) & (free < table.t.max())])
     rubs, bodies = bool(table.shear.any()), sorted(largest.index)
     figure, grid = plt.subplots(len(bodies), 3 if rubs else 2, figsize=(8.4, 2.5 * len(bodies) + 0.6), squeeze=False)
     for row, body in zip(grid, bodies):
@@ -48,11 +50,11 @@ def draw(table: pd.DataFrame, names: list[str], half: bool) -> plt.Figure | None
         if half:
             own = pd.concat([own, own.assign(s=-own.s, shear=-own.shear, slip_velocity=-own.slip_velocity)]).drop_duplicates(["t", "s"])
         _profiles(row[0], own)
-        times, places, pressure = _over_time(own, "pressure")
+        times, places, pressure = _over_time(own, "pressure", instants)
         picture = row[1].pcolormesh(1e3 * times, 1e3 * places, 1e-6 * pressure.T, shading="nearest", cmap="viridis", vmin=0, rasterized=True)
         figure.colorbar(picture, ax=row[1], label="pressure [MPa]")
         if rubs:
-            _slip(row[2], own)
+            _slip(row[2], own, instants)
         for axes in row[1:]:
             axes.set(ylabel="along the outline [mm]", xlabel="time [ms]")
         if len(names) > 1:
@@ -71,20 +73,15 @@ def _profiles(axes: plt.Axes, own: pd.DataFrame) -> None:
     axes.legend(**ABOVE)
 
 
-def _over_time(own: pd.DataFrame, column: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Times (n) [s], places (m) [m] and the values (n, m) there; nan where there is no load, and for a while without any."""
-    wide = own.pivot(index="t", columns="s", values=column)
-    times = wide.index.to_numpy()
-    if len(times) > 2:
-        usual = 1.5 * np.median(np.diff(times))
-        gaps = [t for early, late in zip(times, times[1:]) if late - early > usual for t in (early + usual / 3, late - usual / 3)]
-        wide = wide.reindex(np.sort(np.concatenate([times, gaps])))
-    return wide.index.to_numpy(), wide.columns.to_numpy(), wide.to_numpy()
+def _over_time(own: pd.DataFrame, column: str, instants: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The instants (n) [s], places (m) [m] and the values (n, m) there; nan where there is no load."""
+    wide = own.pivot(index="t", columns="s", values=column).reindex(instants)
+    return instants, wide.columns.to_numpy(), wide.to_numpy()
 
 
-def _slip(axes: plt.Axes, own: pd.DataFrame) -> None:
+def _slip(axes: plt.Axes, own: pd.DataFrame, instants: np.ndarray) -> None:
     """Where the points under load stick and slide, over outline and time."""
     state = own.assign(state=np.where(own.slides > 0, np.sign(own.slip_velocity), 0.0))
-    times, places, values = _over_time(state, "state")
+    times, places, values = _over_time(state, "state", instants)
     axes.pcolormesh(1e3 * times, 1e3 * places, values.T, shading="nearest", cmap=ListedColormap(list(SLIP.values())), vmin=-1.5, vmax=1.5, rasterized=True)
     axes.legend([plt.Rectangle((0, 0), 1, 1, color=colour) for colour in SLIP.values()], list(SLIP), **ABOVE)

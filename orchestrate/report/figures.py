@@ -45,7 +45,7 @@ def draw(folder: Path, warnings: list[str]) -> list[Path]:
         else:
             drawn = _on_a_plane(history, contact, scene, snapshots)
         if (folder / "fields/contact.csv").exists():
-            along = contacts.draw(contacts.read(folder), bodies.names(scene) if bodies.are_several(scene) else ["body"], is_half(scene))
+            along = contacts.draw(contacts.read(folder), bodies.names(scene) if bodies.are_several(scene) else ["body"], is_half(scene), history["t"][~touches])
             drawn |= {"contact": along} if along else {}
         for name, figure in reversed(drawn.items()):
             figure.suptitle(title(scene), fontsize=9)
