@@ -88,7 +88,7 @@ def run(freefem: FreeFem, script: str, flags: list[str], log: Path, progress: Pr
         finally:
             if child.poll() is None:
                 os.killpg(child.pid, signal.SIGKILL)
-                child.wait()
+                child.communicate()   # to the end of its own children, too
         errors.seek(0)
         said = errors.read()
         file.write(said)

@@ -4,6 +4,7 @@ Boundary labels: 1 = the free outer boundary (the circle), 2 = the symmetry axis
 the FreeFEM side curves the boundary. The lowest point of the disc touches the plane y = 0.
 """
 
+import atexit
 import math
 import signal
 import threading
@@ -13,6 +14,7 @@ from dataclasses import dataclass
 from functools import cache
 from importlib import metadata
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 
@@ -75,23 +77,36 @@ def disc(radius: float, mesh_size: float, contact_mesh_size: float, half: bool, 
     return Mesh(points, counter_clockwise(points, triangles.reshape(-1, 3)), edges, labels)
 
 
-@contextmanager
-def gmsh_session() -> Iterator:
-    """The module gmsh, started, silent, and ended; NotInstalled where a system library is missing."""
+@cache
+def start_gmsh() -> ModuleType:
+    """The module gmsh, started once in the life of this program; NotInstalled where a system library is missing.
+
+    For a moment gmsh sets signal handlers back to their defaults: a run starts it before it makes anything that a signal could leave behind.
+    """
     try:
         import gmsh
     except OSError as error:
         raise NotInstalled(f"gmsh does not load ({error}); run: make setup") from None
     handlers = {number: signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGPIPE)}
     gmsh.initialize([], readConfigFiles=False, interruptible=False)
-    gmsh.option.setNumber("General.Terminal", 0)
     if threading.current_thread() is threading.main_thread():
-        for number, handler in handlers.items():   # gmsh sets them back to their defaults
+        for number, handler in handlers.items():
             signal.signal(number, handler)
+    atexit.register(gmsh.finalize)
+    return gmsh
+
+
+@contextmanager
+def gmsh_session() -> Iterator[ModuleType]:
+    """The module gmsh as it is at its start, silent."""
+    gmsh = start_gmsh()
+    gmsh.option.restoreDefaults()
+    gmsh.option.setNumber("General.Terminal", 0)
+    gmsh.option.setNumber("General.AbortOnError", 2)   # exceptions, as after initialize()
     try:
         yield gmsh
     finally:
-        gmsh.finalize()
+        gmsh.clear()
 
 
 def _outline(geo, half: bool, contact_arc: float) -> tuple[list[int], list[int]]:

@@ -49,6 +49,8 @@ def run(scene: Scene | Multibody, overrides: dict[str, Value] | None = None, out
         return there
 
     program = freefem.find()
+    if scene.meshed and not foreign:
+        mesh.start_gmsh()
     with staging(folder) as (stage, lock):
         if not force and (there := reusable(scene, folder, mesh_file, estimate)):   # another run has finished it meanwhile
             return there
