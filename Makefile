@@ -5,7 +5,7 @@ READY := .venv/.ready
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique disc-block friction-laws oblique contact-time-svk law-comparison contact-time-neohookean calibrate stick-slip verify paper movie test robustness bench bench-quick textbook skipping costs promise scaling materials disc-block-errors pairing-comparison refine refine-oblique clean
+.PHONY: help setup disc-normal ball-comparison disc-oblique disc-rolling ball-axisymmetric ball ball-oblique disc-block friction-laws oblique contact-time-svk law-comparison contact-time-neohookean calibrate stick-slip verify paper movie test robustness bench bench-quick textbook skipping costs promise scaling materials disc-block-errors pairing-comparison refine refine-oblique clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
@@ -32,6 +32,9 @@ ball: $(READY) ## the same ball in three dimensions, a quarter of it by symmetry
 
 ball-oblique: $(READY) ## a ball hits the plane at 60 degrees, with friction, in three dimensions
 	@$(PYTHON) -m orchestrate run $@ $(ARGS)
+
+ball-comparison: $(READY) ## accelerations of the centre of mass: disc with both laws, ball with both laws (figure 11)
+	@$(PYTHON) -m orchestrate compare disc-normal disc-normal-neohookean ball-axisymmetric-svk ball-axisymmetric $(ARGS)
 
 disc-block: $(READY) ## a disc falls on a free block of the same material: with the paper's law, and neo-Hookean (section 3.2)
 	@$(PYTHON) -m orchestrate compare disc-block disc-block-neohookean $(ARGS)

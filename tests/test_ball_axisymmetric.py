@@ -8,7 +8,7 @@ import pytest
 from orchestrate import estimate, mesh, parameters, results, run, scene, vtu
 from orchestrate.describe import describe
 from orchestrate.failure import BadInput
-from orchestrate.report import figures, report
+from orchestrate.report import compare, figures, report
 from test_direct import COARSE, call
 
 SCRIPT = "ball-axisymmetric"
@@ -44,6 +44,20 @@ def test_units_are_those_of_a_ball(result):
     printed = (result.folder / "log.txt").read_text()
     assert " N s, peak force " in printed and "J/m" not in printed and "N/m" not in printed
     assert {path.stem for path in (result.folder / "figures").iterdir()} == {"energies", "force", "velocity", "shapes", "contact"}
+
+
+def test_a_disc_beside_a_ball(result, tmp_path, monkeypatch):
+    """Figure 11: a disc, per metre, and a ball are compared by the accelerations of their centres, v'(t) of the histories, and by shares of energy."""
+    disc = run.run(scene.load("disc-normal-neohookean"), {"accuracy": 0.2}, tmp_path / "disc", estimate=False)
+    assert compare._mass(disc.history) == pytest.approx(math.pi * 0.05**2 * 1722, rel=1e-3)
+    assert compare._mass(result.history) == pytest.approx(MASS, rel=1e-3)
+    monkeypatch.setattr(compare.plt, "close", lambda figure: None)
+    compare.draw({"disc": disc, "ball": result}, tmp_path / "both.png")
+    force, _, energy, _ = compare.plt.gcf().axes
+    assert "acceleration" in force.get_ylabel() and "over that at the start" in energy.get_ylabel()
+    h, line = result.history, force.lines[1]
+    inside = slice(1, None)
+    np.testing.assert_allclose(1e3 * line.get_ydata()[inside], np.diff(h["vy"]) / h["dt"][inside], rtol=1e-6, atol=1e-3)
 
 
 def test_scene_as_used_is_a_scene_again(result):

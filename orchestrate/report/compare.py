@@ -49,7 +49,11 @@ def main(argv: list[str]) -> int:
 
 
 def draw(results: dict[str, RunResult], path: Path) -> None:
-    """Normal force, friction force, total energy and velocities (of each body) over time, a colour a run; friction only where there is any."""
+    """Normal force, friction force, total energy and velocities (of each body) over time, a colour a run; friction only where there is any.
+
+    Of discs, per metre, and balls together: the acceleration of the centre of mass (figure 11) for the force, energies over that at the start.
+    """
+    mixed = len({per_metre(result.scene) for result in results.values()}) > 1
     rubs = any(result.history["friction_force"].any() for result in results.values())
     with plt.rc_context(STYLE):
         figure, grid = plt.subplots(2, 2, figsize=(8.2, 5.6), sharex=True)
@@ -57,11 +61,12 @@ def draw(results: dict[str, RunResult], path: Path) -> None:
         for (name, result), colour in zip(results.items(), (BLUE, ORANGE, GREEN, PURPLE) * len(results)):
             h, used = result.history, result.scene
             t, per = 1e3 * h["t"], per_metre(used)
-            force.plot(t, 1e-3 * h["normal_force"], color=colour,
+            heavy, start = (_mass(h), result.summary["energy_initial"]) if mixed else (1.0, 1.0)
+            force.plot(t, 1e-3 * h["normal_force"] / heavy, color=colour,
                        label=f"{name}: {_material(used)}{result.summary['dofs']} dofs")
-            drag.plot(t, 1e-3 * h["friction_force"] if rubs else h["max_penetration"] * 1e3, color=colour)
-            energy.plot(t, h["kinetic"] + h["elastic"] + h["contact"], color=colour)
-            energy.plot(t, h["elastic"], color=colour, linestyle="--")
+            drag.plot(t, 1e-3 * h["friction_force"] / heavy if rubs else h["max_penetration"] * 1e3, color=colour)
+            energy.plot(t, (h["kinetic"] + h["elastic"] + h["contact"]) / start, color=colour)
+            energy.plot(t, h["elastic"] / start, color=colour, linestyle="--")
             for of, body in zip(suffixes(h), names(used)):
                 if of and colour == BLUE:                            # once
                     velocity.annotate(body, (t[-1], h[f"vy{of}"][-1]), xytext=(-4, 4), textcoords="offset points", ha="right")
@@ -71,9 +76,9 @@ def draw(results: dict[str, RunResult], path: Path) -> None:
                     velocity.plot(t, -result.summary[f"reach{of}"] * h[f"spin{of}"], color=colour, linestyle=":")
         for axes in (drag, velocity):
             axes.axhline(0, color=GREY, linewidth=0.6)
-        force.set(ylabel=f"normal force [kN{per}]", ylim=(0, None))
-        drag.set_ylabel(f"friction force [kN{per}]" if rubs else "largest penetration [mm]")
-        energy.set(ylabel=f"energy [J{per}]", ylim=(0, None), xlabel="time [ms]")
+        force.set(ylabel="normal acceleration [10³ m/s²]" if mixed else f"normal force [kN{per}]", ylim=(0, None))
+        drag.set_ylabel(("acceleration by friction [10³ m/s²]" if mixed else f"friction force [kN{per}]") if rubs else "largest penetration [mm]")
+        energy.set(ylabel="energy over that at the start" if mixed else f"energy [J{per}]", ylim=(0, None), xlabel="time [ms]")
         _key(energy, {"total": "-", "elastic": "--"})
         velocity.set(ylabel="velocity [m/s]", xlabel="time [ms]")
         _key(velocity, {"$v_x$": "-", "$v_y$": "--", r"$-\omega R$": ":"} if rubs else {"$v_y$": "--"})
@@ -81,6 +86,12 @@ def draw(results: dict[str, RunResult], path: Path) -> None:
         figure.legend(*force.get_legend_handles_labels(), loc="outside upper center", ncols=1)
         figure.savefig(path)
         plt.close(figure)
+
+
+def _mass(history: dict[str, np.ndarray]) -> float:
+    """Of all bodies [kg, in plane strain kg/m]."""
+    moves = int(np.argmax(np.abs(history["vy"])))
+    return float(history["momentum_y"][moves] / history["vy"][moves])
 
 
 def _material(used: dict) -> str:
