@@ -8,7 +8,7 @@ import pytest
 from orchestrate import estimate, mesh, parameters, results, run, scene, vtu
 from orchestrate.describe import describe
 from orchestrate.failure import BadInput
-from orchestrate.report import compare, figures, report
+from orchestrate.report import compare, contact, figures, report
 from test_direct import COARSE, call
 
 SCRIPT = "ball-axisymmetric"
@@ -122,3 +122,21 @@ def test_sizes_follow_hertz():
     assert slow["penalty"] / fast["penalty"] == pytest.approx(1 / narrower, rel=1e-9)
     disc = [describe({"speed": speed, "law": "neohookean"})["used"]["contact_mesh_size"] for speed in (1, 0.1)]
     assert disc[1] / disc[0] == pytest.approx(10**-0.5, rel=1e-9)
+
+
+def test_pressure_of_hertz(tmp_path):
+    """At the largest force of a slow impact the pressure over the radius is p0 sqrt(1 - r^2/a^2) of that force, to 4 % of p0 (rms over the area), and
+    the contact as wide, to 2 % (Johnson, Contact mechanics, 4.2); not that of twice the force."""
+    found = run.run(scene.load("ball-axisymmetric"), {"speed": 0.1, "nu": 0.3, "fields": 20}, tmp_path / "slow", estimate=False)
+    points = contact.read(found.folder)
+    force = points.assign(force=points.pressure * points.weight).groupby("t").force.sum()
+    now = points[points.t == force.idxmax()]
+
+    def off(load: float) -> tuple[float, float]:
+        a = (3 * load * 0.05 * (1 - 0.3**2) / (4 * 7e6)) ** (1 / 3)
+        most = 3 * load / (2 * math.pi * a**2)
+        wrong = now.pressure / most - np.sqrt(np.clip(1 - (now.x / a) ** 2, 0, None))
+        return math.sqrt((wrong**2 * now.weight).sum() / now.weight.sum()), now.x.max() / a
+
+    rms, wide = off(force.max())
+    assert rms < 0.04 and wide == pytest.approx(1, abs=0.02) and off(2 * force.max())[0] > 0.1
