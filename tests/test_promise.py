@@ -42,8 +42,10 @@ def test_hard_scenes_are_hard_and_accepted():
         assert 5 < sum(name in point for point in points) < 100, name
     assert len({point["accuracy"] for point in points}) > 2
     assert all(scene.load("disc-normal").override(promise.OPEN | point) for point in points)
-    on_block = draws.draw(promise.SEED, 50, hard=True, block=True)
+    on_block = draws.draw(promise.SEED, 50, hard=True, scene="disc-block")
     assert all(scene.load("disc-block").override(promise.OPEN | point) for point in on_block) and not any("gravity" in point for point in on_block)
+    balls = draws.draw(promise.SEED, 50, hard=True, scene="ball-axisymmetric")
+    assert all(scene.load("ball-axisymmetric").override(promise.OPEN | point) for point in balls) and any("gravity" in point for point in balls)
 
 
 # ---- the promise

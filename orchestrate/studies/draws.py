@@ -16,21 +16,33 @@ def bar_speed(young: float, density: float) -> float:
     return (young / density) ** 0.5
 
 
-def draw(seed: int, count: int, hard: bool = False, block: bool = False) -> list[Point]:
+def draw(seed: int, count: int, hard: bool = False, scene: str = "disc-normal") -> list[Point]:
     """`count` impacts of a disc: material, law, speed, radius; some oblique or spinning, with and without friction, exponents.
 
     `hard`: also gravity, other integrators, linear elements, other accuracies, penalties and friction laws.
-    `block`: on a free block of the same material, of some radii's width and height, without gravity.
+    `scene`: a key of SCENES, what they are overrides of; on a block no gravity, of a ball what keeps its axis.
     """
     chance = random.Random(seed)
     points = [_scene(chance, hard) for _ in range(count)]
-    return [_on_block(chance, point) for point in points] if block else points
+    return [SCENES[scene](chance, point) for point in points]
+
+
+def _on_plane(chance: random.Random, point: Point) -> Point:
+    return point
+
+
+def _of_revolution(chance: random.Random, point: Point) -> Point:
+    return {name: value for name, value in point.items() if name not in ("angle", "spin", "symmetry")}
 
 
 def _on_block(chance: random.Random, point: Point) -> Point:
+    """On a free block of the same material, of some radii's width and height."""
     across, deep = chance.choice([5, 10, 20]), chance.choice([2, 4])
     kept = {name: value for name, value in point.items() if name not in ("gravity", "height")}
     return kept | {"block_width": across * point["radius"], "block_height": deep * point["radius"]}
+
+
+SCENES = {"disc-normal": _on_plane, "disc-block": _on_block, "ball-axisymmetric": _of_revolution}
 
 
 def words(point: Point) -> str:

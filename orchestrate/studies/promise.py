@@ -26,12 +26,13 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--scenes", metavar="N", type=whole, default=COUNT, help=f"how many (default: {COUNT})")
     parser.add_argument("--seed", metavar="N", type=whole, default=SEED, help=f"other scenes (default: {SEED})")
     parser.add_argument("--hard", action="store_true", help="also gravity, other integrators, linear elements ...: nothing above what was asked without a warning")
-    parser.add_argument("--block", action="store_true", help="on a free deformable block instead of the plane")
+    parser.add_argument("--of", metavar="SCENE", choices=draws.SCENES, default="disc-normal", help="a disc on the plane, on a free block, or a ball: "
+                        f"{', '.join(draws.SCENES)} (default: disc-normal)")
     parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/promise", help="the result folder")
     parser.add_argument("--page", metavar="FILE", type=Path, help="also write what is printed as a page")
     options = parser.parse_args(argv)
-    points = draws.draw(options.seed, max(1, options.scenes), options.hard, options.block)
-    table = compare(points, result_folder(options.out), "disc-block" if options.block else "disc-normal")
+    points = draws.draw(options.seed, max(1, options.scenes), options.hard, options.of)
+    table = compare(points, result_folder(options.out), options.of)
     study.save(table, options.out / "promise.csv")
     good = silent(table) == 0 if options.hard else kept(table)
     text = report(table) + f"; {'the requirement' if options.hard else 'the promise'} {'is kept' if good else 'IS NOT KEPT'}"
