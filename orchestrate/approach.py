@@ -8,7 +8,7 @@ import numpy as np
 from .bodies import Body
 from .multibody import Multibody, gap_between, normal_of
 from .obstacles import Obstacle
-from .outlines import Outline, cross
+from .outlines import Outline
 
 STEPS = 200                  # what has not met by then does not
 FAR = 1e6                    # of the smaller thickness: a gap that does not close again
@@ -45,11 +45,12 @@ def _meeting(scene: Multibody, first: int, second: int) -> Meeting:
     """Conservative advancement: in each step no point can come nearer than the gap."""
     body = scene.bodies[first]
     other = scene.bodies[second] if second >= 0 else scene.obstacles[-1 - second]
-    force = np.array([scene.values["body_force_x"], scene.values["body_force_y"] - scene.values["gravity"]])
-    pull = np.zeros(2) if second >= 0 else force               # two bodies fall alike
+    pull = np.zeros(scene.dimension.axes)
+    if second < 0:                                             # two bodies fall alike
+        pull[:2] = scene.values.get("body_force_x", 0.0), scene.values["body_force_y"] - scene.values["gravity"]
     start = body.velocity - other.velocity
     radius = min([body.outline.half_thickness, *([other.outline.half_thickness] if second >= 0 else [])])
-    turning = sum(abs(one.spin) * one.outline.reach for one in (body, other) if isinstance(one, Body))
+    turning = sum(np.linalg.norm(one.spin) * one.outline.reach for one in (body, other) if isinstance(one, Body))
     t, met = 0.0, False
     for _ in range(STEPS):
         gap = _gap(*_at(body, other, t, pull))
@@ -69,14 +70,14 @@ def _meeting(scene: Multibody, first: int, second: int) -> Meeting:
 
 def _parts(vector: np.ndarray, normal: np.ndarray) -> tuple[float, float]:
     """Its parts along and across a unit vector, positive; what is left of the latter by round-off is none."""
-    along, across = abs(vector @ normal), abs(cross(normal, vector))
+    along, across = abs(vector @ normal), np.linalg.norm(vector - (vector @ normal) * normal)
     return float(along), float(across) if across > 1e-6 * along else 0.0
 
 
 def _at(body: Body, other: Body | Obstacle, t: float, pull: np.ndarray) -> tuple[Outline, Outline | Obstacle]:
     """Both at a time, seen by one who moves with the obstacle, or falls with the bodies."""
     def flown(one: Body, velocity: np.ndarray) -> Outline:
-        return one.outline.placed(one.position + velocity * t + pull * t**2 / 2, one.angle + one.spin * t)
+        return one.at(t, one.position + velocity * t + pull * t**2 / 2)
     if isinstance(other, Body):
         return flown(body, body.velocity), flown(other, other.velocity)
     return flown(body, body.velocity - other.velocity), other

@@ -1,23 +1,26 @@
 """What FreeFEM computes a scene of bodies on: one mesh of all of them, apart from each other, and a data file of words and numbers.
 
 Region k of the mesh is body k, from 0; its edges have the label 1 where the body may touch, another one where nothing reaches. The
-bodies stand side by side along x, not turned, each about its own centre of area; scene.dat says where they are at the start.
+bodies stand side by side along x, not turned, each about its own centre of area; scene.dat says where they are at the start. Of bodies of
+revolution it is the half x >= 0 of their sections, the axis with the label 2, one above the other.
 """
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from . import mesh
+from . import mesh, revolution
 from .approach import Meeting, meetings
 from .bodies import MATERIAL, Body
 from .describe import describe
+from .dimension import AXISYMMETRIC
 from .failure import BadInput
-from .mesh import FREE, GROWTH
-from .multibody import CONTACT, OWN, Multibody, Pair
+from .mesh import AXIS, FREE, GROWTH
+from .multibody import OWN, Multibody, Pair
 from .outlines import Loop, Outline
 from .parameters import Value
 
@@ -29,7 +32,8 @@ SAMPLED = 0.25               # a step between points at which an element size is
 LIKE = ("radius", "young", "nu", "density", "speed", "angle", "spin")
 BETWEEN = 0.2                # from body to body in the reference configuration, over the largest extent
 
-Rule = Callable[[dict[str, Value]], dict]    # describe: what the scripts make of a disc on a plane
+Rule = Callable[[dict[str, Value]], dict]    # describe: what the scripts make of a disc or a ball on a plane
+Curve = Callable[[np.ndarray], np.ndarray]   # points (n, 2) [m] at parameters (n,) in [0, 1]
 
 
 @dataclass(frozen=True)
@@ -68,15 +72,16 @@ class Assembly:
         (folder / "scene.dat").write_text(self.data)
 
 
-def assemble(scene: Multibody, rule: Rule = describe) -> Assembly:
-    """Meshes the bodies of a scene and writes down the rest. What the scene leaves open is settled by `rule`, which is asked for a
-    disc of the pair's radius that hits a plane."""
-    ask = Asker(scene, meetings(scene), rule)
+def assemble(scene: Multibody, rule: Rule | None = None) -> Assembly:
+    """Meshes the bodies of a scene and writes down the rest. What the scene leaves open is settled by `rule` (left out: describe), which is
+    asked for a disc, or a ball, of the pair's radius that hits a plane."""
+    ask = Asker(scene, meetings(scene), rule or partial(describe, script=scene.dimension.like))
     values = scene.values | contact_values(scene.bodies, scene.contact, ask, "contact")
     pairs = [pair_values(pair, ask, values) for pair in scene.pairs]
     sizes = [None if body.mesh else _sizes(k, ask) for k, body in enumerate(scene.bodies)]
-    meshes = [body.mesh or mesh_body(body.outline, sizes[k], _labels(scene, k)) for k, body in enumerate(scene.bodies)]
-    centres = side_by_side([np.array([one.points.min(axis=0), one.points.max(axis=0)]) for one in meshes])
+    meshes = [body.mesh or mesh_body(_boundary(scene, k), sizes[k], body.outline.half_thickness) for k, body in enumerate(scene.bodies)]
+    along = 1 if scene.dimension is AXISYMMETRIC else 0
+    centres = side_by_side([np.array([one.points.min(axis=0), one.points.max(axis=0)]) for one in meshes], along)
     together, regions = stack(meshes, centres)
     disc = ask.disc(scene.bodies, min(body.outline.half_thickness for body in scene.bodies), slides=True)
     return Assembly(together, regions, centres, data_file(scene, disc, centres, pairs), values, used_tables(scene, sizes, values, pairs))
@@ -86,7 +91,7 @@ def assemble(scene: Multibody, rule: Rule = describe) -> Assembly:
 
 @dataclass(frozen=True)
 class Asker:
-    """Asks the rule for discs that hit a plane as the scene's bodies hit each other: with its largest speeds and forces, along and
+    """Asks the rule for discs (balls) that hit a plane as the scene's bodies hit each other: with its largest speeds and forces, along and
     across the normal."""
 
     scene: Multibody
@@ -107,7 +112,7 @@ class Asker:
                   "radius": radius, "symmetry": "full", "speed": along, "angle": 90.0, "spin": 0.0, "gravity": pressing}
         if slides:
             asked |= {"speed": math.hypot(along, across), "angle": math.degrees(math.atan2(along, across)),
-                      "spin": max(abs(body.spin) for body in bodies), "body_force_x": pulling}
+                      "spin": max(float(np.linalg.norm(body.spin)) for body in bodies), "body_force_x": pulling}
         return asked
 
 
@@ -130,7 +135,7 @@ def pair_values(pair: Pair, ask: Asker, values: dict[str, Value]) -> dict[str, V
     """All that a pair may have of its own: what it does not say is as settled for the scene, and open again where it depends on what
     the pair says."""
     bodies = [ask.scene.bodies[k] for k in (pair.first, pair.second) if k >= 0]
-    inherited = {name: values[name] for name in CONTACT} | {"friction_dynamic": ask.scene.contact["friction_dynamic"]}
+    inherited = {name: values[name] for name in ask.scene.contact} | {"friction_dynamic": ask.scene.contact["friction_dynamic"]}
     own = contact_values(bodies, inherited | pair.values, ask, pair.path)
     return {name: own[name] for name in OWN}
 
@@ -146,8 +151,8 @@ def used_tables(scene: Multibody, sizes: list[Sizes | None], values: dict[str, V
         bodies.append(used)
     obstacles = [{"name": one.name} | {key: value for key, value in given.items() if key not in OWN}
                  for given, one in zip(scene.given.get("obstacle", []), scene.obstacles)]
-    contact = {key: values[key] for key in CONTACT} | {"pair": [{"bodies": names(pair)} | own for pair, own in zip(scene.pairs, pairs)]}
-    top = {"title": scene.title, "script": scene.script} | {key: values[key] for key in scene.values}
+    contact = {key: values[key] for key in scene.contact} | {"pair": [{"bodies": names(pair)} | own for pair, own in zip(scene.pairs, pairs)]}
+    top = {"title": scene.title, "script": scene.script, "dimension": scene.dimension.name} | {key: values[key] for key in scene.values}
     return top | {"body": bodies, "obstacle": obstacles, "contact": contact}
 
 
@@ -202,10 +207,20 @@ def nearest(points: np.ndarray, others: np.ndarray, chunk: int = 500, most: int 
     return np.concatenate([np.sqrt(((points[at:at + chunk, None] - others)**2).sum(axis=2).min(axis=1)) for at in range(0, len(points), chunk)])
 
 
-def _labels(scene: Multibody, k: int) -> list[int]:
-    """A label for each loop of body k: nothing reaches a hole that holds no other body and no obstacle."""
-    outer, *holes = scene.bodies[k].placed.loops
-    return [FREE, *(FREE if _holds(scene, k, hole) else NEVER for hole in holes)]
+def _boundary(scene: Multibody, k: int) -> list[list[tuple[Curve, float, int]]]:
+    """The closed curves that bound the mesh of body k, the outer first, counter-clockwise: each piece with the largest element size on it and its label.
+    Nothing reaches a hole that holds no other body and no obstacle."""
+    outer, *holes = scene.bodies[k].outline.loops
+    if scene.dimension is AXISYMMETRIC:
+        *surface, axis = revolution.boundary(outer)
+        return [[*((piece, _largest(outer), FREE) for piece in surface), (axis, np.inf, AXIS)]]
+    reached = [True, *(_holds(scene, k, hole) for hole in scene.bodies[k].placed.loops[1:])]
+    return [[(partial(loop.at, piece), _largest(loop), FREE if touched else NEVER) for piece in range(len(loop.corners))]
+            for loop, touched in zip((outer, *holes), reached)]
+
+
+def _largest(loop: Loop) -> float:
+    return np.inf if loop.semi_axes is None else ROUND * loop.semi_axes.min()
 
 
 def _holds(scene: Multibody, k: int, hole: Loop) -> bool:
@@ -217,12 +232,14 @@ def _holds(scene: Multibody, k: int, hole: Loop) -> bool:
 
 # ---- meshes
 
-def mesh_body(outline: Outline, sizes: Sizes, labels: list[int]) -> mesh.Mesh:
-    """The mesh of an outline: vertices of circles and ellipses lie on them to rounding, corners are vertices; boundary edges have
-    the body to their left, and the label of their loop."""
-    loops = [nodes_on(loop, sizes) for loop in outline.loops]
-    loops = [nodes if k == 0 else nodes[::-1] for k, nodes in enumerate(loops)]
-    unit = 1 / outline.half_thickness           # gmsh's tolerances are absolute
+def mesh_body(boundary: list[list[tuple[Curve, float, int]]], sizes: Sizes, scale: float) -> mesh.Mesh:
+    """The mesh inside closed curves, of a body about as large as `scale` [m]: the ends of their pieces are vertices, and all vertices of the boundary lie
+    on them to rounding; boundary edges have the body to their left, and the label of their piece."""
+    pieces = [[nodes_on(curve, largest, sizes) for curve, largest, _ in loop] for loop in boundary]
+    labels = [np.repeat([label for *_, label in loop], [len(nodes) for nodes in each]) for loop, each in zip(boundary, pieces)]
+    loops = [np.vstack(each) for each in pieces]
+    loops = [nodes if k == 0 else nodes[::-1] for k, nodes in enumerate(loops)]     # a hole has one label
+    unit = 1 / scale                            # gmsh's tolerances are absolute
     with mesh.gmsh_session() as gmsh:
         gmsh.option.setNumber("Mesh.Algorithm", 6)
         for source in ("FromPoints", "FromCurvature", "ExtendFromBoundary"):
@@ -242,24 +259,20 @@ def mesh_body(outline: Outline, sizes: Sizes, labels: list[int]) -> mesh.Mesh:
     triangles = mesh.counter_clockwise(points, row[triangle_tags].reshape(-1, 3))
     ends = np.split(corners, np.cumsum([len(nodes) for nodes in loops])[:-1])
     edges = np.vstack([np.column_stack([each, np.roll(each, -1)]) for each in ends])
-    return mesh.Mesh(points, triangles, edges, np.repeat(labels, [len(nodes) for nodes in loops]))
+    return mesh.Mesh(points, triangles, edges, np.concatenate(labels))
 
 
-def nodes_on(loop: Loop, sizes: Sizes) -> np.ndarray:
-    """Vertices (n, 2) on a loop, counter-clockwise: its corners, and between them steps ds with the integral of ds / size constant."""
-    largest = np.inf if loop.semi_axes is None else ROUND * loop.semi_axes.min()
-    nodes = []
-    for piece in range(len(loop.corners)):
-        s, size = np.array([0.0, 1.0]), np.array([])
-        while len(size) < len(s):                # halved until the size, which is Lipschitz, is known between points too
-            size = np.minimum(sizes.at(loop.at(piece, s)), largest)
-            step = np.linalg.norm(np.diff(loop.at(piece, s), axis=0), axis=1)
-            coarse = step > SAMPLED * np.minimum(size[1:], size[:-1])
-            s = np.sort(np.concatenate([s, (s[1:] + s[:-1])[coarse] / 2]))
-        passed = np.concatenate([[0.0], np.cumsum(step * (1 / size[1:] + 1 / size[:-1]) / 2)])
-        count = max(1, round(passed[-1]))
-        nodes.append(loop.at(piece, np.interp(passed[-1] * np.arange(count) / count, passed, s)))
-    return np.vstack(nodes)
+def nodes_on(curve: Curve, largest: float, sizes: Sizes) -> np.ndarray:
+    """Vertices (n, 2) on a curve from its first end on, without its last, in steps ds with the integral of ds / size constant."""
+    s, size = np.array([0.0, 1.0]), np.array([])
+    while len(size) < len(s):                    # halved until the size, which is Lipschitz, is known between points too
+        size = np.minimum(sizes.at(curve(s)), largest)
+        step = np.linalg.norm(np.diff(curve(s), axis=0), axis=1)
+        coarse = step > SAMPLED * np.minimum(size[1:], size[:-1])
+        s = np.sort(np.concatenate([s, (s[1:] + s[:-1])[coarse] / 2]))
+    passed = np.concatenate([[0.0], np.cumsum(step * (1 / size[1:] + 1 / size[:-1]) / 2)])
+    count = max(1, round(passed[-1]))
+    return curve(np.interp(passed[-1] * np.arange(count) / count, passed, s))
 
 
 def _loop(model, nodes: np.ndarray) -> tuple[list[int], list[int]]:
@@ -291,13 +304,13 @@ def _grade(field, loops: list[np.ndarray], curves: tuple[list[int], ...], sizes:
     field.setAsBackgroundMesh(least)
 
 
-def side_by_side(boxes: list[np.ndarray]) -> np.ndarray:
-    """Centres (bodies, 2) along x, from 0 on, that keep boxes about them [[x0, y0], [x1, y1]] apart by a part of the largest."""
+def side_by_side(boxes: list[np.ndarray], along: int) -> np.ndarray:
+    """Centres (bodies, axes) on an axis (0: x, 1: y), from 0 on, that keep boxes about them [lowest, highest corner] apart by a part of the largest."""
     between = BETWEEN * max(np.ptp(box, axis=0).max() for box in boxes)
-    centres = [0.0]
-    for before, box in zip(boxes, boxes[1:]):
-        centres.append(centres[-1] + before[1, 0] + between - box[0, 0])
-    return np.column_stack([centres, np.zeros(len(centres))])
+    centres = np.zeros((len(boxes), boxes[0].shape[1]))
+    for k in range(1, len(boxes)):
+        centres[k, along] = centres[k - 1, along] + boxes[k - 1][1, along] + between - boxes[k][0, along]
+    return centres
 
 
 def stack(meshes: list[mesh.Mesh], centres: np.ndarray) -> tuple[mesh.Mesh, np.ndarray]:
@@ -333,12 +346,12 @@ def data_file(scene: Multibody, disc: dict[str, Value], centres: np.ndarray, pai
         pairs K        a b penalty friction_static friction_dynamic                                     a, b: body, or -1 - obstacle
     centre: of the area in the mesh; place: where it is at the start; the angle of the disc in degrees."""
     circles = [(k, *(centre + loop.centre), loop.radius) for k, (body, centre) in enumerate(zip(scene.bodies, centres))
-               for loop in body.outline.loops if loop.radius]
+               for loop in body.outline.loops if loop.radius and (scene.dimension is not AXISYMMETRIC or loop.centre[0] >= 0)]
     lines = [("ffimpact-bodies", 1), ("disc", *(float(disc[name]) for name in LIKE)), ("bodies", len(scene.bodies))]
     lines += [(body.name, body.law, body.young, body.nu, body.density, *centre, *body.position, body.angle, *body.velocity, body.spin)
               for body, centre in zip(scene.bodies, centres)]
     lines += [("circles", len(circles)), *circles, ("obstacles", len(scene.obstacles))]
-    lines += [(one.kind, len(one.numbers), *one.numbers, *one.velocity) for one in scene.obstacles]
+    lines += [("circle" if one.kind == "sphere" else one.kind, len(one.numbers), *one.numbers, *one.velocity) for one in scene.obstacles]
     lines += [("pairs", len(pairs)), *((pair.first, pair.second, *own.values()) for pair, own in zip(scene.pairs, pairs))]
     return "".join(" ".join(map(_token, line)) + "\n" for line in lines)
 

@@ -10,7 +10,7 @@ import signal
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib import metadata
 from pathlib import Path
@@ -32,6 +32,10 @@ class Mesh:
     triangles: np.ndarray
     edges: np.ndarray
     labels: np.ndarray
+
+    def moved(self, by: np.ndarray) -> "Mesh":
+        """The same mesh, `by` [m] elsewhere."""
+        return replace(self, points=self.points + by)
 
 
 @cache

@@ -1,6 +1,7 @@
 """A scene of one's own, bodies and obstacles in one TOML file: read, checked, and its entries set by dotted names.
 
     title = "..."
+    dimension = "plane-strain"   # or axisymmetric (dimension.py)
     young = 7e6                  # law, young, nu, density, mesh_size, contact_mesh_size: of the bodies that say nothing else
     gravity = 9.81               # [m/s2], along -y; beside it the parameters of a run: end_time, dt, accuracy, fields ...
     [[body]]                     # see bodies.py
@@ -22,9 +23,10 @@ from pathlib import Path
 
 import numpy as np
 
-from . import bodies, obstacles, parameters, scene
+from . import bodies, dimension, obstacles, parameters, scene
 from .bodies import MATERIAL, SIZES, Body
 from .describe import describe
+from .dimension import Dimension
 from .failure import BadInput
 from .obstacles import Obstacle
 from .estimate import LARGEST
@@ -33,7 +35,6 @@ from .outlines import Outline
 from .tables import SHORTEST, Table, listed, to_toml
 
 SCENES = scene.SCENES
-SCRIPT = "bodies"            # edp/bodies.edp
 RUN = ("gravity", "body_force_x", "body_force_y", "degree", "integrator", "dt", "accuracy", "accuracy_of", "tolerance", "breakdown",
        "chatter", "end_time", "fields", "checkpoint_every", "without")
 OWN = ("penalty", "friction_static", "friction_dynamic")                                  # a pair may have its own
@@ -53,12 +54,12 @@ class Pair:
 
 @dataclass(frozen=True)
 class Multibody:
-    """`script` is a file edp/<script>.edp, `given` the tables of the file, `contact` every parameter of contact, `values` every
-    parameter of a run, both with what is left open (auto, 0) as it is."""
+    """`given` are the tables of the file, `contact` is every parameter of contact, `values` every parameter of a run, both with what is
+    left open (auto, 0) as it is."""
 
     name: str
     title: str
-    script: str
+    dimension: Dimension
     given: dict
     folder: Path
     bodies: list[Body]
@@ -66,6 +67,11 @@ class Multibody:
     contact: dict[str, Value]
     pairs: list[Pair]
     values: dict[str, Value]
+
+    @property
+    def script(self) -> str:
+        """A file edp/<script>.edp."""
+        return self.dimension.script
 
     def override(self, given: dict[str, Value]) -> "Multibody":
         """The same scene with some entries set by their dotted names, and read again."""
@@ -90,12 +96,12 @@ class Multibody:
     @property
     def numbers(self) -> list[str]:
         """The numbers of summary.json."""
-        return scene.of_bodies("summary", describe(script=SCRIPT), len(self.bodies))
+        return scene.of_bodies("summary", describe(script=self.script), len(self.bodies))
 
     @property
     def columns(self) -> list[str]:
         """The columns of history.csv."""
-        return scene.of_bodies("columns", describe(script=SCRIPT), len(self.bodies))
+        return scene.of_bodies("columns", describe(script=self.script), len(self.bodies))
 
     @property
     def meshed(self) -> bool:
@@ -145,28 +151,37 @@ def built_in() -> list[str]:
 
 def read(given: dict, folder: Path, name: str) -> Multibody:
     """The scene in a file's tables; mesh files are sought from `folder` on. BadInput for whatever is wrong in it."""
-    table = Table("", given, ("title", "script", "body", "obstacle", "contact", *MATERIAL, *SIZES, *RUN))
-    all_bodies = bodies.read(listed(given, "body"), given, folder)
+    table = Table("", given, ("title", "script", "dimension", "body", "obstacle", "contact", *MATERIAL, *SIZES, *RUN))
+    of = dimension.of(given)
+    all_bodies = bodies.read(listed(given, "body"), given, folder, of)
     if not all_bodies:
         raise BadInput("body: is missing (accepted: one table [[body]] or more)")
     rigid = listed(given, "obstacle")
     for k, one in enumerate(rigid, 1):
         _of_the_scene(f"obstacle.{k}", one)
-    all_obstacles = obstacles.read([{key: value for key, value in one.items() if key not in OWN} for one in rigid])
-    script = table.text("script", SCRIPT)
-    if script != SCRIPT:
-        raise BadInput(f"script: '{script}' has no [[body]] (accepted: {SCRIPT})")
+    all_obstacles = obstacles.read([{key: value for key, value in one.items() if key not in OWN} for one in rigid], of)
+    script = table.text("script", of.script)
+    if script != of.script:
+        raise BadInput(f"script: '{script}' is not that of [[body]] tables in dimension = '{of.name}' (accepted: {of.script})")
     index = _names(all_bodies, all_obstacles)
     contact_table = Table("contact", given.get("contact", {}), (*CONTACT, "pair"))
-    contact = {key: contact_table.parameter(key, parameters.table()[key]) for key in CONTACT}
+    contact = _parameters(contact_table, CONTACT, of)
     pairs = _own_of_obstacles(rigid, len(all_bodies))
     for both, pair in _exceptions(contact_table, index).items():
         pairs[both] = replace(pair, values=pairs[both].values | pair.values) if both in pairs else pair
-    values = {key: table.parameter(key, parameters.table()[key]) for key in RUN}
-    found = Multibody(name, table.text("title", name), SCRIPT, given, folder, all_bodies, all_obstacles, contact,
+    values = _parameters(table, RUN, of)
+    found = Multibody(name, table.text("title", name), of, given, folder, all_bodies, all_obstacles, contact,
                       [pairs[both] for both in sorted(pairs)], values)
     _apart(found)
     return found
+
+
+def _parameters(table: Table, keys: tuple[str, ...], of: Dimension) -> dict[str, Value]:
+    """Those of the parameters that the script takes; BadInput for one that it does not."""
+    for key in keys:
+        if key in table:
+            parameters.taken(key, of.script)
+    return {key: table.parameter(key, parameters.table()[key]) for key in keys if of.script in parameters.table()[key].scripts}
 
 
 def _names(all_bodies: list[Body], all_obstacles: list[Obstacle]) -> dict[str, int]:
@@ -257,10 +272,10 @@ def gap_to_obstacle(outline: Outline, obstacle: Obstacle) -> float:
 
 
 def normal_of(other: Outline | Obstacle, point: np.ndarray) -> np.ndarray:
-    """The gradient (2,) of the distance from another body or an obstacle, the outward normal, to six digits; 0 where there is none."""
+    """The gradient (axes,) of the distance from another body or an obstacle, the outward normal, to six digits; 0 where there is none."""
     h = 1e-6 * max(1e-3 * np.abs(point).max(), abs(other.gap(point[None])[0]), SHORTEST)
-    around = other.gap(point + h * np.array([[1, 0], [-1, 0], [0, 1], [0, -1]]))
-    normal = np.round([(around[0] - around[1]) / (2 * h), (around[2] - around[3]) / (2 * h)], 6)
+    steps = h * np.eye(len(point))
+    normal = np.round((other.gap(point + steps) - other.gap(point - steps)) / (2 * h), 6)
     return normal / max(np.linalg.norm(normal), 0.5)
 
 

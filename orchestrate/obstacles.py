@@ -6,6 +6,9 @@
                                  # circle: centre, radius, solid inside;  bowl: centre, radius, solid outside
                                  # polyline: vertices [[x, y], ...], closed = false, rounding = 0: the bodies to its left (polyline.py)
     velocity = [0, 0]            # it moves on with it, whatever it meets [m/s]
+
+Of revolution about x = 0: planes across the axis; sphere (a ball) and bowl on it, centre = [0, y] or y; polyline: a chain that begins or ends on
+the axis, without `closed`.
 """
 
 from dataclasses import dataclass
@@ -14,16 +17,22 @@ import numpy as np
 
 from . import polyline
 from .bodies import checked_name
+from .dimension import AXISYMMETRIC, PLANE_STRAIN, Dimension
 from .failure import BadInput
+from .revolution import mirrored, on_axis
 from .tables import LONGEST, SHORTEST, Table
 
-KINDS = {"plane": ("point", "normal"), "circle": ("centre", "radius"), "bowl": ("centre", "radius"), "polyline": ("vertices", "closed", "rounding")}
+KINDS = {
+    PLANE_STRAIN: {"plane": ("point", "normal"), "circle": ("centre", "radius"), "bowl": ("centre", "radius"),
+                   "polyline": ("vertices", "closed", "rounding")},
+    AXISYMMETRIC: {"plane": ("point", "normal"), "sphere": ("centre", "radius"), "bowl": ("centre", "radius"), "polyline": ("vertices", "rounding")},
+}
 
 
 @dataclass(frozen=True)
 class Obstacle:
-    """`numbers` as the scripts read them: plane x y nx ny, the normal of length 1; circle and bowl x y radius; polyline closed (1 or 0)
-    rounding x1 y1 x2 y2 ..."""
+    """`numbers` as the scripts read them: plane x y nx ny, the normal of length 1; circle, sphere and bowl x y radius; polyline closed (1 or 0)
+    rounding x1 y1 x2 y2 ..., of a surface of revolution with its mirror image."""
 
     name: str
     kind: str
@@ -31,46 +40,56 @@ class Obstacle:
     velocity: np.ndarray
 
     def gap(self, points: np.ndarray) -> np.ndarray:
-        """Signed distances (n,) of points (n, 2) from the obstacle, negative inside, where it is at the start."""
+        """Signed distances (n,) of points (n, axes) from the obstacle, negative inside, where it is at the start."""
         if self.kind == "polyline":
             return polyline.gap(points, self.numbers)
-        from_point = points - self.numbers[:2]
+        axes = points.shape[1]
+        from_point = points - self.numbers[:axes]
         if self.kind == "plane":
-            return from_point @ self.numbers[2:]
-        outside = np.linalg.norm(from_point, axis=1) - self.numbers[2]
-        return outside if self.kind == "circle" else -outside
+            return from_point @ self.numbers[axes:]
+        outside = np.linalg.norm(from_point, axis=1) - self.numbers[axes]
+        return -outside if self.kind == "bowl" else outside
 
 
-def read(tables: list[dict]) -> list[Obstacle]:
+def read(tables: list[dict], dimension: Dimension = PLANE_STRAIN) -> list[Obstacle]:
     """The obstacles of the [[obstacle]] tables."""
-    return [_obstacle(f"obstacle.{k}", given) for k, given in enumerate(tables, 1)]
+    return [_obstacle(f"obstacle.{k}", given, dimension) for k, given in enumerate(tables, 1)]
 
 
-def _obstacle(path: str, given: dict) -> Obstacle:
-    kind = given.get("kind")
-    if kind not in tuple(KINDS):
+def _obstacle(path: str, given: dict, dimension: Dimension) -> Obstacle:
+    kind, kinds = given.get("kind"), KINDS[dimension]
+    if kind not in tuple(kinds):
         missing = "is missing" if kind is None else f"'{kind}' is not known"
-        raise BadInput(f"{path}.kind: {missing} (accepted: {'|'.join(KINDS)})")
-    table = Table(path, given, ("name", "kind", "velocity", *KINDS[kind]))
+        raise BadInput(f"{path}.kind: {missing} (accepted: {'|'.join(kinds)})")
+    table = Table(path, given, ("name", "kind", "velocity", *kinds[kind]))
     shape = {"plane": _plane, "polyline": _polyline}.get(kind, _circle)
-    return Obstacle(checked_name(path, given.get("name", path.replace(".", ""))), kind, shape(table),
-                    table.numbers("velocity", -LONGEST, LONGEST, (0.0, 0.0)))
+    return Obstacle(checked_name(path, given.get("name", path.replace(".", ""))), kind, shape(table, dimension), _velocity(table, dimension))
 
 
-def _plane(table: Table) -> tuple[float, ...]:
-    point, normal = (table.numbers(key, -LONGEST, LONGEST) for key in KINDS["plane"])
+def _velocity(table: Table, dimension: Dimension) -> np.ndarray:
+    still = (0.0,) * dimension.axes
+    return on_axis(table, "velocity", still) if dimension is AXISYMMETRIC else table.numbers("velocity", -LONGEST, LONGEST, still, dimension.axes)
+
+
+def _plane(table: Table, dimension: Dimension) -> tuple[float, ...]:
+    point, normal = (table.numbers(key, -LONGEST, LONGEST, count=dimension.axes) for key in ("point", "normal"))
     if not normal.any():
-        raise BadInput(f"{table.path}.normal: '{table.given['normal']}' has no direction (accepted: [x, y] other than [0, 0])")
+        raise BadInput(f"{table.path}.normal: '{table.given['normal']}' has no direction (accepted: {dimension.placeholder} other than 0)")
+    if dimension is AXISYMMETRIC and normal[0] != 0:
+        raise BadInput(f"{table.path}.normal: '{table.given['normal']}' is not along the axis of revolution (accepted: [0, 1] or [0, -1])")
     normal = normal / abs(normal).max()                    # so that no square of it underflows
     return *map(float, point), *map(float, normal / np.linalg.norm(normal))
 
 
-def _circle(table: Table) -> tuple[float, ...]:
-    return *map(float, table.numbers("centre", -LONGEST, LONGEST)), table.number("radius", SHORTEST, LONGEST)
+def _circle(table: Table, dimension: Dimension) -> tuple[float, ...]:
+    centre = on_axis(table, "centre") if dimension is AXISYMMETRIC else table.numbers("centre", -LONGEST, LONGEST, count=dimension.axes)
+    return *map(float, centre), table.number("radius", SHORTEST, LONGEST)
 
 
-def _polyline(table: Table) -> tuple[float, ...]:
+def _polyline(table: Table, dimension: Dimension) -> tuple[float, ...]:
     closed, vertices = table.flag("closed", False), table.points("vertices", least=2)
+    if dimension is AXISYMMETRIC:
+        vertices, closed = mirrored(f"{table.path}.vertices", vertices)
     rounding = table.number("rounding", 0, LONGEST, 0.0)
     polyline.check(table.path, vertices, closed, rounding)
     return polyline.numbers(vertices, closed, rounding)

@@ -130,14 +130,14 @@ def load(name: str) -> "Scene | multibody.Multibody":
 
 
 def _read(given: dict, path: Path) -> "Scene | multibody.Multibody":
-    from . import multibody
-    if {"body", "obstacle", "contact"} & set(given):
+    from . import dimension, multibody
+    if {"body", "obstacle", "contact", "dimension"} & set(given):
         return multibody.read(given, path.parent, path.stem)
     if not given:
         raise BadInput("says nothing (accepted: a scene, as the built-in ones in orchestrate/scenes)")
     script, title = given.pop("script", "disc-plane"), given.pop("title", path.stem)
-    scripts = [word for word in describe()["scripts"].split("|") if word != multibody.SCRIPT]
-    if script == multibody.SCRIPT:
+    scripts = [word for word in describe()["scripts"].split("|") if word not in dimension.SCRIPTS]
+    if script in dimension.SCRIPTS:
         raise BadInput(f"body: is missing, which script = '{script}' needs (accepted: one table [[body]] or more)")
     if script not in scripts:
         raise BadInput(f"script: '{script}' is not known (accepted: {'|'.join(scripts)})")

@@ -45,10 +45,10 @@ class Table:
         self._wanted(key, default, f"{low:g} to {high:g}")
         return self.parameter(key, _real(low, high, default))
 
-    def numbers(self, key: str, low: float, high: float, default: tuple[float, float] | None = None) -> np.ndarray:
-        """Two numbers [x, y] between two bounds."""
-        self._wanted(key, default, f"[x, y], each {low:g} to {high:g}")
-        return _pair(self.at(key), self.given.get(key, default), low, high)
+    def numbers(self, key: str, low: float, high: float, default: tuple[float, ...] | None = None, count: int = 2) -> np.ndarray:
+        """So many numbers, [x, y] or [x, y, z], between two bounds."""
+        self._wanted(key, default, f"{_placeholder(count)}, each {low:g} to {high:g}")
+        return _vector(self.at(key), self.given.get(key, default), low, high, count)
 
     def points(self, key: str, least: int = 3) -> np.ndarray:
         """At least so many points [x, y], (n, 2) in m."""
@@ -120,9 +120,13 @@ def _real(low: float, high: float, default: float | None = None) -> Parameter:
     return Parameter("", "real", default, "", "", low, high)
 
 
-def _pair(path: str, given, low: float, high: float) -> np.ndarray:
-    if not isinstance(given, list | tuple) or len(given) != 2:
-        raise BadInput(f"{path}: '{given}' is no [x, y] (accepted: two numbers, each {low:g} to {high:g})")
+def _placeholder(count: int) -> str:
+    return f"[{', '.join('xyz'[:count])}]"
+
+
+def _vector(path: str, given, low: float, high: float, count: int = 2) -> np.ndarray:
+    if not isinstance(given, list | tuple) or len(given) != count:
+        raise BadInput(f"{path}: '{given}' is no {_placeholder(count)} (accepted: {('two', 'three')[count - 2]} numbers, each {low:g} to {high:g})")
     return np.array([replace(_real(low, high), name=f"{path}.{k}").check(value) for k, value in enumerate(given, 1)])
 
 
@@ -131,4 +135,4 @@ def _points(path: str, given, least: int) -> np.ndarray:
         raise BadInput(f"{path}: '{given}' is too little (accepted: {least} points [x, y] or more)")
     if len(given) > MOST:
         raise BadInput(f"{path}: {len(given)} points (accepted: {least} to {MOST})")
-    return np.array([_pair(f"{path}.{k}", point, -LONGEST, LONGEST) for k, point in enumerate(given, 1)])
+    return np.array([_vector(f"{path}.{k}", point, -LONGEST, LONGEST) for k, point in enumerate(given, 1)])

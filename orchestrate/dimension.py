@@ -1,0 +1,38 @@
+"""What a scene of bodies is computed in: the top-level entry `dimension` of its file.
+
+    dimension = "plane-strain"   # x and y; forces and energies per metre of thickness
+                # "axisymmetric" # bodies of revolution: x is the radius, y the axis
+                # "3d"           # x, y and z, which completes them; y is up in each
+"""
+
+from dataclasses import dataclass
+
+from .parameters import Parameter
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """`script` is a file edp/<script>.edp; `axes` the components of a point; `like` the script whose rules of sizes stand for two bodies that
+    meet: those of a disc or of a ball that hits a plane."""
+
+    name: str
+    script: str
+    axes: int
+    like: str
+
+    @property
+    def placeholder(self) -> str:
+        """A point, in the words of messages."""
+        return "[x, y, z]" if self.axes == 3 else "[x, y]"
+
+
+PLANE_STRAIN = Dimension("plane-strain", "bodies", 2, "disc-plane")
+AXISYMMETRIC = Dimension("axisymmetric", "bodies-axisymmetric", 2, "ball-plane")
+DIMENSIONS = {one.name: one for one in (PLANE_STRAIN, AXISYMMETRIC)}
+SCRIPTS = tuple(one.script for one in DIMENSIONS.values())
+
+
+def of(given: dict) -> Dimension:
+    """That of a scene's tables; BadInput for a word that is none."""
+    rule = Parameter("dimension", "word", PLANE_STRAIN.name, "-", "", words=tuple(DIMENSIONS))
+    return DIMENSIONS[rule.check(given.get("dimension", rule.default))]
