@@ -36,3 +36,8 @@ def of(given: dict) -> Dimension:
     """That of a scene's tables; BadInput for a word that is none."""
     rule = Parameter("dimension", "word", PLANE_STRAIN.name, "-", "", words=tuple(DIMENSIONS))
     return DIMENSIONS[rule.check(given.get("dimension", rule.default))]
+
+
+def per_metre(script: str) -> bool:
+    """Whether forces and energies of a script are per metre of thickness: those of plane strain."""
+    return not script.startswith("ball") and script not in [one.script for one in DIMENSIONS.values() if one is not PLANE_STRAIN]

@@ -117,7 +117,7 @@ def whole(half: mesh.Mesh) -> mesh.Mesh:
 def mirrored(path: str, chain: np.ndarray) -> tuple[np.ndarray, bool]:
     """The vertices of a rigid chain (n, 2) that begins or ends on the axis with those of its mirror image, in one direction of travel, and
     whether they close: the mirror image of what is to the left of a chain is to the left of its mirror image travelled backwards."""
-    begins, ends = chain[0, 0] == 0, chain[-1, 0] == 0
+    begins, ends = bool(chain[0, 0] == 0), bool(chain[-1, 0] == 0)
     if not (begins or ends) or (chain[begins:len(chain) - ends, 0] <= 0).any():
         raise BadInput(f"{path}: is no section of a surface of revolution (accepted: x = 0 for the first or the last vertex, x > 0 for the others)")
     image = chain[::-1] * [-1, 1]

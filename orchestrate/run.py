@@ -26,7 +26,8 @@ from .results import RunResult, read_answers, read_history, read_json, read_scen
 from .scene import Scene
 from .tables import to_toml
 
-DECISIVE = ("approach", "assembly", "bodies", "estimate", "gmsh_file", "mesh", "multibody", "obstacles", "outlines", "polyline", "tables")
+DECISIVE = ("approach", "assembly", "bodies", "dimension", "estimate", "flat", "gmsh_file", "mesh", "multibody", "obstacles", "outlines", "polyline", "revolution",
+            "tables")
 FAILURES = {10: "bad input", 11: "step failed", 12: "material broke down", 13: "not installed", 14: "unreadable"}
 
 

@@ -7,7 +7,7 @@ from textwrap import wrap
 import matplotlib.pyplot as plt
 import numpy as np
 
-from .. import obstacles, vtu
+from .. import dimension, obstacles, vtu
 from ..obstacles import Obstacle
 from ..parameters import Value
 from ..results import suffixes
@@ -182,7 +182,7 @@ def shapes(series: list[tuple[float, Path]], scene: dict[str, Value]) -> plt.Fig
 
 def obstacles_of(scene: dict[str, Value]) -> list[Obstacle]:
     """The rigid obstacles of a scene as used."""
-    return obstacles.read(scene.get("obstacle", []))
+    return obstacles.read(scene.get("obstacle", []), dimension.of(scene))
 
 
 def limits(found: list[Body]) -> tuple[float, float, float, float]:

@@ -14,7 +14,7 @@ import numpy as np
 from matplotlib.collections import TriMesh
 from matplotlib.tri import LinearTriInterpolator, Triangulation
 
-from .. import vtu
+from .. import dimension, vtu
 from ..parameters import Value
 from ..results import read_history, read_scene
 
@@ -99,8 +99,8 @@ def as_written(text: str) -> str:
 
 
 def per_metre(scene: dict[str, Value]) -> str:
-    """Plane strain is per metre of thickness, a ball is not."""
-    return "" if scene.get("script", "").startswith("ball") else "/m"
+    """Behind units: plane strain is per metre of thickness, a ball is not."""
+    return "/m" if dimension.per_metre(scene.get("script", "")) else ""
 
 
 def _energies(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:

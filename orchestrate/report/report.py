@@ -5,6 +5,7 @@ import tomllib
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from .. import dimension
 from ..parameters import Value
 from ..places import shown
 from ..results import RunResult, suffixes
@@ -122,7 +123,7 @@ def report(result: RunResult) -> str:
     known = references(script, scene) if provenance.get("gmsh") or not provenance.get("mesh") else {}   # a mesh of the user's is another body
     place = shown(result.folder)
     lines = [f"{place}: " + ("finished earlier, same scene and code" if result.reused else "finished"), *_scene(scene)]
-    quantities = [one for row in rows(per_metre=not script.startswith("ball")) for one in _of_bodies(row, scene, summary)]
+    quantities = [one for row in rows(dimension.per_metre(script)) for one in _of_bodies(row, scene, summary)]
     width = max(24, *(len(quantity.label) + 1 for quantity in quantities))
     for quantity in quantities:
         value = summary.get(quantity.key)

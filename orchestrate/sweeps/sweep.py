@@ -192,7 +192,7 @@ def _sweep(path: Path, given: dict, text: str) -> Sweep:
     limit = given.get("limit", LIMIT)
     if type(limit) not in (int, float) or not 1 <= limit <= 1e6:
         raise BadInput(f"limit: {limit} (accepted: 1 to 1e6 seconds)")
-    figure = sweep_figures.check(tables["figure"], points, wanted, of.columns) | {"per": per_metre(of.given)} if tables["figure"] else {}
+    figure = sweep_figures.check(tables["figure"], points, wanted, of.columns) | {"per": per_metre({"script": of.script})} if tables["figure"] else {}
     base = {"fields": 0} | base
     return Sweep(path.stem, str(given.get("title", path.stem)), name, base, points, refine, wanted, float(limit), figure, text)
 
