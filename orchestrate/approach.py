@@ -6,10 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from .bodies import Body
-from .multibody import Multibody, gap_between, normal_of
+from .multibody import Multibody, gap_between
 from .obstacles import Obstacle
 from .outlines import Outline
+from .solids import Solid
 
+Shape = Outline | Solid
 STEPS = 200                  # what has not met by then does not
 FAR = 1e6                    # of the smaller thickness: a gap that does not close again
 MET = 1e-3                   # of the smaller thickness: a gap that counts as closed
@@ -23,7 +25,7 @@ class Meeting:
 
     first: int
     second: int
-    outlines: tuple[Outline, Outline | Obstacle]
+    outlines: tuple[Shape, Shape | Obstacle]
     closing: float
     sliding: float
     pressing: float
@@ -61,8 +63,7 @@ def _meeting(scene: Multibody, first: int, second: int) -> Meeting:
         t += 2 * gap / (speed + math.sqrt(speed**2 + 2 * rate * gap))       # speed t + rate t^2 / 2 = gap
     t = t if met else 0.0
     outlines, velocity = _at(body, other, t, pull), start + pull * t
-    gaps = outlines[1].gap(outlines[0].points)
-    normal = normal_of(outlines[1], outlines[0].points[gaps.argmin()])
+    normal = outlines[0].normal_from(outlines[1])
     if not met:                                                # what lets them meet later may turn them in any direction
         return Meeting(first, second, outlines, float(np.linalg.norm(velocity)), 0.0, float(np.linalg.norm(pull)), 0.0, float(radius))
     return Meeting(first, second, outlines, *_parts(velocity, normal), *_parts(pull, normal), float(radius))
@@ -74,18 +75,18 @@ def _parts(vector: np.ndarray, normal: np.ndarray) -> tuple[float, float]:
     return float(along), float(across) if across > 1e-6 * along else 0.0
 
 
-def _at(body: Body, other: Body | Obstacle, t: float, pull: np.ndarray) -> tuple[Outline, Outline | Obstacle]:
+def _at(body: Body, other: Body | Obstacle, t: float, pull: np.ndarray) -> tuple[Shape, Shape | Obstacle]:
     """Both at a time, seen by one who moves with the obstacle, or falls with the bodies."""
-    def flown(one: Body, velocity: np.ndarray) -> Outline:
+    def flown(one: Body, velocity: np.ndarray) -> Shape:
         return one.at(t, one.position + velocity * t + pull * t**2 / 2)
     if isinstance(other, Body):
         return flown(body, body.velocity), flown(other, other.velocity)
     return flown(body, body.velocity - other.velocity), other
 
 
-def _gap(first: Outline, second: Outline | Obstacle) -> float:
+def _gap(first: Shape, second: Shape | Obstacle) -> float:
     """The gap; of two bodies far apart that of the circles around them, which is no larger."""
-    if not isinstance(second, Outline):
-        return float(second.gap(first.points).min())
+    if isinstance(second, Obstacle):
+        return first.least(second.gap)
     away, around = np.linalg.norm(first.area_centre - second.area_centre), first.reach + second.reach
     return float(away - around) if away > 2 * around else gap_between(first, second)

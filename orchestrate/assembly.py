@@ -13,21 +13,20 @@ from pathlib import Path
 
 import numpy as np
 
-from . import mesh, revolution
+from . import mesh, revolution, solid_mesh, solids
 from .approach import Meeting, meetings
 from .bodies import MATERIAL, Body
 from .describe import describe
-from .dimension import AXISYMMETRIC
+from .dimension import AXISYMMETRIC, SOLID
 from .failure import BadInput
-from .mesh import AXIS, FREE, GROWTH
+from .mesh import AXIS, FREE, GROWTH, Sizes, nearest
+from .mirror import COPIES, FOLDED, copies
 from .multibody import OWN, Multibody, Pair
-from .outlines import Loop, Outline
+from .outlines import Loop
 from .parameters import Value
 
 NEVER = 3                    # the label of what nothing reaches
 ROUND = 0.5                  # largest element size on a circle or ellipse, over its smaller semi-axis
-FINEST = 4000                # points on a loop at most where it is asked what touches
-COARSEST = 400
 SAMPLED = 0.25               # a step between points at which an element size is asked for, over that size
 LIKE = ("radius", "young", "nu", "density", "speed", "angle", "spin")
 BETWEEN = 0.2                # from body to body in the reference configuration, over the largest extent
@@ -37,29 +36,12 @@ Curve = Callable[[np.ndarray], np.ndarray]   # points (n, 2) [m] at parameters (
 
 
 @dataclass(frozen=True)
-class Sizes:
-    """Element sizes of a body [m]: in the bulk, and within `near` (its points, as it is in its mesh) on the outline."""
-
-    bulk: float
-    contact: float
-    near: np.ndarray
-    slack: float                # half the distance of points on the outline
-
-    def at(self, points: np.ndarray) -> np.ndarray:
-        """Element sizes (n,): growing linearly with the distance from where the body touches."""
-        if not len(self.near):
-            return np.full(len(points), self.bulk)
-        away = np.maximum(nearest(points, self.near) - self.slack, 0.0)
-        return np.minimum(self.bulk, self.contact + GROWTH * away)
-
-
-@dataclass(frozen=True)
 class Assembly:
-    """`mesh` holds all bodies, `regions` (t,) their numbers, `centres` (bodies, 2) where their centres of area are in it; `data` is
+    """`mesh` holds all bodies, `regions` (t,) their numbers, `centres` (bodies, axes) where their centres of area are in it; `data` is
     the text of scene.dat; `values` are all parameters of run and contact, nothing left open, and `used` the tables of the scene with
     them in it: read again, they make this very assembly."""
 
-    mesh: mesh.Mesh
+    mesh: mesh.Mesh | solid_mesh.SolidMesh
     regions: np.ndarray
     centres: np.ndarray
     data: str
@@ -67,8 +49,11 @@ class Assembly:
     used: dict
 
     def write(self, folder: Path) -> None:
-        """mesh.msh and scene.dat, what edp/bodies.edp reads."""
-        write_mesh(self.mesh, self.regions, folder / "mesh.msh")
+        """mesh.msh (in three dimensions mesh.mesh) and scene.dat, what edp/bodies.edp reads."""
+        if isinstance(self.mesh, solid_mesh.SolidMesh):
+            solid_mesh.write(self.mesh, self.regions, folder / "mesh.mesh")
+        else:
+            write_mesh(self.mesh, self.regions, folder / "mesh.msh")
         (folder / "scene.dat").write_text(self.data)
 
 
@@ -79,12 +64,27 @@ def assemble(scene: Multibody, rule: Rule | None = None) -> Assembly:
     values = scene.values | contact_values(scene.bodies, scene.contact, ask, "contact")
     pairs = [pair_values(pair, ask, values) for pair in scene.pairs]
     sizes = [None if body.mesh else _sizes(k, ask) for k, body in enumerate(scene.bodies)]
-    meshes = [body.mesh or mesh_body(_boundary(scene, k), sizes[k], body.outline.half_thickness) for k, body in enumerate(scene.bodies)]
-    along = 1 if scene.dimension is AXISYMMETRIC else 0
-    centres = side_by_side([np.array([one.points.min(axis=0), one.points.max(axis=0)]) for one in meshes], along)
-    together, regions = stack(meshes, centres)
+    together, regions, centres = (_solids if scene.dimension is SOLID else _sections)(scene, sizes)
     disc = ask.disc(scene.bodies, min(body.outline.half_thickness for body in scene.bodies), slides=True)
     return Assembly(together, regions, centres, data_file(scene, disc, centres, pairs), values, used_tables(scene, sizes, values, pairs))
+
+
+def _sections(scene: Multibody, sizes: list[Sizes | None]) -> tuple[mesh.Mesh, np.ndarray, np.ndarray]:
+    """The mesh of bodies in the plane, the body of each triangle, the centres in it."""
+    meshes = [body.mesh or mesh_body(_boundary(scene, k), sizes[k], body.outline.half_thickness) for k, body in enumerate(scene.bodies)]
+    centres = side_by_side(meshes, 1 if scene.dimension is AXISYMMETRIC else 0)
+    return *stack(meshes, centres), centres
+
+
+def _solids(scene: Multibody, sizes: list[Sizes | None]) -> tuple[solid_mesh.SolidMesh, np.ndarray, np.ndarray]:
+    """The same in three dimensions: bodies turned as they are at the start, one above the other; half or a quarter of them where that is enough."""
+    folded = FOLDED[copies(scene)]
+    meshes = [solids.mesh_of(body, one, folded) for body, one in zip(scene.bodies, sizes)]
+    count = sum(solid_mesh.unknowns(one.cells, scene.values["degree"]) for one in meshes)
+    if count > solid_mesh.MOST_UNKNOWNS:
+        raise BadInput(f"mesh_size: the bodies have {count} unknowns (accepted: up to {solid_mesh.MOST_UNKNOWNS}; larger mesh_size, contact_mesh_size or accuracy)")
+    centres = side_by_side(meshes, 1)
+    return *solid_mesh.stack(meshes, centres), centres
 
 
 # ---- what the scene leaves open
@@ -147,13 +147,18 @@ def used_tables(scene: Multibody, sizes: list[Sizes | None], values: dict[str, V
     bodies = []
     for given, body, size in zip(scene.given["body"], scene.bodies, sizes):
         used = {"name": body.name} | given | {key: getattr(body, key) for key in MATERIAL}
-        used |= {"mesh_size": size.bulk, "contact_mesh_size": size.contact} if size else {"file": str((scene.folder / given["file"]).resolve())}
+        used |= {"mesh_size": size.bulk, "contact_mesh_size": size.contact} if size else {}
+        used |= {"file": str((scene.folder / given["file"]).resolve())} if "file" in given else {}
         bodies.append(used)
     obstacles = [{"name": one.name} | {key: value for key, value in given.items() if key not in OWN}
                  for given, one in zip(scene.given.get("obstacle", []), scene.obstacles)]
     contact = {key: values[key] for key in scene.contact} | {"pair": [{"bodies": names(pair)} | own for pair, own in zip(scene.pairs, pairs)]}
-    top = {"title": scene.title, "script": scene.script, "dimension": scene.dimension.name} | {key: values[key] for key in scene.values}
+    top = {"title": scene.title, "script": scene.script, "dimension": scene.dimension.name} | _symmetry(scene) | {key: values[key] for key in scene.values}
     return top | {"body": bodies, "obstacle": obstacles, "contact": contact}
+
+
+def _symmetry(scene: Multibody) -> dict[str, str]:
+    return {"symmetry": next(word for word, count in COPIES.items() if count == copies(scene))} if scene.dimension is SOLID else {}
 
 
 def _sizes(k: int, ask: Asker) -> Sizes:
@@ -166,7 +171,7 @@ def _sizes(k: int, ask: Asker) -> Sizes:
         raise BadInput(f"body.{k + 1}.{error} (of a disc as thick as '{body.name}')") from None
     hits = [_hit(body, k, one, ask) for one in ask.met if k in (one.first, one.second)]
     contact = body.contact_mesh_size or min([bulk, *(size for size, *_ in hits)])
-    near = np.vstack([np.empty((0, 2)), *(points for _, points, _ in hits)])
+    near = np.vstack([np.empty((0, ask.scene.dimension.axes)), *(points for _, points, _ in hits)])
     return Sizes(bulk, min(bulk, contact), near, max([0.0, *(slack for *_, slack in hits)]))
 
 
@@ -175,10 +180,9 @@ def _hit(body: Body, k: int, one: Meeting, ask: Asker) -> tuple[float, np.ndarra
     bodies = [ask.scene.bodies[j] for j in (one.first, one.second) if j >= 0]
     straight = ask.answer(bodies, one.radius)
     arc, size = straight["touch_arc"], float(straight["used"]["contact_mesh_size"])
-    spacing = body.outline.length / np.clip(2 * body.outline.length / size, COARSEST, FINEST)
-    points = np.vstack([loop.sampled(spacing) for loop in body.outline.loops])
+    points, spacing = body.outline.samples(size)
     near = _near(body, k, one, arc, points)
-    wider = (len(near) - 1) * spacing / (2 * arc * one.radius)    # than the contact of a disc: flat faces
+    wider = body.outline.width(len(near), spacing) / (2 * arc * one.radius)    # than the contact of a disc: flat faces
     slide = (ask.answer(bodies, one.radius, slides=True)["touch_arc"] - arc) * one.radius
     if slide > 0:
         near = points[nearest(points, near) <= slide]
@@ -188,23 +192,8 @@ def _hit(body: Body, k: int, one: Meeting, ask: Asker) -> tuple[float, np.ndarra
 def _near(body: Body, k: int, one: Meeting, touch_arc: float, points: np.ndarray) -> np.ndarray:
     """Those of the points of body k where the gap at the meeting is no larger than that of a disc of the pair's radius at touch_arc
     from its lowest point."""
-    gaps = one.gaps(k, carried(body.outline, one.outlines[0 if k == one.first else 1], points))
+    gaps = one.gaps(k, body.outline.carried(one.outlines[0 if k == one.first else 1], points))
     return points[gaps <= gaps.min() + one.radius * (1 - math.cos(min(touch_arc, math.pi / 2)))]
-
-
-def carried(outline: Outline, moved: Outline, points: np.ndarray) -> np.ndarray:
-    """The points carried along with an outline to where it is moved, rigidly."""
-    a, b = outline.loops[0].corners[:2]
-    c, d = moved.loops[0].corners[:2]
-    turn = complex(*(d - c)) / complex(*(b - a))
-    rotation = np.array([[turn.real, -turn.imag], [turn.imag, turn.real]])
-    return c + (points - a) @ rotation.T
-
-
-def nearest(points: np.ndarray, others: np.ndarray, chunk: int = 500, most: int = 2000) -> np.ndarray:
-    """Distances (n,) to the nearest of the others; of many every few only."""
-    others = others[::-(-len(others) // most)]
-    return np.concatenate([np.sqrt(((points[at:at + chunk, None] - others)**2).sum(axis=2).min(axis=1)) for at in range(0, len(points), chunk)])
 
 
 def _boundary(scene: Multibody, k: int) -> list[list[tuple[Curve, float, int]]]:
@@ -304,8 +293,9 @@ def _grade(field, loops: list[np.ndarray], curves: tuple[list[int], ...], sizes:
     field.setAsBackgroundMesh(least)
 
 
-def side_by_side(boxes: list[np.ndarray], along: int) -> np.ndarray:
-    """Centres (bodies, axes) on an axis (0: x, 1: y), from 0 on, that keep boxes about them [lowest, highest corner] apart by a part of the largest."""
+def side_by_side(meshes: list[mesh.Mesh | solid_mesh.SolidMesh], along: int) -> np.ndarray:
+    """Centres (bodies, axes) on an axis (0: x, 1: y), from 0 on, that keep meshes about them apart by a part of the largest."""
+    boxes = [np.array([one.points.min(axis=0), one.points.max(axis=0)]) for one in meshes]
     between = BETWEEN * max(np.ptp(box, axis=0).max() for box in boxes)
     centres = np.zeros((len(boxes), boxes[0].shape[1]))
     for k in range(1, len(boxes)):
@@ -344,16 +334,32 @@ def data_file(scene: Multibody, disc: dict[str, Value], centres: np.ndarray, pai
         circles C      body x y radius                                                                  in the mesh
         obstacles M    kind count p1 ... pcount vx vy
         pairs K        a b penalty friction_static friction_dynamic                                     a, b: body, or -1 - obstacle
-    centre: of the area in the mesh; place: where it is at the start; the angle of the disc in degrees."""
-    circles = [(k, *(centre + loop.centre), loop.radius) for k, (body, centre) in enumerate(zip(scene.bodies, centres))
-               for loop in body.outline.loops if loop.radius and (scene.dimension is not AXISYMMETRIC or loop.centre[0] >= 0)]
-    lines = [("ffimpact-bodies", 1), ("disc", *(float(disc[name]) for name in LIKE)), ("bodies", len(scene.bodies))]
-    lines += [(body.name, body.law, body.young, body.nu, body.density, *centre, *body.position, body.angle, *body.velocity, body.spin)
-              for body, centre in zip(scene.bodies, centres)]
-    lines += [("circles", len(circles)), *circles, ("obstacles", len(scene.obstacles))]
-    lines += [("circle" if one.kind == "sphere" else one.kind, len(one.numbers), *one.numbers, *one.velocity) for one in scene.obstacles]
+    centre: of the area in the mesh; place: where it is at the start; the angle of the disc in degrees. In three dimensions
+        ffimpact-bodies-3d 1
+        copies 1, 2 or 4                                                                                how often the mesh makes the whole bodies
+        bodies N       name law young nu density  centreX Y Z  shiftX Y Z  vx vy vz  spinX Y Z         shift: from the mesh to the start
+        spheres C      body x y z radius
+    and the rest alike."""
+    surfaces = [(k, *(centre + at), radius) for k, (body, centre) in enumerate(zip(scene.bodies, centres)) for at, radius in _round(scene, body)]
+    if scene.dimension is SOLID:
+        head, round_ones = [("ffimpact-bodies-3d", 1), ("copies", copies(scene))], "spheres"
+        starts = [(*(body.position - centre), *body.velocity, *body.spin) for body, centre in zip(scene.bodies, centres)]
+    else:
+        head, round_ones = [("ffimpact-bodies", 1)], "circles"
+        starts = [(*body.position, body.angle, *body.velocity, body.spin) for body in scene.bodies]
+    lines = [*head, ("disc", *(float(disc[name]) for name in LIKE)), ("bodies", len(scene.bodies))]
+    lines += [(body.name, body.law, body.young, body.nu, body.density, *centre, *start) for body, centre, start in zip(scene.bodies, centres, starts)]
+    lines += [(round_ones, len(surfaces)), *surfaces, ("obstacles", len(scene.obstacles))]
+    lines += [("circle" if one.kind == "sphere" and scene.dimension is not SOLID else one.kind, len(one.numbers), *one.numbers, *one.velocity) for one in scene.obstacles]
     lines += [("pairs", len(pairs)), *((pair.first, pair.second, *own.values()) for pair, own in zip(scene.pairs, pairs))]
     return "".join(" ".join(map(_token, line)) + "\n" for line in lines)
+
+
+def _round(scene: Multibody, body: Body) -> list[tuple[np.ndarray, float]]:
+    """Centres and radii of the circles of an outline (of a section those that are not another's mirror image), or of a ball."""
+    if scene.dimension is SOLID:
+        return [(np.zeros(3), body.outline.radius)] if body.outline.radius else []
+    return [(loop.centre, loop.radius) for loop in body.outline.loops if loop.radius and (scene.dimension is not AXISYMMETRIC or loop.centre[0] >= 0)]
 
 
 def _token(value) -> str:

@@ -21,13 +21,15 @@ from types import ModuleType
 
 import numpy as np
 
-from . import flat, mesh, parameters, revolution
-from .dimension import AXISYMMETRIC, PLANE_STRAIN, Dimension
+from . import flat, mesh, parameters, revolution, solids
+from .dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
 from .failure import BadInput
 from .outlines import Outline
+from .solid_mesh import SolidMesh
+from .solids import Solid
 from .tables import SHORTEST, Table
 
-GEOMETRY = {PLANE_STRAIN: flat, AXISYMMETRIC: revolution}     # SHAPES with their entries, shape(), MOTION, motion()
+GEOMETRY = {PLANE_STRAIN: flat, AXISYMMETRIC: revolution, SOLID: solids}     # SHAPES with their entries, shape(), MOTION, motion()
 MATERIAL = ("law", "young", "nu", "density")
 SIZES = ("mesh_size", "contact_mesh_size")
 COMMON = ("name", "shape", "position", "velocity", *MATERIAL, *SIZES)
@@ -36,16 +38,16 @@ NAME = re.compile(r"[A-Za-z][A-Za-z0-9_.-]*")
 
 @dataclass(frozen=True)
 class Body:
-    """`outline` and `mesh` (of a mesh file, else None) are about the centre of area, not turned; angle [rad]; a mesh size of 0 is
-    open."""
+    """`outline` and `mesh` (of a mesh file, else None) are about the centre of area (or volume), not turned; angle [rad], in three dimensions
+    a vector as spin is; a mesh size of 0 is open."""
 
     name: str
-    outline: Outline
-    mesh: mesh.Mesh | None
+    outline: Outline | Solid
+    mesh: mesh.Mesh | SolidMesh | None
     position: np.ndarray
-    angle: float
+    angle: float | np.ndarray
     velocity: np.ndarray
-    spin: float
+    spin: float | np.ndarray
     law: str
     young: float
     nu: float
@@ -54,13 +56,13 @@ class Body:
     contact_mesh_size: float
 
     @property
-    def placed(self) -> Outline:
+    def placed(self) -> Outline | Solid:
         """The outline where it is at the start."""
         return self.at(0.0, self.position)
 
-    def at(self, t: float, centre: np.ndarray) -> Outline:
+    def at(self, t: float, centre: np.ndarray) -> Outline | Solid:
         """The outline about `centre`, turned as it is at time t [s] if nothing hinders it."""
-        return self.outline.placed(centre, self.angle + self.spin * t)
+        return self.outline.placed(centre, self.outline.turned(self.angle, self.spin, t))
 
 
 def read(tables: list[dict], top: dict, folder: Path, dimension: Dimension = PLANE_STRAIN) -> list[Body]:

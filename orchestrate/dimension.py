@@ -28,7 +28,8 @@ class Dimension:
 
 PLANE_STRAIN = Dimension("plane-strain", "bodies", 2, "disc-plane")
 AXISYMMETRIC = Dimension("axisymmetric", "bodies-axisymmetric", 2, "ball-plane")
-DIMENSIONS = {one.name: one for one in (PLANE_STRAIN, AXISYMMETRIC)}
+SOLID = Dimension("3d", "bodies-3d", 3, "ball-plane")
+DIMENSIONS = {one.name: one for one in (PLANE_STRAIN, AXISYMMETRIC, SOLID)}
 SCRIPTS = tuple(one.script for one in DIMENSIONS.values())
 
 

@@ -38,6 +38,29 @@ class Mesh:
         return replace(self, points=self.points + by)
 
 
+@dataclass(frozen=True)
+class Sizes:
+    """Element sizes of a body [m]: in the bulk, and within `near` (its points, as it is in its mesh) on the outline, to `slack`."""
+
+    bulk: float
+    contact: float
+    near: np.ndarray
+    slack: float                # half the distance of points on the outline
+
+    def at(self, points: np.ndarray) -> np.ndarray:
+        """Element sizes (n,): growing linearly with the distance from where the body touches."""
+        if not len(self.near):
+            return np.full(len(points), self.bulk)
+        away = np.maximum(nearest(points, self.near) - self.slack, 0.0)
+        return np.minimum(self.bulk, self.contact + GROWTH * away)
+
+
+def nearest(points: np.ndarray, others: np.ndarray, chunk: int = 500, most: int = 2000) -> np.ndarray:
+    """Distances (n,) to the nearest of the others; of many every few only."""
+    others = others[::-(-len(others) // most)]
+    return np.concatenate([np.sqrt(((points[at:at + chunk, None] - others)**2).sum(axis=2).min(axis=1)) for at in range(0, len(points), chunk)])
+
+
 @cache
 def gmsh_version() -> str:
     """The version of the gmsh package."""

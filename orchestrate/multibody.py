@@ -23,16 +23,17 @@ from pathlib import Path
 
 import numpy as np
 
-from . import bodies, dimension, obstacles, parameters, scene
+from . import bodies, dimension, mirror, obstacles, parameters, scene
 from .bodies import MATERIAL, SIZES, Body
 from .describe import describe
-from .dimension import Dimension
+from .dimension import SOLID, Dimension
 from .failure import BadInput
 from .obstacles import Obstacle
 from .estimate import LARGEST
 from .parameters import Value
-from .outlines import Outline
-from .tables import SHORTEST, Table, listed, to_toml
+from .solids import Solid
+from .outlines import Outline, normal_of
+from .tables import Table, listed, to_toml
 
 SCENES = scene.SCENES
 RUN = ("gravity", "body_force_x", "body_force_y", "degree", "integrator", "dt", "accuracy", "accuracy_of", "tolerance", "breakdown",
@@ -109,6 +110,11 @@ class Multibody:
         return True
 
     @property
+    def mesh_name(self) -> str:
+        """The file of the mesh in a run's folder."""
+        return "mesh.mesh" if self.dimension is SOLID else "mesh.msh"
+
+    @property
     def sizes(self) -> dict[str, float]:
         """The largest mesh sizes that bodies give, 0 where none does."""
         return {name: max(getattr(body, name) for body in self.bodies) for name in SIZES}
@@ -127,7 +133,7 @@ class Multibody:
             raise BadInput("obstacle: is missing, and a second body too (accepted: one table [[obstacle]] or more, or several [[body]])")
         built = assembly.assemble(self)
         built.write(where)
-        return built.values | {"mesh": where / "mesh.msh", "bodies": where / "scene.dat"}, to_toml(built.used)
+        return built.values | {"mesh": where / self.mesh_name, "bodies": where / "scene.dat"}, to_toml(built.used)
 
     def scaled(self, values: dict, used: dict, factor: float, own_mesh: bool = True) -> dict[str, Value | list]:
         """What the scene, run as the tables `used`, is overridden by for `factor` times the elements and steps; the contact's own
@@ -151,8 +157,9 @@ def built_in() -> list[str]:
 
 def read(given: dict, folder: Path, name: str) -> Multibody:
     """The scene in a file's tables; mesh files are sought from `folder` on. BadInput for whatever is wrong in it."""
-    table = Table("", given, ("title", "script", "dimension", "body", "obstacle", "contact", *MATERIAL, *SIZES, *RUN))
     of = dimension.of(given)
+    own = ("symmetry",) if of is SOLID else ()
+    table = Table("", given, ("title", "script", "dimension", *own, "body", "obstacle", "contact", *MATERIAL, *SIZES, *RUN))
     all_bodies = bodies.read(listed(given, "body"), given, folder, of)
     if not all_bodies:
         raise BadInput("body: is missing (accepted: one table [[body]] or more)")
@@ -173,6 +180,7 @@ def read(given: dict, folder: Path, name: str) -> Multibody:
     found = Multibody(name, table.text("title", name), of, given, folder, all_bodies, all_obstacles, contact,
                       [pairs[both] for both in sorted(pairs)], values)
     _apart(found)
+    mirror.copies(found)
     return found
 
 
@@ -258,25 +266,17 @@ def _refuse_overlap(path: str, body: Body, other_path: str, other: str, gap: flo
                        f"(accepted: apart or touching)")
 
 
-def gap_between(first: Outline, second: Outline) -> float:
-    """The distance of two outlines, negative where they overlap: by how far a point of one is inside the other."""
-    return float(min(first.gap(second.points).min(), second.gap(first.points).min()))
+def gap_between(first: Outline | Solid, second: Outline | Solid) -> float:
+    """The distance of two bodies, negative where they overlap: by how far a point of one is inside the other."""
+    return min(second.least(first.gap), first.least(second.gap))
 
 
-def gap_to_obstacle(outline: Outline, obstacle: Obstacle) -> float:
-    """The distance of an outline from an obstacle, negative where they overlap."""
-    centre, least = outline.area_centre, obstacle.gap(outline.points).min()
+def gap_to_obstacle(outline: Outline | Solid, obstacle: Obstacle) -> float:
+    """The distance of a body from an obstacle, negative where they overlap."""
+    centre, least = outline.area_centre, outline.least(obstacle.gap)
     nearest = centre - obstacle.gap(centre[None]) * normal_of(obstacle, centre)
     is_of_it = obstacle.gap(nearest[None])[0] < 1e-4 * outline.half_thickness    # not where the distance has no gradient
     return float(min(least, outline.gap(nearest[None])[0]) if is_of_it else least)    # the former: an obstacle inside the body
-
-
-def normal_of(other: Outline | Obstacle, point: np.ndarray) -> np.ndarray:
-    """The gradient (axes,) of the distance from another body or an obstacle, the outward normal, to six digits; 0 where there is none."""
-    h = 1e-6 * max(1e-3 * np.abs(point).max(), abs(other.gap(point[None])[0]), SHORTEST)
-    steps = h * np.eye(len(point))
-    normal = np.round((other.gap(point + steps) - other.gap(point - steps)) / (2 * h), 6)
-    return normal / max(np.linalg.norm(normal), 0.5)
 
 
 # ---- entries by name

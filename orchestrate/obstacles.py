@@ -8,7 +8,7 @@
     velocity = [0, 0]            # it moves on with it, whatever it meets [m/s]
 
 Of revolution about x = 0: planes across the axis; sphere (a ball) and bowl on it, centre = [0, y] or y; polyline: a chain that begins or ends on
-the axis, without `closed`.
+the axis, without `closed`. In three dimensions plane, sphere and bowl, points and vectors [x, y, z].
 """
 
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ import numpy as np
 
 from . import polyline
 from .bodies import checked_name
-from .dimension import AXISYMMETRIC, PLANE_STRAIN, Dimension
+from .dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
 from .failure import BadInput
 from .revolution import mirrored, on_axis
 from .tables import LONGEST, SHORTEST, Table
@@ -26,6 +26,7 @@ KINDS = {
     PLANE_STRAIN: {"plane": ("point", "normal"), "circle": ("centre", "radius"), "bowl": ("centre", "radius"),
                    "polyline": ("vertices", "closed", "rounding")},
     AXISYMMETRIC: {"plane": ("point", "normal"), "sphere": ("centre", "radius"), "bowl": ("centre", "radius"), "polyline": ("vertices", "rounding")},
+    SOLID: {"plane": ("point", "normal"), "sphere": ("centre", "radius"), "bowl": ("centre", "radius")},
 }
 
 

@@ -1,12 +1,17 @@
 """Outlines in the plane: closed curves, their areas, what is inside, distances to them. Points are arrays (n, 2) in m."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
+from .tables import SHORTEST
+
 SAMPLES = 400                # points on a loop where its shape is wanted as a polygon
 CHUNK = 500                  # points at a time, against as many segments as there are
+FINEST = 4000                # points on an outline at most where it is asked what touches
+COARSEST = 400
 
 
 @dataclass(frozen=True)
@@ -132,10 +137,46 @@ class Outline:
     def placed(self, centre: np.ndarray, angle: float) -> "Outline":
         return Outline(tuple(loop.placed(centre, angle) for loop in self.loops))
 
+    def turned(self, angle: float, spin: float, t: float) -> float:
+        """The angle [rad] with what a spin [rad/s] adds in the time t."""
+        return angle + spin * t
+
+    def carried(self, moved: "Outline", points: np.ndarray) -> np.ndarray:
+        """Points of this outline carried along to where it is moved, rigidly."""
+        a, b = self.loops[0].corners[:2]
+        c, d = moved.loops[0].corners[:2]
+        turn = complex(*(d - c)) / complex(*(b - a))
+        return c + (points - a) @ np.array([[turn.real, -turn.imag], [turn.imag, turn.real]]).T
+
+    def samples(self, size: float) -> tuple[np.ndarray, float]:
+        """Points on it, twice as dense as elements of a size, and their distance [m]."""
+        spacing = self.length / np.clip(2 * self.length / size, COARSEST, FINEST)
+        return np.vstack([loop.sampled(spacing) for loop in self.loops]), spacing
+
+    def width(self, count: int, spacing: float) -> float:
+        """Of a stretch with so many of the samples."""
+        return (count - 1) * spacing
+
+    def least(self, gap: Callable[[np.ndarray], np.ndarray]) -> float:
+        """The least value of a distance on the outline."""
+        return float(gap(self.points).min())
+
+    def normal_from(self, other) -> np.ndarray:
+        """The outward normal of another body or an obstacle where this one is nearest to it."""
+        return normal_of(other, self.points[other.gap(self.points).argmin()])
+
     def gap(self, points: np.ndarray) -> np.ndarray:
         """Signed distances (n,) of points from the body, negative in its material, positive outside and in its holes."""
         outer, *holes = self.loops
         return np.max([outer.gap(points), *(-hole.gap(points) for hole in holes)], axis=0)
+
+
+def normal_of(other, point: np.ndarray) -> np.ndarray:
+    """The gradient (axes,) of the distance from a body or an obstacle, the outward normal, to six digits; 0 where there is none."""
+    h = 1e-6 * max(1e-3 * np.abs(point).max(), abs(other.gap(point[None])[0]), SHORTEST)
+    steps = h * np.eye(len(point))
+    normal = np.round((other.gap(point + steps) - other.gap(point - steps)) / (2 * h), 6)
+    return normal / max(np.linalg.norm(normal), 0.5)
 
 
 # ---- polygons, (n, 2), closed from the last to the first

@@ -26,8 +26,8 @@ from .results import RunResult, read_answers, read_history, read_json, read_scen
 from .scene import Scene
 from .tables import to_toml
 
-DECISIVE = ("approach", "assembly", "bodies", "dimension", "estimate", "flat", "gmsh_file", "mesh", "multibody", "obstacles", "outlines", "polyline", "revolution",
-            "tables")
+DECISIVE = ("approach", "assembly", "bodies", "dimension", "estimate", "flat", "gmsh_file", "mesh", "mirror", "multibody", "obstacles", "outlines", "polyline", "revolution",
+            "solid_file", "solid_mesh", "solids", "tables")
 FAILURES = {10: "bad input", 11: "step failed", 12: "material broke down", 13: "not installed", 14: "unreadable"}
 
 
@@ -79,7 +79,7 @@ def run(scene: Scene | Multibody, overrides: dict[str, Value] | None = None, out
                 _say_where(stage, failure.folder)
                 replace(stage, failure.folder, _same_scene(failure.folder, scene, mesh_file))
             raise
-        provenance |= asked_for | {"git": _git(), "mesh": _sha256(mesh_file or stage / "mesh.msh") if scene.meshed else None}
+        provenance |= asked_for | {"git": _git(), "mesh": _sha256(mesh_file or stage / scene.mesh_name) if scene.meshed else None}
         _say_where(stage, folder)
         _finish(stage, found, provenance)
         replace(stage, folder, _same_scene(folder, scene, mesh_file))

@@ -40,6 +40,11 @@ class Scene:
         return {"script": self.script} | self.values
 
     @property
+    def mesh_name(self) -> str:
+        """The file of the mesh in a run's folder."""
+        return "mesh.msh"
+
+    @property
     def sizes(self) -> dict[str, float]:
         """Mesh sizes that are not in `values`: none."""
         return {}
@@ -77,7 +82,7 @@ class Scene:
     def prepare(self, where: Path, foreign: bytes | None = None) -> tuple[dict[str, parameters.Value | Path], str]:
         """The flags of a run in the folder `where`, and the text of its scene.toml, "" where the script writes it. Puts into the folder
         what the flags name: the mesh, `foreign` or our own, of the sizes and the part of the body that the description says."""
-        said, file = self.description(foreign), where / "mesh.msh"
+        said, file = self.description(foreign), where / self.mesh_name
         if not self.meshed:
             return self.values, ""
         if foreign is not None:
