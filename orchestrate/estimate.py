@@ -125,8 +125,8 @@ def difference(fine: Mapping, coarse: Mapping, speed: float, radius: float | Non
         return abs(value(fine, name) - value(coarse, name)) / abs(scale) if scale else 0.0
 
     energy = value(fine, "largest_energy") or value(fine, "energy_initial") or value(fine, "energy_final")
-    rebound = max(math.hypot(apart(f"rebound_vx{of}", speed), apart(f"rebound_vy{of}", speed)) for of in suffixes(fine))
-    rim = max(apart(f"spin{of}", speed / (value(fine, f"reach{of}") or radius)) for of in suffixes(fine))
+    rebound = max(math.hypot(*(apart(f"rebound_v{axis}{of}", speed) for axis in "xyz")) for of in suffixes(fine))
+    rim = max(math.hypot(*(apart(f"spin{about}{of}", speed / (value(fine, f"reach{of}") or radius)) for about in ("", "_x", "_y"))) for of in suffixes(fine))
     found = {"impulse": apart("impulse", value(fine, "impulse")), "rebound": rebound, "rebound_spin": rim, "energy": max(apart(name, energy) for name in ("energy_final", "vibration_energy")),
              "friction_work": apart("friction_work", energy)}
     for name in ("thresholded_contact_time", "contact_time", "peak_force"):

@@ -1,6 +1,7 @@
 """What is in the folder of a finished run: its history, its scene as used, its summary."""
 
 import json
+import re
 import tomllib
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -57,14 +58,14 @@ def read_answers(folder: Path) -> tuple[dict, dict[str, Value], float]:
     mass [m/s]: what energies and velocities are measured by."""
     history, summary = read_history(folder), read_summary(folder)
     energy = float((history["kinetic"] + history["elastic"] + history["contact"]).max())
-    speed = max(float(np.hypot(history[f"vx{of}"], history[f"vy{of}"]).max()) for of in suffixes(history))
+    speed = max(float(np.sqrt(sum(history[f"v{axis}{of}"]**2 for axis in "xyz" if f"v{axis}{of}" in history)).max()) for of in suffixes(history))
     return summary | {"largest_energy": energy}, read_scene(folder), speed
 
 
 def suffixes(columns: Iterable[str]) -> list[str]:
     """What stands behind the names of columns (of history.csv) or numbers (of summary.json) that are of one body: _1, _2 ..., or
     nothing, where there is one body only."""
-    return [f"_{b}" for b in range(1, 1 + sum(name.startswith("spin_") for name in columns))] or [""]
+    return [f"_{b}" for b in range(1, 1 + sum(re.fullmatch("spin_[0-9]+", name) is not None for name in columns))] or [""]
 
 
 def read_summary(folder: Path) -> dict:

@@ -335,7 +335,7 @@ def mesh_of(body, sizes: Sizes | None, folded: tuple[int, ...]) -> SolidMesh:
     if solid.geometry:
         path, centre = solid.geometry
         made = solid_file.meshed(path, replace(sizes, near=sizes.near + centre))
-        return replace(made, points=(made.points - made.centre) @ solid.rotation.T)
+        return replace(made, points=(made.points - (centre if solid.radius else made.centre)) @ solid.rotation.T)
     shape = solid.shape
     lengths = shape.extent if isinstance(shape, Box) else np.array([shape.radius] if isinstance(shape, Ball) else [shape.radius, shape.height])
     return mesh_shape(type(shape).__name__.lower(), lengths, solid.rotation, folded, replace(sizes, near=sizes.near @ solid.rotation.T), solid.half_thickness)
@@ -359,14 +359,12 @@ def _of_file(table: Table, folder: Path) -> tuple[Solid, SolidMesh | None]:
         found = solid_file.read(path)
     except BadInput as error:
         raise BadInput(f"{table.path}.file: {error}") from None
-    centred = found.moved(-found.centre)
-    surface = Surface(centred.points[centred.faces])
-    centre, radius = fitted_sphere(surface.corners)
-    shape = Ball(radius) if radius and np.linalg.norm(centre) < 1e-6 * radius else surface
+    at, radius = fitted_sphere(found.points[np.unique(found.faces)])
+    centre = at if radius else found.centre
+    centred = found.moved(-centre)
+    shape = Ball(radius) if radius else Surface(centred.points[centred.faces])
     if solid_file.is_geometry(path):
-        return Solid(surface, np.zeros(3), np.eye(3), (path, found.centre)), None
-    if isinstance(shape, Ball):
-        centred = centred.moved(-centre)
+        return Solid(shape, np.zeros(3), np.eye(3), (path, centre)), None
     return Solid(shape, np.zeros(3), np.eye(3)), centred
 
 
