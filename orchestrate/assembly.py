@@ -17,7 +17,7 @@ from . import mesh, revolution, solid_mesh, solids
 from .approach import Meeting, meetings
 from .bodies import MATERIAL, Body
 from .describe import describe
-from .dimension import AXISYMMETRIC, SOLID
+from .dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID
 from .failure import BadInput
 from .mesh import AXIS, FREE, GROWTH, Sizes, nearest
 from .mirror import COPIES, FOLDED, copies
@@ -168,7 +168,7 @@ def _sizes(k: int, ask: Asker) -> Sizes:
     try:
         bulk = float(ask.answer([body], body.outline.half_thickness, **given)["used"]["mesh_size"])
     except BadInput as error:
-        raise BadInput(f"body.{k + 1}.{error} (of a disc as thick as '{body.name}')") from None
+        raise BadInput(f"body.{k + 1}.{error} (of a {'disc' if ask.scene.dimension is PLANE_STRAIN else 'ball'} as thick as '{body.name}')") from None
     hits = [_hit(body, k, one, ask) for one in ask.met if k in (one.first, one.second)]
     contact = body.contact_mesh_size or min([bulk, *(size for size, *_ in hits)])
     near = np.vstack([np.empty((0, ask.scene.dimension.axes)), *(points for _, points, _ in hits)])

@@ -15,7 +15,8 @@ from .mesh import AXIS, FREE, GROWTH, Sizes
 
 DEPTH, NEVER = 3, 4
 PLANES = {0: AXIS, 2: DEPTH}       # of symmetry: the axis across it, and its label
-TURN = {"ball": 12, "cylinder": 20, "geometry": 16}     # elements on a full turn of a curved surface at least
+TURN = {"cylinder": 20, "geometry": 16}     # elements on a full turn of a curved surface at least
+LARGEST = 0.52                     # element of a ball over its radius: twelve on a full turn
 FACES = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])     # of a tetrahedron, counter-clockwise seen from outside
 MOST_SOURCES = 2000                # points that sizes are measured from
 FILL = 0.118                       # volume of a regular tetrahedron over the cube of its side
@@ -76,7 +77,7 @@ def unknowns(cells: np.ndarray, degree: int) -> int:
 def mesh_shape(kind: str, lengths: np.ndarray, rotation: np.ndarray, folded: tuple[int, ...], sizes: Sizes, scale: float) -> SolidMesh:
     """The mesh of a ball (radius), box (extents) or cylinder (radius, height, its axis y) about the origin, turned: only what lies on the positive
     side of the planes across the axes `folded`. `scale` [m] is about its size: gmsh's tolerances are absolute."""
-    unit = 1 / scale
+    unit, bulk = 1 / scale, min(sizes.bulk, LARGEST * lengths[0]) if kind == "ball" else sizes.bulk
 
     def build(gmsh) -> None:
         occ, (a, *more) = gmsh.model.occ, map(float, lengths * unit)
@@ -97,7 +98,7 @@ def mesh_shape(kind: str, lengths: np.ndarray, rotation: np.ndarray, folded: tup
             occ.intersect([(3, tag)], [(3, half)])
         occ.synchronize()
 
-    points, cells = generate(build, Sizes(sizes.bulk * unit, sizes.contact * unit, sizes.near * unit, sizes.slack * unit), TURN.get(kind, 0))
+    points, cells = generate(build, Sizes(bulk * unit, min(bulk, sizes.contact) * unit, sizes.near * unit, sizes.slack * unit), TURN.get(kind, 0))
     points = points / unit
     faces = boundary(cells)
     labels = np.full(len(faces), FREE)
@@ -134,7 +135,8 @@ def _grade(gmsh, sizes: Sizes) -> None:
     """The size grows linearly with the distance from the points where the body touches."""
     if not len(sizes.near) or sizes.contact >= sizes.bulk:
         return
-    sources = [gmsh.model.geo.addPoint(*point) for point in sizes.near[::-(-len(sizes.near) // MOST_SOURCES)]]
+    free = 1 + max(tag for _, tag in gmsh.model.getEntities(0))      # whose own numbers do not know those of another kernel
+    sources = [gmsh.model.geo.addPoint(*point, tag=free + k) for k, point in enumerate(sizes.near[::-(-len(sizes.near) // MOST_SOURCES)])]
     gmsh.model.geo.synchronize()
     field = gmsh.model.mesh.field
     distance, size = field.add("Distance"), field.add("Threshold")

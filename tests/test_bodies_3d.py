@@ -1,0 +1,349 @@
+"""Scenes of bodies in three dimensions: shapes and their distances, meshes, files, symmetry, what is refused, and runs."""
+
+import math
+import time
+
+import numpy as np
+import pytest
+
+from orchestrate import approach, assembly, mesh, mirror, multibody, parameters, run, solid_file, solid_mesh, solids
+from orchestrate.failure import BadInput
+from orchestrate.scene import load
+from orchestrate.tables import to_toml
+from test_direct import call
+
+SCRIPT = "bodies-3d"
+BALL = {"name": "ball", "shape": "ball", "radius": 0.05, "position": [0, 0.051, 0], "velocity": [0, -8, 0]}
+BLOCK = {"name": "block", "shape": "box", "width": 0.24, "height": 0.08, "depth": 0.2, "position": [0, -0.04, 0]}
+FLOOR = {"name": "floor", "kind": "plane", "point": [0, -0.5, 0], "normal": [0, 1, 0]}
+SCENE = {"dimension": "3d", "law": "neohookean", "young": 7e6, "nu": 0.45, "density": 1722, "accuracy": 0.1}
+
+
+def read(*tables: dict, obstacles=(FLOOR,), folder=multibody.SCENES, **top) -> multibody.Multibody:
+    return multibody.read(SCENE | top | {"body": [{"position": [0, 0, 0]} | table for table in tables], "obstacle": list(obstacles)}, folder, "scene")
+
+
+def quality(m: solid_mesh.SolidMesh) -> np.ndarray:
+    """Volume over that of the regular tetrahedron with the same mean square edge: 1 is best."""
+    corners = m.points[m.cells]
+    squares = [((corners[:, i] - corners[:, j])**2).sum(axis=1) for i in range(4) for j in range(i)]
+    return m.volumes * 6 * math.sqrt(2) / np.mean(squares, axis=0) ** 1.5
+
+
+def full_on(m: solid_mesh.SolidMesh, label: int) -> int:
+    """Tetrahedra with all four corners on faces of a label."""
+    on = np.zeros(len(m.points), dtype=bool)
+    on[m.faces[m.labels == label]] = True
+    return int(on[m.cells].all(axis=1).sum())
+
+
+# ---- shapes
+
+SHAPES = {   # volume, area
+    "ball": (solids.Ball(0.3), 4 / 3 * math.pi * 0.027, 4 * math.pi * 0.09),
+    "box": (solids.Box(np.array([0.4, 0.1, 0.2])), 0.008, 2 * (0.04 + 0.02 + 0.08)),
+    "cylinder": (solids.Cylinder(0.2, 0.5), math.pi * 0.02, 2 * math.pi * 0.2 * 0.7),
+}
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_shapes_know_their_surface(name):
+    """Volume and area; samples lie on the surface, as close as asked; distances grow by the way from the surface, and are negative inside."""
+    shape, volume, area = SHAPES[name]
+    assert shape.volume == pytest.approx(volume) and shape.area == pytest.approx(area)
+    points = shape.sampled(0.02)
+    assert abs(shape.gap(points)).max() < 1e-12 and shape.gap(np.zeros((1, 3)))[0] < 0
+    assert 0.3 < len(points) * 0.02**2 / area < 3
+    assert shape.gap(np.array([[0, 10.0, 0]]))[0] == pytest.approx(10 - shape.extent[1] / 2)
+    assert np.linalg.norm(points, axis=1).max() == pytest.approx(shape.reach, rel=1e-6)
+
+
+def test_a_surface_of_triangles_has_the_distances_of_its_body():
+    """Of a meshed box: outside, near edges and corners, and inside."""
+    sizes = mesh.Sizes(0.05, 0.05, np.empty((0, 3)), 0.0)
+    made = solid_mesh.mesh_shape("box", np.array([0.4, 0.1, 0.2]), np.eye(3), (), sizes, 0.1)
+    surface, box = solids.Surface(made.points[made.faces]), SHAPES["box"][0]
+    points = np.random.default_rng(1).uniform(-0.3, 0.3, (500, 3))
+    assert surface.gap(points) == pytest.approx(box.gap(points), abs=1e-12)
+    assert surface.volume == pytest.approx(box.volume) and surface.area == pytest.approx(box.area)
+
+
+def test_places_turns_and_motions():
+    """turn is an axis times an angle in degrees, angle and a single spin are about z; a box turned by 90 degrees about x stands on its depth."""
+    body, = read(BLOCK | {"position": [1, 2, 3], "turn": [90, 0, 0], "spin": 4}).bodies
+    assert body.placed.points[:, 1].max() == pytest.approx(2.1) and body.spin.tolist() == [0, 0, 4]
+    assert np.array_equal(solids.rotation(np.radians([0, 0, 90])), [[0, -1, 0], [1, 0, 0], [0, 0, 1]])
+    turned, = read(BLOCK | {"angle": 30, "spin": [1, 2, 3]}).bodies
+    assert turned.angle == pytest.approx([0, 0, math.pi / 6]) and turned.spin.tolist() == [1, 2, 3]
+    later = turned.at(0.1, np.zeros(3)).rotation
+    assert later == pytest.approx(solids.rotation(np.array([0.1, 0.2, 0.3])) @ solids.rotation(np.radians([0, 0, 30])))
+
+
+def test_balls_meet_where_geometry_says():
+    """Two balls off their centres: the part of their speed along the line of centres at the touch, and across it; the radius of the smaller."""
+    met, = approach.meetings(read(BALL | {"position": [-0.2, 0, 0], "velocity": [3, 0, 0]}, BALL | {"name": "other", "radius": 0.08, "position": [0.2, 0.03, 0.04], "velocity": [-1, 0, 0]},
+                                  obstacles=()))
+    sine = 0.05 / 0.13
+    assert met.closing == pytest.approx(4 * math.sqrt(1 - sine**2), rel=1e-3) and met.sliding == pytest.approx(4 * sine, rel=1e-3) and met.radius == 0.05
+
+
+# ---- meshes
+
+@pytest.mark.parametrize("symmetry, copies", [("full", 1), ("half", 2), ("quarter", 4)])
+def test_bodies_are_meshed_whole_or_by_symmetry(symmetry, copies):
+    """The mesh makes the bodies' volumes; spheres are spheres and planes of symmetry planes to rounding, with the labels 2 (x = 0) and 3 (z = 0);
+    sound tetrahedra, none with all corners on the surface of the ball."""
+    scene = read(BALL, BLOCK, {"shape": "cylinder", "radius": 0.04, "height": 0.1, "position": [0, 0.2, 0]}, symmetry=symmetry)
+    built = assembly.assemble(scene)
+    m = built.mesh
+    assert m.volumes.min() > 0 and quality(m).min() > 0.1 and np.percentile(quality(m), 5) > 0.4
+    volumes = copies * np.bincount(built.regions, weights=m.volumes)
+    assert volumes[1] == pytest.approx(0.24 * 0.08 * 0.2, rel=1e-12)
+    assert volumes[0] == pytest.approx(4 / 3 * math.pi * 0.05**3, rel=0.08) and volumes[2] == pytest.approx(math.pi * 0.04**2 * 0.1, rel=0.03)
+    assert set(m.labels) == {1: {1}, 2: {1, 3}, 4: {1, 2, 3}}[copies]
+    assert (m.points[m.faces[m.labels == 2]][..., 0] == 0).all() and (m.points[m.faces[m.labels == 3]][..., 2] == 0).all()
+    assert m.points[:, 2].min() >= 0 or copies == 1
+    ball = np.unique(m.faces[(m.labels == 1) & (m.faces.max(axis=1) < m.cells[built.regions == 1].min())])
+    assert abs(np.linalg.norm(m.points[ball] - built.centres[0], axis=1) / 0.05 - 1).max() < 1e-12
+    first = solid_mesh.SolidMesh(m.points, m.cells[built.regions == 0], m.faces, m.labels)
+    assert full_on(first, 1) == 0
+    edges = np.sort(m.faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()          # the surface is closed
+
+
+def test_bodies_stand_apart_above_each_other():
+    """On the axis y, no vertex in common, the shift of each leads to its place."""
+    scene = load("ball-block")
+    built = assembly.assemble(scene)
+    heights = [built.mesh.points[np.unique(built.mesh.cells[built.regions == k])][:, 1] for k in (0, 1)]
+    assert heights[0].max() < heights[1].min() and not built.centres[:, [0, 2]].any()
+    rows = [line.split() for line in built.data.splitlines()]
+    assert rows[0] == ["ffimpact-bodies-3d", "1"] and rows[1] == ["copies", "4"]
+    for row, body in zip(rows[4:6], scene.bodies):
+        assert len(row) == 17 and np.array(row[5:8], dtype=float) + np.array(row[8:11], dtype=float) == pytest.approx(body.position)
+    assert rows[6] == ["spheres", "1"]
+
+
+def test_meshes_are_fine_where_bodies_touch():
+    """Faces below the ball's lowest point and in the middle of the block's upper side, not elsewhere; turned along with the body."""
+    scene = read(BALL, BLOCK, mesh_size=0.03, contact_mesh_size=0.006, symmetry="full")
+    built = assembly.assemble(scene)
+    m = built.mesh
+    size = np.sqrt(np.linalg.norm(np.cross(m.points[m.faces[:, 1]] - m.points[m.faces[:, 0]], m.points[m.faces[:, 2]] - m.points[m.faces[:, 0]]), axis=1))
+    from_touch = np.linalg.norm(m.points[m.faces].mean(axis=1) - [0, -0.05, 0], axis=1)
+    assert size[from_touch < 0.008].max() < 0.01 and size[(from_touch > 0.08) & (m.points[m.faces][..., 1].max(axis=1) < 0.051)].min() > 0.012
+    upper = np.linalg.norm(m.points[m.faces].mean(axis=1) - built.centres[1] - [0, 0.04, 0], axis=1)
+    assert size[upper < 0.008].max() < 0.01
+    edge = {"shape": "box", "width": 0.1, "height": 0.1, "depth": 0.1, "position": [0, 0.2, 0], "angle": 45, "velocity": [0, -5, 0]}
+    tilted = assembly.assemble(read(edge, obstacles=[FLOOR | {"point": [0, 0, 0]}], mesh_size=0.03, contact_mesh_size=0.008)).mesh
+    lengths = np.linalg.norm(tilted.points[tilted.faces[:, 0]] - tilted.points[tilted.faces[:, 1]], axis=1)
+    assert tilted.points[:, 1].min() == pytest.approx(-0.05 * math.sqrt(2)) and tilted.points[tilted.faces[lengths.argmin(), 0], 1] < -0.04
+
+
+def test_too_many_unknowns_are_refused():
+    """Before gmsh meshes for hours, and before FreeFEM runs for days: the number, and what helps."""
+    began = time.monotonic()
+    for entries in ({"mesh_size": 1e-4}, {"mesh_size": 0.01, "contact_mesh_size": 1e-4}):
+        with pytest.raises(BadInput, match=r"mesh_size: 'ball' would have about .* tetrahedra \(accepted: up to 400000; larger mesh_size"):
+            assembly.assemble(read(BALL | entries))
+    with pytest.raises(BadInput, match=r"mesh_size: the bodies have [0-9]* unknowns \(accepted: up to 200000"):
+        assembly.assemble(read(BALL | {"mesh_size": 0.0028}, symmetry="full"))
+    assert time.monotonic() - began < 60
+
+
+# ---- files
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory):
+    """A ball as a mesh in gmsh's formats, of second order and in Medit's, a pierced plate as geometry, a box with a named surface."""
+    folder = tmp_path_factory.mktemp("files")
+    with mesh.gmsh_session() as gmsh:
+        gmsh.model.occ.addSphere(1, 2, 3, 0.05)
+        gmsh.model.occ.synchronize()
+        gmsh.option.setNumber("Mesh.MeshSizeMax", 0.02)
+        gmsh.model.mesh.generate(3)
+        for name, version, binary in (("41.msh", 4.1, 0), ("41-binary.msh", 4.1, 1), ("22.msh", 2.2, 0), ("22-binary.msh", 2.2, 1), ("ball.mesh", 4.1, 0)):
+            gmsh.option.setNumber("Mesh.MshFileVersion", version)
+            gmsh.option.setNumber("Mesh.Binary", binary)
+            gmsh.write(str(folder / name))
+        gmsh.model.mesh.setOrder(2)
+        gmsh.write(str(folder / "second-order.msh"))
+    with mesh.gmsh_session() as gmsh:
+        occ = gmsh.model.occ
+        occ.cut([(3, occ.addBox(0, 0, 0, 200, 50, 100))], [(3, occ.addCylinder(50, -1, 50, 0, 60, 0, 20))])
+        occ.synchronize()
+        gmsh.write(str(folder / "plate.step"))        # in mm, as the file says
+    (folder / "named.geo").write_text('SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 0.2, 0.06, 0.2};\n'
+                                      'Physical Surface("contact") = Surface In BoundingBox {-0.01, -0.01, -0.01, 0.21, 0.01, 0.21};\nPhysical Volume("body") = {1};\n')
+    (folder / "other.geo").write_text('SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 0.2, 0.06, 0.2}; Physical Surface("top") = {4};\n')
+    (folder / "flat.geo").write_text('SetFactory("OpenCASCADE"); Rectangle(1) = {0, 0, 0, 1, 1};\n')
+    (folder / "text.msh").write_text("no mesh")
+    return folder
+
+
+@pytest.mark.parametrize("name", ["41.msh", "41-binary.msh", "22.msh", "22-binary.msh", "second-order.msh", "ball.mesh"])
+def test_meshes_of_files(files, name):
+    """The same ball in every format, of second order by its corners: found to be one, about its centre, all of its surface may touch."""
+    body, = read({"shape": "mesh", "file": name, "position": [0, 0.3, 0]}, folder=files).bodies
+    assert body.outline.radius == pytest.approx(0.05, rel=1e-8) if name != "ball.mesh" else body.outline.reach == pytest.approx(0.05, rel=1e-3)
+    assert body.mesh.volumes.sum() == pytest.approx(4 / 3 * math.pi * 0.05**3, rel=0.05) and body.mesh.volumes.min() > 0
+    assert abs(body.mesh.centre).max() < 1e-4 and set(body.mesh.labels) == {1}
+
+
+def test_geometries_are_meshed_with_the_sizes_of_the_scene(files):
+    """A STEP file in its own unit: volume of the plate with its hole, finer where it will touch; turned and in place."""
+    scene = read({"shape": "mesh", "file": "plate.step", "position": [0, 0.3, 0], "turn": [0, 0, 30], "velocity": [0, -5, 0], "mesh_size": 0.025, "contact_mesh_size": 0.008},
+                 folder=files, obstacles=[FLOOR | {"point": [0, 0, 0]}])
+    m = assembly.assemble(scene).mesh
+    assert m.volumes.sum() == pytest.approx(0.2 * 0.05 * 0.1 - math.pi * 0.02**2 * 0.05, rel=0.01)
+    assert abs(m.centre).max() < 1e-9 and scene.bodies[0].outline.extent == pytest.approx([0.2, 0.05, 0.1], rel=1e-6)
+    lowest = m.points[:, 1].min()
+    lengths, middle = np.linalg.norm(m.points[m.faces[:, 0]] - m.points[m.faces[:, 1]], axis=1), m.points[m.faces].mean(axis=1)
+    assert lengths[middle[:, 1] < lowest + 0.006].max() < 0.014 and lengths[middle[:, 1] > 0.05].mean() > 0.016
+
+
+def test_named_surfaces_may_touch(files):
+    """Faces of the physical surface `contact` have the label 1, all others 4; a cavity never touches."""
+    m = assembly.assemble(read({"shape": "mesh", "file": "named.geo", "position": [0, 0.1, 0]}, folder=files, obstacles=[FLOOR | {"point": [0, 0, 0]}])).mesh
+    below = (m.points[m.faces][..., 1] < m.points[:, 1].min() + 1e-6).all(axis=1)
+    assert np.array_equal(m.labels == 1, below) and set(m.labels) == {1, 4}
+    (files / "hollow.geo").write_text('SetFactory("OpenCASCADE"); Sphere(1) = {0, 0, 0, 1}; Sphere(2) = {0, 0, 0, 0.5}; BooleanDifference(3) = { Volume{1}; Delete; }{ Volume{2}; Delete; };\n')
+    hollow = solid_file.read(files / "hollow.geo")
+    away = np.linalg.norm(hollow.points[hollow.faces].mean(axis=1), axis=1)
+    assert np.array_equal(hollow.labels == 1, away > 0.7) and (hollow.labels == 4).any()
+
+
+@pytest.mark.parametrize("name, words", [
+    ("none.step", "body.1.file: 'none.step' is no file"), ("ball.stl", "body.1.file: 'ball.stl' is no mesh or geometry (accepted: .msh, .mesh, .geo, .step, .stp)"),
+    ("text.msh", "body.1.file: 'text.msh': "), ("flat.geo", "body.1.file: 'flat.geo': it has no volume"),
+    ("other.geo", "body.1.file: 'other.geo': none of its physical surfaces (top) has the name 'contact'")])
+def test_files_that_cannot_be_used_are_named(files, name, words):
+    """The entry, the file as given, and what is wrong with it, in one line."""
+    with pytest.raises(BadInput) as caught:
+        read({"shape": "mesh", "file": name}, folder=files)
+    assert words in str(caught.value) and "\n" not in str(caught.value) and caught.value.code == 10
+
+
+# ---- symmetry
+
+@pytest.mark.parametrize("entries, top, copies", [
+    ({}, {}, 4), ({"velocity": [1, -8, 0]}, {}, 2), ({"velocity": [0, -8, 1]}, {}, 1), ({"spin": 5}, {}, 2), ({"spin": [0, 5, 0]}, {}, 1),
+    ({"position": [0.01, 0.051, 0]}, {}, 2), ({"position": [0, 0.051, 0.01]}, {}, 1), ({}, {"body_force_x": 1}, 2), ({}, {"symmetry": "half"}, 2), ({}, {"symmetry": "full"}, 1)])
+def test_as_much_symmetry_as_there_is(entries, top, copies):
+    """A quarter where nothing breaks it, half where all moves in the plane z = 0, else all; less where less is asked for."""
+    assert mirror.copies(read(BALL | entries, BLOCK, **top)) == copies
+
+
+@pytest.mark.parametrize("turn, copies", [([0, 0, 90], 4), ([0, 0, 30], 2), ([0, 30, 0], 1), ([90, 90, 0], 1)])
+def test_a_turned_box_keeps_what_symmetry_it_has(turn, copies):
+    """About z it has its mirror image in z = 0 at any angle, in x = 0 at right angles; a cylinder on its side likewise."""
+    assert mirror.copies(read(BALL | {"position": [0, 0.3, 0]}, BLOCK | {"turn": turn})) == copies
+    lying = {"shape": "cylinder", "radius": 0.03, "height": 0.1, "position": [0, -0.04, 0], "turn": turn}
+    about_itself = turn == [0, 30, 0]
+    assert mirror.copies(read(BALL | {"position": [0, 0.3, 0]}, lying)) == (4 if about_itself else copies)
+
+
+def test_obstacles_break_symmetry():
+    """A wall that faces x leaves half, one that faces z nothing; a sphere off the axis as well."""
+    for obstacle, copies in ((FLOOR | {"normal": [1, 1, 0], "point": [-1, 0, 0]}, 2), (FLOOR | {"normal": [0, 1, 1], "point": [0, -1, -1]}, 1),
+                             ({"kind": "sphere", "centre": [0, -1, 0], "radius": 0.5}, 4), ({"kind": "bowl", "centre": [0.1, 0, 0], "radius": 3}, 2),
+                             (FLOOR | {"velocity": [0, 0, 1]}, 1)):
+        assert mirror.copies(read(BALL, BLOCK, obstacles=[obstacle])) == copies
+
+
+# ---- what is refused
+
+BAD = [
+    ({"position": [0, 1]}, {}, "body.1.position: '[0, 1]' is no [x, y, z] (accepted: three numbers"),
+    ({"velocity": [0, 1]}, {}, "body.1.velocity: '[0, 1]' is no [x, y, z]"),
+    ({"turn": [0, 0, 1], "angle": 3}, {}, "body.1.angle: '3' stands beside turn"),
+    ({"shape": "disc"}, {}, "body.1.shape: 'disc' is not known (accepted: ball|box|cylinder|mesh)"),
+    ({"width": 3}, {}, "body.1.width: '3' belongs to no such key"),
+    ({"speed": 3}, {}, "body.1.speed: '3' belongs to no such key"),
+    ({"radius": 0.3}, {}, "body.1.position: 'ball' overlaps 'block' (body.2)"),
+    ({}, {"symmetry": "third"}, "symmetry: 'third' is not known (accepted: auto|full|half|quarter)"),
+    ({"velocity": [0, -8, 1]}, {"symmetry": "half"}, "symmetry: half, but 'ball' moves along z (accepted: auto|full)"),
+    ({"spin": 1}, {"symmetry": "quarter"}, "symmetry: quarter, but 'ball' spins out of the plane x = 0 (accepted: auto|full|half)"),
+    ({}, {"contact": {"pairing": "pairwise"}}, "pairing: bodies-3d takes no such parameter"),
+    ({}, {"script": "bodies"}, "script: 'bodies' is not that of [[body]] tables in dimension = '3d'"),
+]
+
+
+@pytest.mark.parametrize("entries, top, words", BAD, ids=[words.split(" (")[0] for *_, words in BAD])
+def test_what_is_wrong_is_named(entries, top, words):
+    """One line with the entry, the value and what is accepted, exit code 10."""
+    with pytest.raises(BadInput) as caught:
+        read(BALL | entries, BLOCK, **top)
+    assert words in str(caught.value) and caught.value.code == 10 and "\n" not in str(caught.value)
+
+
+def test_symmetry_is_an_entry_of_three_dimensions():
+    """In the plane the table has no such key."""
+    with pytest.raises(BadInput, match="^symmetry: 'half' belongs to no such key"):
+        multibody.read({"symmetry": "half", "body": [{"shape": "disc", "radius": 1, "position": [0, 0]}]}, multibody.SCENES, "scene")
+
+
+def test_three_numbers_of_obstacles():
+    """Planes, spheres and bowls with points and vectors [x, y, z], as scene.dat has them."""
+    scene = read(BALL, obstacles=[FLOOR | {"normal": [0, 2, 0], "velocity": [0, 1, 0]}, {"kind": "sphere", "centre": [0, -1, 0], "radius": 0.5}])
+    lines = assembly.assemble(scene).data.splitlines()
+    assert "plane 6 0.0 -0.5 0.0 0.0 1.0 0.0 0.0 1.0 0.0" in lines and "sphere 4 0.0 -1.0 0.0 0.5 0.0 0.0 0.0" in lines
+    with pytest.raises(BadInput, match=r"obstacle.1.kind: 'polyline' is not known .accepted: plane.sphere.bowl."):
+        read(BALL, obstacles=[{"kind": "polyline", "vertices": [[0, 0], [1, 1]]}])
+
+
+# ---- runs
+
+@pytest.fixture(scope="module")
+def falls(tmp_path_factory):
+    """A ball on a rigid plane: a quarter of it, half, and all, on meshes of the same sizes."""
+    folder, found = tmp_path_factory.mktemp("falls"), {}
+    for symmetry in ("quarter", "half", "full"):
+        scene = read(BALL | {"position": [0, 0.05, 0], "velocity": [0, -2, 0]}, obstacles=[FLOOR | {"point": [0, 0, 0]}], symmetry=symmetry)
+        found[symmetry] = run.run(scene, {}, folder / symmetry, estimate=False)
+    return found
+
+
+def test_parts_stand_for_the_whole(falls):
+    """Mass, momentum and energy of the whole ball, whatever was computed; the rebounds and impulses agree to what the meshes differ."""
+    for symmetry, found in falls.items():
+        s = found.summary
+        assert s["energy_initial"] == pytest.approx(4 / 3 * math.pi * 0.05**3 * 1722 * 2**2 / 2, rel=0.01), symmetry
+        assert s["impulse"] == pytest.approx(falls["full"].summary["impulse"], rel=0.01) and s["energy_drift"] < 1e-8
+        assert s["rebound_vy"] == pytest.approx(falls["full"].summary["rebound_vy"], rel=0.02)
+        assert s["contact_time"] == pytest.approx(falls["full"].summary["contact_time"], rel=0.06)
+
+
+def test_it_is_the_ball_of_the_other_dimension(falls, tmp_path):
+    """The same scene as a body of revolution, to the coarse meshes' error."""
+    scene = multibody.read(SCENE | {"dimension": "axisymmetric", "body": [{"shape": "ball", "radius": 0.05, "position": 0.05, "velocity": -2}],
+                                    "obstacle": [{"kind": "plane", "point": [0, 0], "normal": [0, 1]}]}, tmp_path, "flat")
+    flat, solid = run.run(scene, {}, tmp_path / "flat", estimate=False).summary, falls["quarter"].summary
+    assert solid["impulse"] == pytest.approx(flat["impulse"], rel=0.02) and solid["rebound_vy"] == pytest.approx(flat["rebound_vy"], rel=0.02)
+    assert solid["contact_time"] == pytest.approx(flat["contact_time"], rel=0.08)
+
+
+def test_the_scene_as_used_makes_the_same_run(falls, tmp_path):
+    """scene.toml says dimension and symmetry as used and makes the same data file again; the script alone leaves the same history."""
+    found = falls["quarter"]
+    again = load(str(found.folder / "scene.toml"))
+    assert again.script == SCRIPT and set(again.values) <= set(parameters.names(SCRIPT)) and again.given["symmetry"] == "quarter"
+    made = assembly.assemble(again)
+    assert made.data == (found.folder / "scene.dat").read_text() and to_toml(made.used) == (found.folder / "scene.toml").read_text()
+    flags = [text for name, value in made.values.items() for text in (f"-{name}", str(value))]
+    code, _, _ = call(*flags, "-mesh", str(found.folder / "mesh.mesh"), "-bodies", str(found.folder / "scene.dat"), "-out", str(tmp_path / "direct"),
+                      cwd=tmp_path, script=SCRIPT)
+    assert code == 0 and (tmp_path / "direct/history.csv").read_text() == (found.folder / "history.csv").read_text()
+
+
+def test_a_ball_on_a_free_block(tmp_path):
+    """A quarter of both, coarse and until shortly after the touch: no force from outside, so the momentum stays, and energy; the block is pushed down."""
+    found = run.run(read(BALL, BLOCK, obstacles=(), end_time=8e-4, mesh_size=0.04, contact_mesh_size=0.025), {}, tmp_path / "block", estimate=False)
+    h, s = found.history, found.summary
+    assert s["dofs"] < 4000 and h["normal_force"].max() > 100 and s["energy_drift"] < 1e-8
+    assert np.ptp(h["momentum_y"]) < 1e-8 * abs(h["momentum_y"]).max() and h["vy_2"][-1] < 0 and h["vy_1"][-1] > -8
+    assert list(h) == found_columns(found) and found.scene["symmetry"] == "quarter"
+
+
+def found_columns(found) -> list[str]:
+    return load(str(found.folder / "scene.toml")).columns
