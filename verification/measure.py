@@ -15,6 +15,8 @@ from orchestrate import assembly, freefem, multibody, parameters, results
 from orchestrate.failure import Failure
 from orchestrate.parameters import ROOT, Value
 
+from . import solids
+
 SCRIPTS = Path(__file__).resolve().parent
 LINE = re.compile(r"^([a-zA-Z]\w*) (\S+)$", re.MULTILINE)
 LIMIT = 120                 # s
@@ -48,6 +50,13 @@ def bodies(folder: Path, tables: dict, **given: Value | Path) -> Outcome:
     """edp/bodies.edp for the scene in these tables (orchestrate.multibody), with more flags, run into `folder`/run."""
     out = folder / "run"
     _start("edp/bodies.edp", (*_flags(prepared(folder, tables) | given), "-out", str(out)), ROOT)
+    return outcome(out)
+
+
+def solid_bodies(folder: Path, scene: solids.Scene, **given: Value | Path) -> Outcome:
+    """edp/bodies-3d.edp for a scene in three dimensions (solids.py), with more flags, run into `folder`/run."""
+    out = folder / "run"
+    _start("edp/bodies-3d.edp", (*_flags(solids.write(scene, folder) | given), "-out", str(out)), ROOT)
     return outcome(out)
 
 

@@ -1,0 +1,212 @@
+"""Bodies in three dimensions: the gap between them (edp/core/contact/pair-3d.idp, paper (9)), rigid obstacles, and whole runs of edp/bodies-3d.edp."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from . import measure as runs
+from .solids import Scene, ball, brick, write
+
+ROUND_OFF = 1e-13
+CASES = [{}, {"degree": 1, "tilt": 0.7}, {"tilt": 2.5, "depth": 0.1, "noise": 0.1}, {"corner": 1, "depth": 0.1}, {"corner": 2, "depth": 0.1, "degree": 1}, {"noise": 0, "depth": 0}]
+
+
+@pytest.fixture
+def march(tmp_path):
+    """march(scene, name=value, ...): edp/bodies-3d.edp run for it."""
+    return lambda scene, name="run", **given: runs.solid_bodies(tmp_path / name, scene, **{"accuracy": 0.1} | given)
+
+
+# ---- rows
+
+@pytest.mark.parametrize("case", CASES)
+def test_rows_conserve(measure, case):
+    """B d = q1 - q0, also when the step turns the pair by a radian or goes along the block; no row of B, S_1, S_2 carries a force or a moment about the
+    middle configuration, inside faces as on edges and vertices; a turn of the pair changes no gap; a step begins with the penetrations the last ended with."""
+    found = measure("pair-3d", **case)
+    assert found["randomInside"] > 10 and (found["edges"] > 20 or case.get("noise") == 0)
+    for name in ("random", "turn"):
+        assert max(found[name + "Exact"], found[name + "Force"], found[name + "Moment"]) < ROUND_OFF
+        assert 0.1 < found[name + "Largest"] < 3
+    assert max(found["turnChange"], found["slideExact"], found["slideJump"]) < ROUND_OFF
+
+
+def shapes(r, s):
+    """Shape functions (n, 6) of a curved face at r, s, in the order of boundary-3d.idp."""
+    q = 1 - r - s
+    return np.stack([q * (2 * q - 1), r * (2 * r - 1), s * (2 * s - 1), 4 * r * s, 4 * s * q, 4 * q * r], -1)
+
+
+def closest(x: np.ndarray, nodes: np.ndarray, grid: int = 24, rounds: int = 12) -> float:
+    """Distance of a point to curved faces (n, 6 nodes, 3): the best of a grid of places on each, then ever finer grids around the best of all."""
+    a, b = (v.ravel() for v in np.meshgrid(np.linspace(0, 1, grid), np.linspace(0, 1, grid), indexing="ij"))
+    keep = a + b <= 1 + 1e-12
+    away = np.linalg.norm(np.einsum("ga,fac->fgc", shapes(a[keep], b[keep]), nodes) - x, axis=-1)
+    best = math.inf
+    for f in np.argsort(away.min(1))[:4]:
+        r, s, size = a[keep][away[f].argmin()], b[keep][away[f].argmin()], 1.0 / grid
+        for _ in range(rounds):
+            p, q = (v.ravel() for v in np.meshgrid(np.linspace(r - size, r + size, 11), np.linspace(s - size, s + size, 11), indexing="ij"))
+            p, q = p.clip(0, 1), q.clip(0, 1)
+            q = np.minimum(q, 1 - p)
+            d = np.linalg.norm(shapes(p, q) @ nodes[f] - x, axis=-1)
+            r, s, size = p[d.argmin()], q[d.argmin()], size / 4
+        best = min(best, d.min())
+    return best
+
+
+def test_gaps_are_those_of_an_exhaustive_search(measure, tmp_path_factory):
+    """Distance to every curved face of the other body; who is inside has a penetration."""
+    path = tmp_path_factory.mktemp("pair") / "configuration"
+    measure("pair-3d", place=path, noise=0.02)
+    lines = path.read_text().splitlines()
+    count, points, reach = (float(word) for word in lines[0].split())
+    table = np.array([line.split() for line in lines[1:1 + int(count)]], float)
+    where = np.array([line.split() for line in lines[1 + int(count):]], float)
+    assert len(where) == points
+    nodes, near = table[:, 2:].reshape(-1, 3, 6).transpose(0, 2, 1), 0
+    for b in (0, 1):
+        other = nodes[table[:, 0] != b]
+        for row in where[where[:, 0] == b][::7]:
+            if -reach / 4 < row[4]:
+                near += 1
+                assert abs(row[4]) == pytest.approx(closest(row[1:4], other), abs=1e-8)
+    assert near > 15
+
+
+@pytest.mark.parametrize("degree", [2, 1])
+def test_rigid_obstacles(measure, degree):
+    """Planes, spheres and a bowl that move: gaps of the closed forms; B d and S d with the obstacles' own motion are exact; t1, t2, n is a frame; the force of a
+    round obstacle goes through its centre."""
+    found = measure("obstacles-3d", degree=degree)
+    assert found["near"] > 500
+    assert max(found[name] for name in ("gap", "exact", "slip", "frame", "moment", "force")) < ROUND_OFF
+
+
+# ---- runs
+
+def spread(history, *names: str) -> float:
+    return max(np.ptp(history[name]) for name in names)
+
+
+def oblique(friction: float) -> Scene:
+    """Two balls of unlike size, material and mesh that hit each other off centre, both spinning about axes of their own."""
+    n = np.array([0.3, 1, 0.5]) / math.sqrt(1.34) * (0.045 + 5e-4)
+    return Scene([ball((0, 0, 0), 0.05, 1, shift=tuple(n), velocity=(1, -2, -0.5), spin=(10, 20, -15)),
+                  ball((0, -0.15, 0), 0.04, 2, turn=0.4, material=("svk", 5e6, 0.3, 1200.0), shift=tuple((0, 0.15, 0) - n), velocity=(-0.2, 2, 0.3), spin=(5, 0, 8))],
+                 pairs=[(0, 1, 1e9, friction, 0.7 * friction)])
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.4])
+def test_two_bodies_conserve(march, friction):
+    """Linear momentum to 1e-13, angular momentum about all axes to 1e-9, energy with the work of friction to 1e-9 (1e-8), from the flight to the last row."""
+    run = march(oblique(friction), friction_static=friction)
+    history = run.history
+    scale = np.abs(history["momentum_y_1"]).max()
+    assert run.summary["contact_intervals"] >= 1 and run.summary["impulse"] > 0.5 * scale
+    assert spread(history, "momentum_x", "momentum_y", "momentum_z") < 1e-13 * scale
+    assert spread(history, "angular_momentum", "angular_momentum_x", "angular_momentum_y") < 1e-9 * scale * 0.05
+    assert np.abs(history["balance"]).max() < (1e-8 if friction else 1e-9) * run.summary["energy_initial"]
+    assert (run.summary["friction_work"] > 1e-2) == (friction > 0)
+    assert abs(run.summary["spin_x_2"] - 5) > 1e-3                # the hit turns it out of its plane
+
+
+def head_on(count, obstacles=()) -> Scene:
+    """V15: R = 10 mm, E = 100 MPa, nu = 0.3, rho = 2500, closing at 1 m/s; or one of the two, on a plane; a quarter, finer where they touch."""
+    material, R = ("neohookean", 1e8, 0.3, 2500.0), 0.01
+    one = ball((0, 0, 0), R, count, 4, focus=-1, material=material, shift=(0, R + 1e-6, 0), velocity=(0, -0.5, 0))
+    two = ball((0, -0.03, 0), R, count, 4, focus=1, material=material, shift=(0, 0.03 - R - 1e-6, 0), velocity=(0, 0.5, 0))
+    return Scene([one] if obstacles else [one, two], list(obstacles), [(0, -1, 2e11, 0, 0)] if obstacles else [(0, 1, 1e11, 0, 0)],
+                 (R, 1e8, 0.3, 2500.0, 0.5, 90.0, 0.0), 4)
+
+
+FLOOR = ("plane", (0, 0, 0, 0, 1, 0), (0, 0, 0))
+
+
+def test_two_equal_balls_are_a_ball_on_a_plane_of_doubled_penalty(march):
+    """Head-on, to 0.5 %: contact time, peak force, rebound; and Hertz' T = 2.943 delta / v, F = 4/3 E* R*^1/2 delta^3/2 to 10 % on two cubes across the contact."""
+    two, one = march(head_on((4, 3, 4)), "two").summary, march(head_on((4, 3, 4), (FLOOR,)), "one").summary
+    for name in ("contact_time", "peak_force"):
+        assert two[name] == pytest.approx(one[name], rel=5e-3)
+    assert two["rebound_vy_1"] == pytest.approx(one["rebound_vy"], rel=5e-3)
+    modulus, mass = 1e8 / 2 / (1 - 0.3**2), 2500 * math.pi * 4e-6 / 3 / 2
+    delta = (15 * mass / (16 * modulus * math.sqrt(0.005))) ** 0.4
+    assert two["contact_time"] == pytest.approx(2.943 * delta, rel=0.1)
+    assert two["peak_force"] == pytest.approx(4 / 3 * modulus * math.sqrt(0.005) * delta**1.5, rel=0.1)
+
+
+def pressed(measure, folder: Path, below: tuple, above: tuple, penalty: float) -> dict:
+    material = ("neohookean", 1.0, 0.3, 1.0)
+    scene = Scene([brick((-0.5, 0, -0.5), (0.5, 0.5, 0.5), below, material=material), brick((-0.5, 1, -0.5), (0.5, 1.5, 0.5), above, material=material, shift=(0, -0.5, 0))],
+                  [FLOOR, ("plane", (0, 1, 0, 0, -1, 0), (0, -1e-4, 0))], ball=(0.5, 1.0, 0.3, 1.0, 0.01, 90.0, 0.0))
+    return measure("pressed-3d", **write(scene, folder), penalty=penalty, integrator="backward-euler", dt=10, end_time=30, tolerance=1e-10, accuracy=0.05, out=folder)
+
+
+def test_unlike_meshes_carry_a_constant_pressure(measure, tmp_path):
+    """V16: two blocks pressed together. The unevenness goes with penalty times element size over E: to 1 % where that is a quarter; like meshes to 1e-6."""
+    like, unlike = pressed(measure, tmp_path / "like", (3, 2, 3), (3, 2, 3), 10), pressed(measure, tmp_path / "unlike", (4, 2, 4), (3, 2, 3), 1)
+    for found in (like, unlike):
+        assert found["area"] == pytest.approx(1, rel=1e-9) and abs(found["balance"]) < 1e-3
+    assert like["uneven"] < 1e-6
+    assert unlike["uneven"] < 1e-2 and unlike["most"] < 1.015 * unlike["mean"] and unlike["least"] > 0.985 * unlike["mean"]
+
+
+def test_ball_on_a_block(march):
+    """A ball falls obliquely on a free block with friction: it rebounds, the block goes away, everything is kept."""
+    block = brick((-0.1, -0.2, -0.1), (0.1, -0.12, 0.1), (3, 2, 3), shift=(0, 0.12, 0))
+    scene = Scene([ball((0, 0.1, 0), 0.05, 2, shift=(0.01, -0.0499, 0.015), velocity=(1, -3, 0.5)), block], pairs=[(0, 1, 1e9, 0.3, 0.3)])
+    run = march(scene, friction_static=0.3)
+    history = run.history
+    scale = np.abs(history["momentum_y_1"]).max()
+    assert run.summary["rebound_vy_1"] > 0.5 and run.summary["rebound_vy_2"] < -0.3
+    assert run.summary["rebound_vx_2"] > 0.01 and run.summary["rebound_vz_2"] > 0.005     # dragged along
+    assert spread(history, "momentum_x", "momentum_y", "momentum_z") < 1e-13 * scale
+    assert spread(history, "angular_momentum", "angular_momentum_x", "angular_momentum_y") < 1e-9 * scale * 0.05
+    assert np.abs(history["balance"]).max() < 1e-8 * run.summary["energy_initial"]
+
+
+FAR = ("plane", (0, -10, 0, 0, 1, 0), (0, 0, 0))
+
+
+@pytest.mark.parametrize("axis", range(3))
+def test_spinning_free_body(march, axis):
+    """V3: a ball and a brick turn, marched through, about x, y and z: energy, momentum and all angular momenta stay; nothing turns about another axis."""
+    spin = tuple(30.0 if c == axis else 0.0 for c in range(3))
+    scene = Scene([ball((0, 0, 0), 0.05, 1, velocity=(0.1, 0, 0.2), spin=spin), brick((0.2, -0.02, -0.03), (0.3, 0.02, 0.03), (2, 1, 1), spin=spin)], [FAR])
+    run = march(scene, without="flight", end_time=0.02, dt=4e-4)
+    history, scale = run.history, run.history["kinetic"][0] / 30
+    names = ["angular_momentum_x", "angular_momentum_y", "angular_momentum"]
+    for body in ("_1", "_2"):
+        assert spread(history, *(name + body for name in names)) < 1e-9 * scale
+        assert history[names[axis] + body][0] > 0.01 * scale
+        assert all(np.abs(history[name + body]).max() < 1e-9 * scale for c, name in enumerate(names) if c != axis)
+    assert spread(history, "momentum_x", "momentum_y", "momentum_z") < 1e-12
+    assert np.abs(history["balance"]).max() < 1e-9 * run.summary["energy_initial"]
+    assert run.summary["contact_intervals"] == 0
+
+
+def test_tumbling_flight(march):
+    """A brick that spins about no principal axis flies to the plane as a rigid body: where it touches its energy and angular momentum are those of the start."""
+    body = brick((-0.05, -0.02, -0.03), (0.05, 0.02, 0.03), (2, 1, 1), shift=(0, 0.3, 0), velocity=(0, -2, 0), spin=(30.0, 5.0, 20.0))
+    run = march(Scene([body], [FLOOR]), end_time=0.125, fields=1)
+    history, touch = run.history, 1
+    scale = history["kinetic"][0]
+    assert history["t"][touch] > 0.1 and history["normal_force"][touch] == 0
+    assert abs(history["kinetic"][touch] - scale) < 1e-8 * scale and history["elastic"][touch] < 1e-12 * scale
+    for name in ("angular_momentum_x", "angular_momentum_y", "angular_momentum"):
+        assert abs(history[name][touch] - history[name][0]) < 1e-9 * scale / 30
+    assert abs(history["spin_x"][touch] - 30) > 1
+    assert run.summary["contact_intervals"] == 1 and np.abs(history["balance"]).max() < 1e-8 * scale
+
+
+def test_parts_of_bodies(march):
+    """Half and quarter of a ball in a bowl and on a moving sphere: the answers of the whole one, to the tolerance of the step."""
+    obstacles = [("sphere", (0, -0.2, 0, 0.2), (0, 0.3, 0)), ("bowl", (0, 0.3, 0, 0.4), (0, 0, 0))]
+    whole, half, quarter = (march(Scene([ball((0, 0, 0), 0.05, 2, copies, shift=(0, 0.0501, 0), velocity=(0, -2, 0))], obstacles, copies=copies), f"part{copies}",
+                                  friction_static=0.3, end_time=0.004, dt=1e-4).summary for copies in (1, 2, 4))
+    for name in ("impulse", "peak_force", "friction_work", "energy_final", "rebound_vy"):
+        assert half[name] == pytest.approx(quarter[name], rel=1e-7)
+    # the cells of the whole one have diagonals of their own
+    assert whole["impulse"] == pytest.approx(quarter["impulse"], rel=0.05)
