@@ -21,7 +21,7 @@ FACES = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])     # of a tetrah
 MOST_SOURCES = 2000                # points that sizes are measured from
 FILL = 0.118                       # volume of a regular tetrahedron over the cube of its side
 MOST_CELLS = 400_000               # that gmsh is asked for
-MOST_UNKNOWNS = 200_000            # displacement unknowns of a run
+MOST_UNKNOWNS = 150_000            # displacement unknowns of a run
 
 
 @dataclass(frozen=True)
