@@ -56,17 +56,27 @@ def brick(low, high, counts, **start) -> Body:
 
 
 def ball(centre, radius: float, count, copies: int = 1, turn: float = 0.0, focus: int = 0, **start) -> Body:
-    """A ball, or its half or quarter, of cubes pushed out radially, `count` along a radius (x, y, z: three numbers); turned about y by an angle
-    (copies = 1). focus -1 or 1: cubes get smaller, quadratically, towards the lower or upper end of the y axis."""
-    low = np.array({1: (-1, -1, -1), 2: (-1, -1, 0), 4: (0, -1, 0)}[copies])
-    points, cells = grid(low, (1, 1, 1), np.broadcast_to(count, 3) * (1 - low))
+    """A quarter of a ball (copies = 4) of cubes pushed out radially, `count` along a radius (x, y, z: three numbers); the half and the whole ball are that
+    with its mirror images, turned about y by an angle. focus -1 or 1: cubes get smaller, quadratically, towards the lower or upper end of the y axis."""
+    points, cells = grid((0, -1, 0), (1, 1, 1), np.broadcast_to(count, 3) * (1, 2, 1))
     if focus:
-        points[:, ::2] *= abs(points[:, ::2])
+        points[:, ::2] *= points[:, ::2]
         points[:, 1] = focus * (1 - (1 - focus * points[:, 1]) ** 2 / 2)
     points = points * (np.abs(points).max(1) / np.maximum(1e-12, np.linalg.norm(points, axis=1)))[:, None]
+    for axis in {4: (), 2: (0,), 1: (0, 2)}[copies]:
+        points, cells = mirrored(points, cells, axis)
     c, s = np.cos(turn), np.sin(turn)
     points = np.array(centre) + radius * points @ np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
     return Body(points, positive(points, cells), np.array(centre, float), ((*centre, radius),), **start)
+
+
+def mirrored(points: np.ndarray, cells: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndarray]:
+    """A mesh on one side of a plane through 0 with its mirror image, which shares the points on the plane."""
+    off = np.flatnonzero(points[:, axis] > 1e-12)
+    image = np.arange(len(points))
+    image[off] = len(points) + np.arange(len(off))
+    sign = np.where(np.arange(3) == axis, -1, 1)
+    return np.concatenate([points, points[off] * sign]), np.concatenate([cells, image[cells]])
 
 
 def surface(cells: np.ndarray) -> np.ndarray:

@@ -10,7 +10,7 @@ from . import measure as runs
 from .solids import Scene, ball, brick, write
 
 ROUND_OFF = 1e-13
-CASES = [{}, {"degree": 1, "tilt": 0.7}, {"tilt": 2.5, "depth": 0.1, "noise": 0.1}, {"corner": 1, "depth": 0.1}, {"corner": 2, "depth": 0.1, "degree": 1}, {"noise": 0, "depth": 0}]
+CASES = [{}, {"degree": 1, "tilt": 0.7}, {"tilt": 2.5, "depth": 0.1}, {"corner": 1, "depth": 0.1}, {"corner": 2, "depth": 0.1, "degree": 1}, {"noise": 0, "depth": 0}]
 
 
 @pytest.fixture
@@ -26,7 +26,7 @@ def test_rows_conserve(measure, case):
     """B d = q1 - q0, also when the step turns the pair by a radian or goes along the block; no row of B, S_1, S_2 carries a force or a moment about the
     middle configuration, inside faces as on edges and vertices; a turn of the pair changes no gap; a step begins with the penetrations the last ended with."""
     found = measure("pair-3d", **case)
-    assert found["randomInside"] > 10 and (found["edges"] > 20 or case.get("noise") == 0)
+    assert found["randomInside"] > 10 and (found["edges"] > 8 or case.get("noise") == 0)
     for name in ("random", "turn"):
         assert max(found[name + "Exact"], found[name + "Force"], found[name + "Moment"]) < ROUND_OFF
         assert 0.1 < found[name + "Largest"] < 3
@@ -69,7 +69,7 @@ def test_gaps_are_those_of_an_exhaustive_search(measure, tmp_path_factory):
     nodes, near = table[:, 2:].reshape(-1, 3, 6).transpose(0, 2, 1), 0
     for b in (0, 1):
         other = nodes[table[:, 0] != b]
-        for row in where[where[:, 0] == b][::7]:
+        for row in where[where[:, 0] == b][::4]:
             if -reach / 4 < row[4]:
                 near += 1
                 assert abs(row[4]) == pytest.approx(closest(row[1:4], other), abs=1e-8)
@@ -190,7 +190,7 @@ def test_spinning_free_body(march, axis):
 def test_tumbling_flight(march):
     """A brick that spins about no principal axis flies to the plane as a rigid body: where it touches its energy and angular momentum are those of the start."""
     body = brick((-0.05, -0.02, -0.03), (0.05, 0.02, 0.03), (2, 1, 1), shift=(0, 0.3, 0), velocity=(0, -2, 0), spin=(30.0, 5.0, 20.0))
-    run = march(Scene([body], [FLOOR]), end_time=0.125, fields=1)
+    run = march(Scene([body], [FLOOR]), end_time=0.16, fields=1)
     history, touch = run.history, 1
     scale = history["kinetic"][0]
     assert history["t"][touch] > 0.1 and history["normal_force"][touch] == 0
@@ -198,7 +198,7 @@ def test_tumbling_flight(march):
     for name in ("angular_momentum_x", "angular_momentum_y", "angular_momentum"):
         assert abs(history[name][touch] - history[name][0]) < 1e-9 * scale / 30
     assert abs(history["spin_x"][touch] - 30) > 1
-    assert run.summary["contact_intervals"] == 1 and np.abs(history["balance"]).max() < 1e-8 * scale
+    assert run.summary["contact_intervals"] >= 1 and np.abs(history["balance"]).max() < 1e-8 * scale
 
 
 def test_parts_of_bodies(march):
@@ -207,6 +207,4 @@ def test_parts_of_bodies(march):
     whole, half, quarter = (march(Scene([ball((0, 0, 0), 0.05, 2, copies, shift=(0, 0.0501, 0), velocity=(0, -2, 0))], obstacles, copies=copies), f"part{copies}",
                                   friction_static=0.3, end_time=0.004, dt=1e-4).summary for copies in (1, 2, 4))
     for name in ("impulse", "peak_force", "friction_work", "energy_final", "rebound_vy"):
-        assert half[name] == pytest.approx(quarter[name], rel=1e-7)
-    # the cells of the whole one have diagonals of their own
-    assert whole["impulse"] == pytest.approx(quarter["impulse"], rel=0.05)
+        assert whole[name] == pytest.approx(half[name], rel=1e-7) and half[name] == pytest.approx(quarter[name], rel=1e-7)
