@@ -51,6 +51,11 @@ class Obstacle:
         outside = np.linalg.norm(from_point, axis=1) - self.numbers[axes]
         return -outside if self.kind == "bowl" else outside
 
+    def gap_in_plane(self, points: np.ndarray, t: float) -> np.ndarray:
+        """The same of points (n, 2) of the plane z = 0 at the time t [s]."""
+        whole = np.pad(points, [(0, 0), (0, len(self.velocity) - 2)])
+        return self.gap(whole - self.velocity * t)
+
 
 def read(tables: list[dict], dimension: Dimension = PLANE_STRAIN) -> list[Obstacle]:
     """The obstacles of the [[obstacle]] tables."""

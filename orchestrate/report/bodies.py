@@ -202,7 +202,7 @@ def draw_obstacles(axes: plt.Axes, rigid: list[Obstacle], view: tuple[float, flo
     points = np.stack(np.meshgrid(x, y), axis=-1)
     if not rigid:
         return []
-    gap = np.min([one.gap((points - one.velocity * t).reshape(-1, 2)) for one in rigid], axis=0).reshape(points.shape[:2])
+    gap = np.min([one.gap_in_plane(points.reshape(-1, 2), t) for one in rigid], axis=0).reshape(points.shape[:2])
     if not gap.min() < 0 < gap.max():
         return []
     return [axes.contourf(x, y, gap, levels=[gap.min(), 0], colors=["#d0d0d0"]), axes.contour(x, y, gap, levels=[0], colors=[BLACK], linewidths=0.8)]
