@@ -416,7 +416,7 @@ class Body:
 def is_half(scene: dict[str, Value]) -> bool:
     """Whether only the half of the body, or of a meridian plane of it, to the right of its axis was computed; of a body in three dimensions a quarter."""
     script = scene.get("script", "")
-    return scene.get("symmetry") == ("quarter" if script == "ball-plane" else "half") or script.endswith("axisymmetric")
+    return scene.get("symmetry") == ("quarter" if script in ("ball-plane", "bodies-3d") else "half") or script.endswith("axisymmetric")
 
 
 def deformed(snapshot: vtu.Snapshot, half: bool) -> Body:
