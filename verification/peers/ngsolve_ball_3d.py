@@ -9,11 +9,10 @@ from ngsolve_body import Shape, half_disc
 def ball(options) -> Shape:
     """The half disc turned by 90 degrees about its axis, from the plane z = 0 to the plane x = 0."""
     solid = half_disc(options.radius, options.contact_mesh_size).Revolve(Axis(gp_Pnt(0, 0, 0), gp_Dir(0, -1, 0)), 90)
-    small = 1e-9 * options.radius
+    small = 1e-6 * options.radius
     for face in solid.faces:
-        low, high = face.bounding_box
-        face.name = ("plane x" if high.x < small else "plane z" if high.z - low.z < small
-                     else "arc" if high.y < 0.5 * options.radius else "circle")
+        middle = face.center
+        face.name = "plane x" if middle.x < small else "plane z" if middle.z < small else "arc" if middle.y < options.radius / 2 else "circle"
         if face.name == "arc":
             face.maxh = options.contact_mesh_size
     mesh = ng.Mesh(OCCGeometry(solid).GenerateMesh(maxh=options.mesh_size, grading=0.3)).Curve(2)
