@@ -44,7 +44,7 @@ def draw(table: pd.DataFrame, names: list[str], half: bool, free: np.ndarray, ba
         return None
     all_points = table
     if "Z" in table:
-        table = table[table.Z.abs() <= 0.15 * table.Z.abs().max()]
+        table = table[table.Z.abs() <= max(0.15 * table.Z.abs().max(), table.Z.abs().min())]
     largest = table.groupby("body").pressure.max().nlargest(MOST_BODIES)
     instants = np.union1d(table.t, free[(free > table.t.min()) & (free < table.t.max())])
     rubs, bodies = bool(table.shear.any()), sorted(largest.index)

@@ -1,5 +1,5 @@
 """Pictures of a body in three dimensions: cut open, with the von Mises stress, and from below, with the contact pressure. They are rendered by
-PyVista, an optional extra: pip install -e '.[solid]'. The arrays that they are drawn from need it not."""
+PyVista, where it is installed (INSTALL). The arrays that they are drawn from need it not."""
 
 import os
 import subprocess
@@ -17,7 +17,7 @@ from .. import vtu
 from ..parameters import Value
 from .contact import PRESSURE
 
-INSTALL = "pip install -e '.[solid]'"
+INSTALL = ".venv/bin/python -m pip install pyvista==0.49.1 vtk==9.7.2"
 PROBE = "import pyvista; p = pyvista.Plotter(off_screen=True, window_size=(8, 8)); p.add_mesh(pyvista.Sphere()); p.screenshot(None, return_img=True)"
 INSTANTS = 4               # of the picture at most
 FINE = 4                   # parts of the side of a face
@@ -103,8 +103,8 @@ def in_front(solid: vtu.Solid, axes: tuple[int, ...]) -> np.ndarray:
 
 class Pressure:
     """The pressure (m,) [Pa] at the vertices (m, 3) of a skin in the reference configuration: the mean of the points of contact nearby, weighted with their
-    area and exp(-(distance/h)^2), h the root of the largest area. A point that bears no load at the time has the pressure 0; so has the skin beyond 2 h
-    from any point that ever bears some."""
+    area A and exp(-(distance/h)^2), h^2 the largest A. Points that bear no load at the time have none, and where points that ever bear some
+    fill less than all of the neighbourhood, of radius 2 h, the rest of it has none: the force is kept."""
 
     def __init__(self, table: pd.DataFrame, axes: tuple[int, ...], vertices: np.ndarray):
         self.table, self.largest = table, float(table.pressure.max()) if len(table) else 0.0
@@ -115,12 +115,13 @@ class Pressure:
             self.source = np.concatenate([self.source, self.source])
         self.near, self.share = np.zeros(len(vertices), bool), np.zeros((0, len(known)))
         if len(known):
-            h = np.sqrt(self.points[:, 3].max() / 2 ** len(axes))
+            shares = self.points[self.source, 3] / 2 ** len(axes)
+            h = np.sqrt(shares.max())
             low, high = known.min(axis=0) - 2 * h, known.max(axis=0) + 2 * h
             self.near = ((vertices > low) & (vertices < high)).all(axis=1)
             square = ((vertices[self.near, None] - known) ** 2).sum(axis=2) / h**2
-            weight = np.where(square < 4, np.exp(-square), 0) * self.points[self.source, 3]
-            self.share = weight / np.maximum(weight.sum(axis=1, keepdims=True), 1e-30)
+            weight = np.where(square < 4, np.exp(-square), 0) * shares
+            self.share = weight / np.maximum(weight.sum(axis=1, keepdims=True), np.pi * h**2 * (1 - np.exp(-4)))
 
     def at(self, t: float) -> np.ndarray:
         now = self.table[self.table.t == self._instant(t)]
@@ -198,11 +199,11 @@ class Views:
                              split_sharp_edges=True, feature_angle=40, ambient=0.45, diffuse=0.55)
             centre, size = (self.low + self.high) / 2, self.high - self.low
             if ground:
-                plotter.add_mesh(pyvista.Plane(center=(centre[0], 0, centre[2]), direction=(0, 1, 0), i_size=1.15 * size[0], j_size=1.15 * size[2]),
+                plotter.add_mesh(pyvista.Plane(center=(centre[0], 0, centre[2]), direction=(0, 1, 0), i_size=size[0], j_size=size[2]),
                                  color=GROUND, lighting=False)
             plotter.camera_position = [centre + 10 * np.linalg.norm(size) * np.array(towards) / np.linalg.norm(towards), centre, (0, 1, 0)]
             plotter.enable_parallel_projection()
-            plotter.camera.parallel_scale = 0.36 * np.linalg.norm(size)
+            plotter.camera.parallel_scale = 0.38 * np.linalg.norm(size)
             plotter.enable_anti_aliasing("ssaa")
             plotter.background_color = "white"
             return plotter.screenshot(None, return_img=True)
