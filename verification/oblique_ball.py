@@ -8,7 +8,7 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 
-from orchestrate.report.figures import BLACK, BLUE, GREY
+from orchestrate.report.figures import BLACK, BLUE, GREY, ORANGE
 
 from . import hertz
 from .case import Row
@@ -73,25 +73,31 @@ def lost_slip(folder: Path, psi: float, normal: float, **more) -> tuple[float, d
 
 
 def rebounds(folder: Path) -> Iterator[Row]:
-    """Over the largest radius of the contact beside the ball's (of the rigid one that of the circle cut off by the plane)."""
-    for penalty in (3e9, 3e10):
-        for angle in (20, 60):
-            found, along, _, lost = rigid(folder, angle, 0.2, penalty=penalty)
-            (centre, rim), words = leaves(lost, INERTIA), f"rigid, {angle}°"
-            size = math.sqrt(2 * found["max_penetration"] / RADIUS)
-            yield Row(f"{words}: speed", size, found["rebound_vx"] / along, centre)
-            yield Row(f"{words}: spin", size, -found["spin"] * RADIUS / along, rim)
+    """Over the largest radius of the contact beside the ball's; of the rigid one that of the circle in which the plane cuts it."""
+    mass = 4 / 3 * math.pi * RADIUS**3 * DENSITY
     for psi, speeds in SPEEDS.items():
         for normal in speeds:
-            *_, radius = hertz.impact(4 / 3 * math.pi * RADIUS**3 * DENSITY, RADIUS, YOUNG / (1 - NU**2), normal)
-            yield Row(f"elastic, ψ₁ = {psi:g}: slip lost", radius / RADIUS, lost_slip(folder, psi, normal)[0], springs(psi, NU))
+            *_, radius = hertz.impact(mass, RADIUS, YOUNG / (1 - NU**2), normal)
+            lost, theory = lost_slip(folder / "run", psi, normal)[0], springs(psi, NU)
+            with (folder / "elastic.csv").open("a") as table:
+                table.write(f"{psi},{normal},{lost}\n")
+            yield Row(f"ψ₁ = {psi:g}: slip", radius / RADIUS, lost, theory)
+    depth = (3 * mass / (2 * math.pi * RADIUS * RIGID["penalty"])) ** (1 / 3)
+    for angle in (20, 60):
+        found, along, _, lost = rigid(folder / "run", angle, 0.2)
+        (centre, rim), words, size = leaves(lost, INERTIA), f"rigid, {angle}°", math.sqrt(2 * depth / RADIUS)
+        yield Row(f"{words}: speed", size, found["rebound_vx"] / along, centre)
+        yield Row(f"{words}: spin", size, -found["spin"] * RADIUS / along, rim)
 
 
 def curve(axes: plt.Axes, folder: Path) -> None:
-    """beta over psi_1 of theory, for nu of the runs and for 0.3."""
-    psi = np.linspace(0.1, 7, 40)
-    for nu, colour in ((NU, BLUE), (0.3, GREY)):
-        axes.plot(psi, [springs(one, nu) - 1 for one in psi], color=colour, label=f"ν = {nu:g}")
+    """beta over psi_1: theory, and the runs."""
+    psi = np.linspace(0.1, 6, 40)
+    axes.plot(psi, [springs(one, NU) - 1 for one in psi], color=BLACK, linewidth=1, label="theory")
+    runs = np.loadtxt(folder / "elastic.csv", delimiter=",", ndmin=2)
+    for normal, colour in zip(sorted(set(runs[:, 1]), reverse=True), (GREY, ORANGE, BLUE)):
+        of = runs[runs[:, 1] == normal]
+        axes.plot(of[:, 0], of[:, 2] - 1, "o", color=colour, markersize=4.5, label=f"{normal:g} m/s")
     axes.axhline(0, color=BLACK, linewidth=0.6)
-    axes.set(xlabel="$\\psi_1$", ylabel="$\\beta$ of theory")
+    axes.set(xlabel="$\\psi_1$", ylabel="$\\beta$")
     axes.legend()
