@@ -105,9 +105,12 @@ def _parameters(options: argparse.Namespace) -> None:
 
 def _figures(options: argparse.Namespace) -> None:
     from . import results
-    from .report import figures
-    for path in figures.draw(options.folder, results.read_summary(options.folder)["warnings"]):
+    from .report import figures, solid
+    drawn = figures.draw(options.folder, results.read_summary(options.folder)["warnings"])
+    for path in drawn:
         print(path)
+    if "z" in results.read_history(options.folder) and options.folder / "figures/solid.png" not in drawn and (reason := solid.missing()):
+        print(f"ffimpact: without figures/solid.png: {reason}", file=sys.stderr)
 
 
 if __name__ == "__main__":

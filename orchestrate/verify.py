@@ -1,5 +1,5 @@
 """Exact solutions (verification/): every case over element size, time step or what else its error comes from, judged by tolerances that were
-fixed beforehand. results/verify/verify.csv has all numbers, a figure a case beside it. Some two minutes;
+fixed beforehand. results/verify/verify.csv has all numbers, a figure a case beside it. Some six minutes, most of them for V17;
 what the present code left is taken as it is."""
 
 import argparse
@@ -165,7 +165,7 @@ def overview(frame: pd.DataFrame) -> pd.DataFrame:
 
 # ---- figures
 
-COLOURS = (BLUE, ORANGE, GREEN, PURPLE, BLACK, "#56b4e9")                                   # a group of numbers each
+COLOURS = (BLUE, ORANGE, GREEN, PURPLE, BLACK, "#56b4e9", "#e69f00")                        # a group of numbers each
 LOOKS = (dict(marker="o", markersize=4), dict(marker="s", markersize=7, fillstyle="none", linestyle="--"),
          dict(marker="^", markersize=7, fillstyle="none", linestyle=":"))                    # and in the group
 
@@ -177,7 +177,7 @@ def draw(case: Case, rows: list[Row], out: Path) -> None:
         draw_errors(grid[0, 0], case, rows)
         if case.beside:
             case.beside(grid[0, 1], out / "runs" / slug(case))
-            grid[0, 0].legend(loc="lower right")
+            grid[0, 0].legend(loc="best", fontsize=7)
         else:
             figure.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside right center")
         figure.suptitle(f"{case.name}: {case.title}", fontsize=9)

@@ -9,6 +9,7 @@ import numpy as np
 from .failure import Unreadable
 
 TRIANGLE, QUADRATIC_TRIANGLE, QUADRATIC_TETRAHEDRON = 5, 22, 24   # VTK's cell types
+NODES = {TRIANGLE: 3, QUADRATIC_TRIANGLE: 6, QUADRATIC_TETRAHEDRON: 10}
 SPLIT = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]   # a quadratic triangle (corners 0-2, middles 3-5) as four
 FACES = [[0, 1, 2, 4, 5, 6], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [0, 2, 3, 6, 9, 7]]   # of a quadratic tetrahedron, as quadratic triangles
 
@@ -23,26 +24,49 @@ class Snapshot:
     fields: dict[str, np.ndarray]
 
 
+@dataclass(frozen=True)
+class Solid:
+    """A body in three dimensions: points (n, 3) reference coordinates in m; tetrahedra (t, 10) quadratic; fields as of a Snapshot."""
+
+    points: np.ndarray
+    tetrahedra: np.ndarray
+    fields: dict[str, np.ndarray]
+
+
 def read(path: Path) -> Snapshot:
     """One snapshot; quadratic triangles, and the faces of quadratic tetrahedra in the plane z = 0, are split into four straight ones.
     Unreadable where it is not such a file."""
+    points, kind, cells, fields = _parts(path)
+    on_plane = np.ones(len(points), dtype=bool)
+    if kind == QUADRATIC_TETRAHEDRON:
+        on_plane = np.abs(points[:, 2]) < 1e-9 * np.ptp(points, axis=0).max()
+        cells = _in_plane(cells, on_plane, points)
+    triangles = cells if kind == TRIANGLE else cells[:, SPLIT].reshape(-1, 3)
+    row = np.cumsum(on_plane) - 1
+    return Snapshot(points[on_plane, :2], row[triangles], {name: field[on_plane] for name, field in fields.items()})
+
+
+def read_solid(path: Path) -> Solid | None:
+    """The same of all of a body in three dimensions; None of one in the plane."""
+    points, kind, cells, fields = _parts(path)
+    return Solid(points, cells, fields) if kind == QUADRATIC_TETRAHEDRON else None
+
+
+def _parts(path: Path) -> tuple[np.ndarray, int, np.ndarray, dict[str, np.ndarray]]:
+    """Points, the type of all cells, their nodes (cells, nodes) and the fields. Unreadable where it is not such a file."""
     try:
         piece = xml.parse(path).getroot().find("UnstructuredGrid/Piece")
         points = _array(piece.find("Points/DataArray"))
         cells = {array.get("Name"): _array(array).astype(int) for array in piece.iterfind("Cells/DataArray")}
-        kinds, on_plane = set(cells["types"]), np.ones(len(points), dtype=bool)
-        if kinds == {QUADRATIC_TETRAHEDRON}:
-            on_plane = np.abs(points[:, 2]) < 1e-9 * np.ptp(points, axis=0).max()
-            triangles = _in_plane(cells["connectivity"].reshape(-1, 10), on_plane, points)[:, SPLIT].reshape(-1, 3)
-        elif kinds == {QUADRATIC_TRIANGLE}:
-            triangles = cells["connectivity"].reshape(-1, 6)[:, SPLIT].reshape(-1, 3)
-        elif kinds == {TRIANGLE}:
-            triangles = cells["connectivity"].reshape(-1, 3)
-        else:
+        kinds = set(cells["types"])
+        if len(kinds) != 1 or not kinds <= set(NODES):
             raise ValueError(f"cell types {sorted(kinds)} are not supported")
+        kind = int(kinds.pop())
         fields = {array.get("Name"): _array(array) for array in piece.iterfind("PointData/DataArray")}
-        row = np.cumsum(on_plane) - 1
-        return Snapshot(points[on_plane, :2], row[triangles], {name: field[on_plane] for name, field in fields.items()})
+        nodes = cells["connectivity"].reshape(-1, NODES[kind])
+        if nodes.min() < 0 or nodes.max() >= len(points) or any(len(field) != len(points) for field in fields.values()):
+            raise ValueError("a node or a value at one is missing")
+        return points, kind, nodes, fields
     except (OSError, xml.ParseError, AttributeError, KeyError, ValueError, IndexError) as error:
         raise Unreadable(f"{path} cannot be read: {error}") from None
 

@@ -144,7 +144,7 @@ def test_frames_differ_in_time_and_nothing_else(finished_folder):
     history["friction_force"] = -0.3 * history["normal_force"]
     motion = movie.Motion(finished_folder / "fields.pvd", half=True)
     motion.diameters = np.array([body.points[:5] for body in motion.bodies])   # as of a whole body
-    stage = movie.Stage(result, motion)
+    stage = movie.PlaneStage(result, motion)
     seen = []
     for t in (1e-3, 2e-3):
         stage.show(t)

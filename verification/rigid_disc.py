@@ -12,10 +12,11 @@ from .measure import disc
 STIFF = dict(radius=0.05, young=1e10, nu=0.3, speed=1, slip_velocity=1e-3, mesh_size=0.025, contact_mesh_size=0.0079, accuracy=0.03, tolerance=1e-10)
 
 
-def leaves(lost: float) -> tuple[float, float]:
+def leaves(lost: float, inertia: float = 2) -> tuple[float, float]:
     """Speeds of the centre and of the rim about it after the impact, over the speed along the plane before: `lost` = mu (1+e) v_n/v_t of it
-    is lost where the disc slides throughout, a third where it comes to roll."""
-    return (1 - lost, 2 * lost) if 1 > 3 * lost else (2 / 3, 2 / 3)
+    is lost where the body slides throughout, 1/(1 + inertia) where it comes to roll. inertia: R^2/k^2, k the radius of gyration; 2 of a disc."""
+    rolls = inertia / (1 + inertia)
+    return (1 - lost, inertia * lost) if 1 > (1 + inertia) * lost else (rolls, rolls)
 
 
 def oblique(folder: Path) -> Iterator[Row]:

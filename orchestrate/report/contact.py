@@ -8,9 +8,12 @@ import pandas as pd
 from matplotlib.colors import ListedColormap
 
 from ..failure import Unreadable
+from ..parameters import Value
 
 INSTANTS = 6                     # profiles at most
+SLOW = 0.03                      # speed over sqrt(E/rho) up to which the pressure of a ball is shown beside Hertz'
 MOST_BODIES = 4                  # those with the largest pressure
+PRESSURE = "contact pressure [MPa]"
 SLIP = {"slips back": "#0072b2", "sticks": "#bbbbbb", "slips forward": "#d55e00"}    # v_T < 0, > 0: on the plane along x
 ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 1), "ncols": 3, "fontsize": 6.5, "handlelength": 1.0, "columnspacing": 0.8}
 COLUMNS = ["t", "body", "partner", "s", "X", "Y", "x", "y", "weight", "pressure", "shear", "slip_velocity", "slides"]
@@ -33,14 +36,15 @@ def read(folder: Path) -> pd.DataFrame:
     return table
 
 
-def draw(table: pd.DataFrame, names: list[str], half: bool, free: np.ndarray) -> plt.Figure | None:
+def draw(table: pd.DataFrame, names: list[str], half: bool, free: np.ndarray, ball: dict[str, Value] | None = None) -> plt.Figure | None:
     """A row of panels a body: pressure over the outline at some instants, over outline and time, and with friction the slip; None without contact.
     Half a body is drawn with its mirror image, of one in three dimensions the points nearest to the plane z = 0. `free`: times [s] at which nothing is
-    touched."""
+    touched. `ball`: the scene where the body is a ball that nothing turns: its pressure is drawn over the radius."""
     if table.empty:
         return None
+    all_points = table
     if "Z" in table:
-        table = table[table.Z.abs() <= 0.15 * table.Z.abs().max()]
+        table = table[table.Z.abs() <= max(0.15 * table.Z.abs().max(), table.Z.abs().min())]
     largest = table.groupby("body").pressure.max().nlargest(MOST_BODIES)
     instants = np.union1d(table.t, free[(free > table.t.min()) & (free < table.t.max())])
     rubs, bodies = bool(table.shear.any()), sorted(largest.index)
@@ -49,10 +53,13 @@ def draw(table: pd.DataFrame, names: list[str], half: bool, free: np.ndarray) ->
         own = table[table.body == body].groupby(["t", "s"], as_index=False).first()     # twice only where an outline meets itself
         if half:
             own = pd.concat([own, own.assign(s=-own.s, shear=-own.shear, slip_velocity=-own.slip_velocity)]).drop_duplicates(["t", "s"])
-        _profiles(row[0], own)
+        if ball:
+            _over_radius(row[0], all_points, ball)
+        else:
+            _profiles(row[0], own, "-" if "Z" not in table else "")
         times, places, pressure = _over_time(own, "pressure", instants)
         picture = row[1].pcolormesh(1e3 * times, 1e3 * places, 1e-6 * pressure.T, shading="nearest", cmap="viridis", vmin=0, rasterized=True)
-        figure.colorbar(picture, ax=row[1], label="pressure [MPa]")
+        figure.colorbar(picture, ax=row[1], label=PRESSURE)
         if rubs:
             _slip(row[2], own, instants)
         for axes in row[1:]:
@@ -62,15 +69,43 @@ def draw(table: pd.DataFrame, names: list[str], half: bool, free: np.ndarray) ->
     return figure
 
 
-def _profiles(axes: plt.Axes, own: pd.DataFrame) -> None:
-    """Pressure [MPa] along the outline [mm] at up to INSTANTS times."""
-    times = np.unique(own.t)
+def _instants(table: pd.DataFrame) -> list[tuple[float, pd.DataFrame, tuple]]:
+    """(t, rows, colour) of up to INSTANTS times."""
+    times = np.unique(table.t)
     picked = times[np.unique(np.linspace(0, len(times) - 1, INSTANTS + 2).round().astype(int)[1:-1])] if len(times) > INSTANTS else times
-    for t, colour in zip(picked, plt.get_cmap("plasma")(np.linspace(0, 0.85, len(picked)))):
-        now = own[own.t == t].sort_values("s")
-        axes.plot(1e3 * now.s, 1e-6 * now.pressure, color=colour, linewidth=1.1, marker=".", markersize=2.5, label=f"{1e3 * t:.3g} ms")
-    axes.set(xlabel="along the outline [mm]", ylabel="pressure [MPa]", ylim=(0, None))
+    return [(t, table[table.t == t], colour) for t, colour in zip(picked, plt.get_cmap("plasma")(np.linspace(0, 0.85, len(picked))))]
+
+
+def _profiles(axes: plt.Axes, own: pd.DataFrame, line: str) -> None:
+    """Pressure [MPa] along the outline [mm] at up to INSTANTS times."""
+    for t, now, colour in _instants(own):
+        now = now.sort_values("s")
+        axes.plot(1e3 * now.s, 1e-6 * now.pressure, color=colour, linestyle=line, linewidth=1.1, marker=".", markersize=2.5, label=f"{1e3 * t:.3g} ms")
+    axes.set(xlabel="along the outline [mm]", ylabel=PRESSURE, ylim=(0, None))
     axes.legend(**ABOVE)
+
+
+def _over_radius(axes: plt.Axes, table: pd.DataFrame, ball: dict[str, Value]) -> None:
+    """Pressure [MPa] at the points over their present distance [mm] from the axis, at up to INSTANTS times; in a slow impact Hertz' of the same force."""
+    slow = ball["speed"] <= SLOW * np.sqrt(ball["young"] / ball["density"])
+    for t, now, colour in _instants(table):
+        away = np.hypot(now.x, now.z) if "z" in now else now.x
+        axes.plot(1e3 * away, 1e-6 * now.pressure, color=colour, linestyle="", marker=".", markersize=3.5, label=f"{1e3 * t:.3g} ms")
+        if slow:
+            r, pressure = hertz((now.pressure * now.weight).sum(), ball)
+            axes.plot(1e3 * r, 1e-6 * pressure, color=colour, linewidth=0.9)
+    if slow:
+        axes.plot([], [], color="#222222", linewidth=0.9, label="Hertz, same force")
+    axes.set(xlabel="distance from the axis [mm]", ylabel=PRESSURE, xlim=(0, None), ylim=(0, None))
+    axes.legend(**ABOVE)
+
+
+def hertz(force: float, ball: dict[str, Value]) -> tuple[np.ndarray, np.ndarray]:
+    """Radii [m] and Hertz' pressure there [Pa] of a ball that is pressed on a rigid plane by `force` [N]: a^3 = 3 F R / (4 E*), p_0 = 3 F / (2 pi a^2)."""
+    stiffness = ball["young"] / (1 - ball["nu"] ** 2)
+    a = (3 * force * ball["radius"] / (4 * stiffness)) ** (1 / 3)
+    r = a * np.sin(np.linspace(0, np.pi / 2, 60))
+    return r, 3 * force / (2 * np.pi * a**2) * np.sqrt(np.maximum(1 - (r / a) ** 2, 0))
 
 
 def _over_time(own: pd.DataFrame, column: str, instants: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

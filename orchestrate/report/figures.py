@@ -23,6 +23,7 @@ BLUE, ORANGE, GREEN, PURPLE, BLACK, GREY = "#0072b2", "#d55e00", "#009e73", "#aa
 STYLE = {"font.size": 9, "axes.titlesize": 9, "axes.spines.top": False, "axes.spines.right": False,
          "axes.linewidth": 0.8, "lines.linewidth": 1.4, "legend.frameon": False, "figure.dpi": 100, "savefig.dpi": 150,
          "figure.constrained_layout.use": True, "figure.constrained_layout.w_pad": 0.08}
+BODY = {"ball-plane": "ball: ", "ball-axisymmetric": "ball as a body of revolution: "}
 STRESS = "von Mises stress [MPa]"
 SHAPES = 9   # small multiples at most
 DASHED = (0, (4, 2))
@@ -32,7 +33,7 @@ filterwarnings("ignore", "Glyph .* missing from", UserWarning)    # a letter tha
 def draw(folder: Path, warnings: list[str]) -> list[Path]:
     """Draws all figures of the run in `folder` into folder/figures, with its warnings below; the files. Unreadable where the
     folder is broken. energies.png is the last: where it is, all are."""
-    from . import bodies, contact as contacts
+    from . import bodies, contact as contacts, solid
     history, scene = read_history(folder), read_scene(folder)
     snapshots = vtu.series(folder / "fields.pvd")
     target = folder / "figures"
@@ -45,8 +46,12 @@ def draw(folder: Path, warnings: list[str]) -> list[Path]:
         else:
             drawn = _on_a_plane(history, contact, scene, snapshots)
         if (folder / "fields/contact.csv").exists():
-            along = contacts.draw(contacts.read(folder), bodies.names(scene) if bodies.are_several(scene) else ["body"], is_half(scene), history["t"][~touches])
+            table = contacts.read(folder)
+            along = contacts.draw(table, bodies.names(scene) if bodies.are_several(scene) else ["body"], is_half(scene), history["t"][~touches],
+                                  scene if scene.get("script") in BODY and is_half(scene) else None)
             drawn |= {"contact": along} if along else {}
+            inside = solid.draw(snapshots, table, scene) if snapshots and "Z" in table else None
+            drawn |= {"solid": inside} if inside else {}
         for name, figure in reversed(drawn.items()):
             figure.suptitle(title(scene), fontsize=9)
             footer(figure, warnings)
@@ -81,12 +86,13 @@ def footer(figure: plt.Figure, warnings: list[str]) -> None:
 
 
 def title(scene: dict[str, Value]) -> str:
-    """Law, nu, speed, the angle where the impact is oblique, and the friction law where there is one; of several bodies each one's."""
+    """Which body, law, nu, speed, the angle where the impact is oblique, and the friction law where there is one; of several bodies each one's."""
     from . import bodies
     if bodies.are_several(scene):
         return bodies.title(scene)
     angle = "" if scene.get("angle", 90) == 90 else f" at {scene['angle']:g}°"
-    text = f"{LAWS.get(scene['law'], scene['law'])}, ν = {scene['nu']:g}, {scene['speed']:g} m/s{angle}"
+    body = BODY.get(scene.get("script"), "")
+    text = f"{body}{LAWS.get(scene['law'], scene['law'])}, ν = {scene['nu']:g}, {scene['speed']:g} m/s{angle}"
     if scene.get("friction_static", 0) > 0:
         text += (f"\nfriction {scene['friction_static']:g} static, {scene['friction_dynamic']:g} dynamic, "
                  f"{scene['regularization']}, ε = {scene['slip_velocity']:g} m/s")

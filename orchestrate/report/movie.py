@@ -1,4 +1,5 @@
-"""A film of a scene: the deforming body coloured by its stress above the ground, and the contact force over time under it."""
+"""A film of a scene: the deforming body coloured by its stress above the ground, and the contact force over time under it. Of a body in three
+dimensions, where PyVista is installed (solid.py), the body cut open and from below; elsewhere its cut with the plane z = 0."""
 
 import argparse
 import logging
@@ -22,12 +23,13 @@ from ..parameters import ROOT, overrides, whole
 from ..places import shown
 from ..results import RunResult, suffixes
 from ..run import run
-from . import bodies
+from . import bodies, contact, solid
 from .figures import BLACK, BLUE, GREY, ORANGE, STRESS, STYLE, Body, deformed, diameter, draw_body, draw_ground, is_half, limits, per_metre, title
 
 SECONDS = 8.0     # of the film
 MOST = 400        # frames, 50 a second: players show a faster GIF slower
 DPI = 110
+SAMPLES = 10      # frames that the palette of a GIF is made of
 logging.getLogger("matplotlib.animation").setLevel(logging.ERROR)   # what ffmpeg says is said in one line
 
 
@@ -58,15 +60,14 @@ def main(argv: list[str]) -> int:
 
 def write(film: Path, result: RunResult, frames: int, progress: bool = False) -> None:
     """Writes `frames` frames, evenly spaced from the touch to the end, of SECONDS seconds together; complete or not at all."""
-    several = len(suffixes(result.history)) > 1
-    motion = Motion(result.folder / "fields.pvd", is_half(result.scene), several)
     with plt.rc_context(STYLE | {"figure.constrained_layout.use": False}):   # the axes stay where they are
-        stage = Stage(result, motion)
+        stage = of(result)
         part = film.with_suffix(f".part{film.suffix}")
         writer = (FFMpegWriter if film.suffix == ".mp4" else GifWriter)(fps=frames / SECONDS)
         try:
             writer.setup(stage.figure, part, DPI)
-            for t in tqdm(np.linspace(motion.times[0], motion.times[-1], frames), desc=film.name, leave=False, disable=not progress):
+            writer.colours = stage.colours
+            for t in tqdm(np.linspace(stage.times[0], stage.times[-1], frames), desc=film.name, leave=False, disable=not progress):
                 stage.show(t)
                 writer.grab_frame()
             writer.finish()
@@ -82,15 +83,18 @@ def write(film: Path, result: RunResult, frames: int, progress: bool = False) ->
 
 
 class GifWriter(PillowWriter):
-    """One palette for all frames, so that no colour changes from frame to frame: that of the stress, greys, and those of the curves."""
+    """One palette for all frames, so that no colour changes from frame to frame: `colours` (at most 256, 3), or those of SAMPLES of the frames."""
+
+    colours: np.ndarray | None = None
 
     def finish(self) -> None:
-        fade = np.linspace(0, 1, 14)[:, None]
-        curves = [fade * to_rgb("white") + (1 - fade) * to_rgb(colour) for colour in (BLUE, ORANGE)]
-        colours = np.vstack([plt.get_cmap("viridis")(np.linspace(0, 1, 200))[:, :3], np.linspace(0, 1, 28)[:, None] * np.ones(3), *curves])
-        palette = Image.new("P", (1, 1))
-        palette.putpalette((255 * colours).round().astype(int).ravel().tolist())
-        self._frames = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in self._frames]
+        if self.colours is None:
+            sample = self._frames[::max(1, len(self._frames) // SAMPLES)]
+            palette = Image.fromarray(np.vstack([np.asarray(frame.convert("RGB")) for frame in sample])).quantize(256, Image.Quantize.FASTOCTREE)
+        else:
+            palette = Image.new("P", (1, 1))
+            palette.putpalette((255 * self.colours).round().astype(int).ravel().tolist())
+        self._frames = [frame.convert("RGB").quantize(palette=palette, dither=Image.Dither.NONE) for frame in self._frames]
         super().finish()
 
 
@@ -122,39 +126,29 @@ class Motion:
 
 
 class Stage:
-    """The figure of all frames: axes, colours and curves are drawn once, `show` moves the rest to a time."""
+    """The figure of all frames: axes, colours and curves are drawn once, `show` moves the rest to a time between `times` [s].
 
-    def __init__(self, result: RunResult, motion: Motion):
-        self.motion = motion
-        among = bodies.are_several(result.scene)
-        view = left, right, floor, top = (bodies.limits if among else limits)(motion.bodies)
-        width = min(6.0, 4.8 * (right - left) / (top - floor))      # of the upper panel [inch]
-        height, below = width * (top - floor) / (right - left), 1.6
-        heading = title(result.scene)
+    A subclass draws the body into a panel of width x height inches, and moves it.
+    """
+
+    times: np.ndarray
+    figure: plt.Figure
+    colours: np.ndarray | None = None      # of a GIF
+
+    def _lay_out(self, result: RunResult, width: float, height: float) -> tuple[plt.Axes, plt.Axes]:
+        """The figure with its title and forces; the panel of the body and, right of it, of its colours."""
+        heading, below = title(result.scene), 1.6
         whole = np.array([width + 2.0, height + below + 1.75 + 0.15 * (1 + heading.count("\n"))])
         self.figure = plt.figure(figsize=whole)
         panel = lambda x, y, w, h: self.figure.add_axes((*np.array([x, y]) / whole, *np.array([w, h]) / whole))   # noqa: E731
         self.above, bar = panel(0.85, below + 1.3, width, height), panel(width + 1.0, below + 1.3, 0.16, height)
         self.figure.suptitle(heading, fontsize=9, y=1 - 0.12 / whole[1])
-        self.view, self.rigid, self.drawn = view, bodies.obstacles_of(result.scene), []
-        if among:
-            self.drawn = bodies.draw_obstacles(self.above, self.rigid, view, motion.times[0])
-        else:
-            draw_ground(self.above, view)
-        self.above.set(xlabel="x [m]", ylabel="y [m]")
-        self.largest = np.quantile([body.stress for body in motion.bodies], 0.999) or 1.0   # one spot does not darken all the rest
-        self.picture = draw_body(self.above, motion.bodies[0], self.largest)
-        self.figure.colorbar(self.picture, cax=bar, label=STRESS, extend="max")
-        self.marks = []
-        if motion.diameters is not None:   # shows how the body turns
-            outlined = [withStroke(linewidth=2.5, foreground=BLACK)]
-            self.marks = [self.above.plot([], [], color="white", linewidth=1.2, path_effects=outlined)[0],
-                          self.above.plot([], [], color="white", marker="o", markersize=5, markeredgecolor=BLACK)[0]]
         self._draw_force(panel(0.85, 0.55, width, below), result.history, per_metre(result.scene))
+        return self.above, bar
 
     def _draw_force(self, axes: plt.Axes, history: dict[str, np.ndarray], per: str) -> None:
         """Normal force, and friction force where there is any [kN/m], over the time of the film."""
-        inside = history["t"] >= self.motion.times[0]
+        inside = history["t"] >= self.times[0]
         self.t = 1e3 * history["t"][inside]
         forces = {"normal": BLUE, "friction": ORANGE} if history["friction_force"].any() else {"normal": BLUE}
         self.forces = {name: 1e-3 * history[f"{name}_force"][inside] for name in forces}
@@ -170,6 +164,45 @@ class Stage:
 
     def show(self, t: float) -> None:
         """Everything that moves, at time t [s]."""
+        self._move(t)
+        self.above.set_title(f"t = {1e3 * t:.2f} ms")
+        self.now.set_xdata([1e3 * t] * 2)
+        for name, dot in self.dots.items():
+            dot.set_data([1e3 * t], [np.interp(1e3 * t, self.t, self.forces[name])])
+
+
+def plane_colours() -> np.ndarray:
+    """Those of the stress, greys, and those of the curves."""
+    fade = np.linspace(0, 1, 14)[:, None]
+    curves = [fade * to_rgb("white") + (1 - fade) * to_rgb(colour) for colour in (BLUE, ORANGE)]
+    return np.vstack([plt.get_cmap("viridis")(np.linspace(0, 1, 200))[:, :3], np.linspace(0, 1, 28)[:, None] * np.ones(3), *curves])
+
+
+class PlaneStage(Stage):
+    """A body in the plane, or the cut of one in three dimensions with the plane z = 0, among its obstacles."""
+
+    def __init__(self, result: RunResult, motion: Motion):
+        self.motion, self.times, self.colours = motion, motion.times, plane_colours()
+        among = bodies.are_several(result.scene)
+        view = left, right, floor, top = (bodies.limits if among else limits)(motion.bodies)
+        width = min(6.0, 4.8 * (right - left) / (top - floor))      # [inch]
+        _, bar = self._lay_out(result, width, width * (top - floor) / (right - left))
+        self.view, self.rigid, self.drawn = view, bodies.obstacles_of(result.scene), []
+        if among:
+            self.drawn = bodies.draw_obstacles(self.above, self.rigid, view, motion.times[0])
+        else:
+            draw_ground(self.above, view)
+        self.above.set(xlabel="x [m]", ylabel="y [m]")
+        self.largest = np.quantile([body.stress for body in motion.bodies], 0.999) or 1.0   # one spot does not darken all the rest
+        self.picture = draw_body(self.above, motion.bodies[0], self.largest)
+        self.figure.colorbar(self.picture, cax=bar, label=STRESS, extend="max")
+        self.marks = []
+        if motion.diameters is not None:   # shows how the body turns
+            outlined = [withStroke(linewidth=2.5, foreground=BLACK)]
+            self.marks = [self.above.plot([], [], color="white", linewidth=1.2, path_effects=outlined)[0],
+                          self.above.plot([], [], color="white", marker="o", markersize=5, markeredgecolor=BLACK)[0]]
+
+    def _move(self, t: float) -> None:
         body, line = self.motion.at(t)
         if any(one.velocity.any() for one in self.rigid):
             for each in self.drawn:
@@ -180,7 +213,32 @@ class Stage:
         if self.marks:
             self.marks[0].set_data(*line.T)
             self.marks[1].set_data(*line[:1].T)
-        self.above.set_title(f"t = {1e3 * t:.2f} ms")
-        self.now.set_xdata([1e3 * t] * 2)
-        for name, dot in self.dots.items():
-            dot.set_data([1e3 * t], [np.interp(1e3 * t, self.t, self.forces[name])])
+
+
+class SolidStage(Stage):
+    """A body in three dimensions: cut open, with its stress, and beside it from below, with the contact pressure."""
+
+    def __init__(self, result: RunResult, views: solid.Views):
+        self.views, self.times = views, views.times
+        width, height = 7.2, 7.2 / 2 * solid.PIXELS[1] / solid.PIXELS[0]
+        panel, bar = self._lay_out(result, width, height)
+        panel.set_axis_off()
+        bar.remove()
+        self.pictures = []
+        for k, (image, (colours, label)) in enumerate(zip(views.render(views.sights[0]), solid.bars(views))):
+            axes = panel.inset_axes((0.5 * k, 0, 0.5, 1))
+            axes.set_axis_off()
+            self.pictures.append(axes.imshow(image, interpolation="antialiased"))
+            self.figure.colorbar(colours, cax=panel.inset_axes((0.5 * k + 0.08, -0.05, 0.34, 0.03)), label=label, orientation="horizontal", extend="max")
+
+    def _move(self, t: float) -> None:
+        for picture, image in zip(self.pictures, self.views.render(self.views.at(t))):
+            picture.set_data(image)
+
+
+def of(result: RunResult) -> Stage:
+    """The stage for a run."""
+    series = vtu.series(result.folder / "fields.pvd")
+    if series and vtu.read_solid(series[0][1]) and (result.folder / "fields/contact.csv").exists() and not solid.missing():
+        return SolidStage(result, solid.Views(series, contact.read(result.folder), result.scene))
+    return PlaneStage(result, Motion(result.folder / "fields.pvd", is_half(result.scene), len(suffixes(result.history)) > 1))

@@ -3,6 +3,7 @@ setting is cheapest for 5 %, 1 % and 0.1 %. Other programs on the same problem, 
 
 import argparse
 import itertools
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -23,12 +24,17 @@ from . import peers, study, textbook
 LEVELS = (5.0, 1.0, 0.1)    # % of error
 HEADLINE, HEADLINE_CONTACT = 0.5, 1.0   # % at the same time in everything but the contact time, and in that
 LIMIT = 600.0               # seconds a run may take
-# Other programs: program, form, mesh factor, dt [s]; from their cheapest setting for 0.5 % on
-PEERS = [("ngsolve", "tuned", 2, 1.5e-4), ("ngsolve", "tuned", 2, 1e-4), ("ngsolve", "tuned", 1, 1e-4), ("ngsolve", "tuned", 1, 5e-5),
-         ("ngsolve", "tuned", 1, 2e-5), ("ngsolve", "plain", 2, 1.5e-4), ("ngsolve", "plain", 1, 1e-4), ("ngsolve", "plain", 1, 5e-5),
-         ("getfem", "tuned", 2, 1.5e-4), ("getfem", "tuned", 1, 1e-4), ("getfem", "tuned", 1, 5e-5), ("getfem", "tuned", 1, 2e-5),
-         ("getfem", "plain", 2, 1.5e-4), ("getfem", "plain", 1, 1e-4), ("textbook", "FreeFEM", 2, 1e-4), ("textbook", "FreeFEM", 1, 5e-5)]
-PEERS_QUICK = [("ngsolve", "tuned", 1, 1e-4), ("textbook", "FreeFEM", 2, 1e-4)]
+# Other programs, by case: program, form, mesh factor, dt [s]; from their cheapest setting for 0.5 % on
+PEERS = {
+    "normal-svk": [("ngsolve", "tuned", 2, 1.5e-4), ("ngsolve", "tuned", 2, 1e-4), ("ngsolve", "tuned", 1, 1e-4), ("ngsolve", "tuned", 1, 5e-5),
+                   ("ngsolve", "tuned", 1, 2e-5), ("ngsolve", "plain", 2, 1.5e-4), ("ngsolve", "plain", 1, 1e-4), ("ngsolve", "plain", 1, 5e-5),
+                   ("getfem", "tuned", 2, 1.5e-4), ("getfem", "tuned", 1, 1e-4), ("getfem", "tuned", 1, 5e-5), ("getfem", "tuned", 1, 2e-5),
+                   ("getfem", "plain", 2, 1.5e-4), ("getfem", "plain", 1, 1e-4), ("textbook", "FreeFEM", 2, 1e-4), ("textbook", "FreeFEM", 1, 5e-5)],
+    "ball-axisymmetric": [("ngsolve", "tuned", 2, 1.5e-4), ("ngsolve", "tuned", 2, 1e-4), ("ngsolve", "tuned", 1, 1e-4), ("ngsolve", "tuned", 1, 5e-5)],
+    "ball": [("ngsolve", "tuned", 4, 1.5e-4), ("ngsolve", "tuned", 3, 1e-4), ("ngsolve", "tuned", 2, 1e-4), ("ngsolve", "tuned", 2, 5e-5)],
+}
+PEERS_QUICK = {"normal-svk": [("ngsolve", "tuned", 1, 1e-4), ("textbook", "FreeFEM", 2, 1e-4)],
+               "ball-axisymmetric": [("ngsolve", "tuned", 1, 1e-4)], "ball": [("ngsolve", "tuned", 4, 1.5e-4)]}
 # The disc on the block: refinements of NGSolve's own mesh (peers.two_bodies), and what it calls our answers
 REFINEMENTS, REFINEMENTS_QUICK = (0.25, 0.5, 0.75, 1.0), (0.25, 0.5)
 NGSOLVE = {"rebound_vy_1": "velocity_upper", "rebound_vy_2": "velocity_lower", "vibration_energy_1": "vibration_upper",
@@ -37,14 +43,17 @@ NGSOLVE = {"rebound_vy_1": "velocity_upper", "rebound_vy_2": "velocity_lower", "
 
 @dataclass(frozen=True)
 class Case:
-    """A scene, what is set in it, the answers that are judged, the finest accuracy that meshes and steps are made for, and how many times
-    larger given sizes and steps are than those of the disc of radius 0.05 m."""
+    """A scene, what is set in it, the answers that are judged, the finest accuracy that meshes and steps are made for, how many times
+    larger given sizes and steps are than those of the disc of radius 0.05 m, the families of settings (all where none is named), and the case that
+    has the reference where it is not this one."""
 
     scene: str
     base: study.Point
     answers: tuple[str, ...]
     finest: float = 0.00125
     scale: float = 1.0
+    families: tuple[str, ...] = ()
+    like: str = ""
 
     @property
     def finer(self) -> float:
@@ -57,11 +66,15 @@ class Case:
         return sized(self.scale * factor, dt=float(f"{self.scale * dt:.6g}"), **given)
 
 
+BALL = {"law": "neohookean", "nu": 0.45, "speed": 8.0, "penalty": 1.5e10}
 CASES = {
     "normal-svk": Case("disc-normal", {"law": "svk"}, ("impulse", "rebound_vy", "contact_time")),
     "normal-neohookean": Case("disc-normal", {"law": "neohookean"}, ("impulse", "rebound_vy", "contact_time")),
     "oblique-neohookean": Case("disc-oblique", {"law": "neohookean"}, ("impulse", "rebound_vx", "rebound_vy", "spin", "friction_work", "contact_time"), 0.000625),
     "disc-block-svk": Case("disc-block", {"law": "svk", "penalty": 1e9}, tuple(NGSOLVE), 0.005, 20),
+    "ball-axisymmetric": Case("ball-axisymmetric", BALL, ("impulse", "rebound_vy", "contact_time")),
+    "ball": Case("ball", BALL, ("impulse", "rebound_vy", "contact_time"), 0.005, families=("adaptive, P2", "midpoint", "central-difference"),
+                 like="ball-axisymmetric"),
 }
 
 
@@ -103,21 +116,33 @@ norm over time of the difference of the force histories over that of the referen
 
 def settings(case: Case, quick: bool) -> dict[str, list[study.Point]]:
     """Points by family, from coarse to fine."""
-    adaptive = lambda values, **given: [{"accuracy": min(0.4, case.finer * a)} | given for a in values]   # noqa: E731
-    if quick:
-        return {"adaptive, P2": adaptive((0.1, 0.05, 0.02, 0.01, 0.005)), "adaptive, P1": adaptive((0.02, 0.005), degree=1),
-                "fixed step, P2": [case.sized(1, 1e-4), case.sized(1, 4e-5)],
-                "midpoint": adaptive((0.02, 0.005), integrator="midpoint"), "bdf2": adaptive((0.02, 0.005), integrator="bdf2")}
+    return {family: points for family, points in (coarse(case) if quick else grid(case)).items() if family in case.families or not case.families}
+
+
+def adaptive(case: Case, accuracies: Iterable[float], **given) -> list[study.Point]:
+    """Points by the accuracy that meshes and steps are made for."""
+    return [{"accuracy": min(0.4, case.finer * each)} | given for each in accuracies]
+
+
+def coarse(case: Case) -> dict[str, list[study.Point]]:
+    """The settings of --quick."""
+    return {"adaptive, P2": adaptive(case, (0.1, 0.05, 0.02, 0.01, 0.005)), "adaptive, P1": adaptive(case, (0.02, 0.005), degree=1),
+            "fixed step, P2": [case.sized(1, 1e-4), case.sized(1, 4e-5)],
+            "midpoint": adaptive(case, (0.02, 0.005), integrator="midpoint"), "bdf2": adaptive(case, (0.02, 0.005), integrator="bdf2")}
+
+
+def grid(case: Case) -> dict[str, list[study.Point]]:
+    """All settings."""
     found = {
-        "adaptive, P2": adaptive([a for a in (0.05, 0.02, 0.01, 0.005, 0.0025, 0.00125, 0.000625) if a >= case.finest]),
-        "adaptive, P1": adaptive((0.02, 0.005, 0.00125, 0.0005), degree=1),
+        "adaptive, P2": adaptive(case, [a for a in (0.05, 0.02, 0.01, 0.005, 0.0025, 0.00125, 0.000625) if a >= case.finest]),
+        "adaptive, P1": adaptive(case, (0.02, 0.005, 0.00125, 0.0005), degree=1),
         "fixed step, P2": [case.sized(factor, dt) for factor, dt in ((2, 1.5e-4), (2, 1e-4), (2, 5e-5), (1, 1e-4), (1, 5e-5), (1, 2e-5), (0.5, 2e-5))],
         "fixed step, P1": [case.sized(factor, dt, degree=1) for factor, dt in ((1, 5e-5), (0.5, 5e-5), (0.5, 2e-5))],
     }
     for integrator in ("midpoint", "newmark", "backward-euler", "bdf2"):
-        found[integrator] = adaptive([a for a in (0.02, 0.005, 0.00125) if a >= case.finest], integrator=integrator)
+        found[integrator] = adaptive(case, [a for a in (0.02, 0.005, 0.00125) if a >= case.finest], integrator=integrator)
     if "friction_work" not in case.answers:   # with friction explicit steps are far too small (README)
-        found["central-difference"] = adaptive((0.02, 0.005), integrator="central-difference")
+        found["central-difference"] = adaptive(case, (0.02, 0.005), integrator="central-difference")
     return found
 
 
@@ -141,12 +166,13 @@ def measure(name: str, out: Path, quick: bool) -> tuple[pd.DataFrame, dict[str, 
     case, folder = CASES[name], out / name
     families = settings(case, quick)
     labels = [(family, point) for family, points in families.items() for point in points]
-    wanted = references(case, quick)
-    rows = study.study(wanted + [point for _, point in labels], folder, {"fields": 0} | case.base, LIMIT, case.scene, cores=1)
-    fine, rows = rows[:2], rows[2:].reset_index(drop=True)
+    of = CASES[case.like or name]
+    wanted, best_folder = references(of, quick), out / (case.like or name)
+    fine = study.study(wanted, best_folder, {"fields": 0} | of.base, LIMIT, of.scene, cores=1)
+    rows = study.study([point for _, point in labels], folder, {"fields": 0} | case.base, LIMIT, case.scene, cores=1)
     if fine.exit.any():
         raise study.Failure(f"bench: the reference of {name} failed: {fine.message[fine.exit != 0].iloc[0]}", int(fine.exit.max()))
-    histories = [_force(study.place(folder, point)) for point in wanted]
+    histories = [_force(study.place(best_folder, point)) for point in wanted]
     best = fine[list(case.answers)].mean()
     bars = {answer: 50 * abs(fine[answer].iloc[0] - fine[answer].iloc[1]) / abs(best[answer]) for answer in case.answers}
     bars["force"] = 100 * distance(*histories)
@@ -157,9 +183,9 @@ def measure(name: str, out: Path, quick: bool) -> tuple[pd.DataFrame, dict[str, 
         found[f"{answer}_error"] = 100 * (rows[answer] / best[answer] - 1).abs()
     found["force_error"] = [100 * distance(histories[0], _force(study.place(folder, point))) if code == 0 else np.nan
                             for (_, point), code in zip(labels, rows.exit)]
-    if name == "normal-svk":
+    if others := (PEERS_QUICK if quick else PEERS).get(name):
         ours = {study.place(folder, point) for (_, point), code in zip(labels, rows.exit) if code == 0}
-        found = pd.concat([found, _peers(best, histories[0], out / "peers", quick, folder, ours).assign(case=name)], ignore_index=True)
+        found = pd.concat([found, _peers(case, others, best, histories[0], out / "peers", folder, ours).assign(case=name)], ignore_index=True)
     if case.scene == "disc-block":
         found = pd.concat([found, _two_bodies(case, best, histories[0], out / "peers", quick).assign(case=name)], ignore_index=True)
     return found, bars
@@ -177,19 +203,20 @@ def _words(point: study.Point) -> str:
     return ", ".join(filter(None, [sizes, *rest]))
 
 
-def _peers(best: pd.Series, force: tuple[np.ndarray, np.ndarray], out: Path, quick: bool, folder: Path, ours: set[Path]) -> pd.DataFrame:
-    """The same rows for the other programs: one with the reason for each that is not installed or failed. force_from_ours: of the force
-    history against that of our run with the same sizes and step, where `folder` has it among `ours`."""
+def _peers(case: Case, others: list[tuple], best: pd.Series, force: tuple[np.ndarray, np.ndarray], out: Path, folder: Path, ours: set[Path]) -> pd.DataFrame:
+    """The same rows for the settings `others` of other programs: one with the reason for each that is not installed or failed. force_from_ours: of the
+    force history against that of our run with the same sizes and step, where `folder` has it among `ours`."""
     rows = []
-    for program, form, factor, dt in (PEERS_QUICK if quick else PEERS):
+    for program, form, factor, dt in others:
         sizes = sized(factor)
-        history = out / f"{program}-{form}-{factor:g}-{dt:g}.csv"
+        history = out / f"{case.scene}-{program}-{form}-{factor:g}-{dt:g}.csv"
         history.parent.mkdir(parents=True, exist_ok=True)
         row = {"program": f"{program}, {form}", "family": f"{program}, {form}", "setting": _words(sizes | {"dt": dt}), "exit": 1}
         if program == "textbook":
             found, reason = _textbook(sizes, dt, out), ""
         else:
-            found, reason = peers.run(program, form, sizes["mesh_size"], sizes["contact_mesh_size"], dt, LIMIT, history=str(history))
+            found, reason = peers.run(program, form, sizes["mesh_size"], sizes["contact_mesh_size"], dt, LIMIT, scene=case.scene,
+                                      history=str(history), **case.base)
         if found:
             row |= {"exit": 0, "dofs": found["dofs"], "steps": found["steps"], "seconds": found["cpu_seconds"]}
             row |= {f"{answer}_error": 100 * abs(found[answer] / best[answer] - 1) for answer in ("impulse", "rebound_vy", "contact_time")

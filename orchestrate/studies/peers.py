@@ -1,4 +1,4 @@
-"""Other programs on the same disc, or the same two bodies (verification/peers/): found where they are installed, run one process at a time.
+"""Other programs on the same disc or ball, or the same two bodies (verification/peers/): found where they are installed, run one process at a time.
 
 NGSolve: `pip install ngsolve==6.2.2608`, in this Python or in the one that $NGSOLVE_PYTHON names. GetFEM: Debian's python3-getfem,
 in /usr/bin/python3 or in $GETFEM_PYTHON. Nothing else needs them.
@@ -21,6 +21,7 @@ PYTHONS = {"ngsolve": ("NGSOLVE_PYTHON", sys.executable), "getfem": ("GETFEM_PYT
 INSTALL = {"ngsolve": "pip install ngsolve==6.2.2608", "getfem": "apt-get install python3-getfem"}
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 RADIUS = 0.05               # m, of disc-normal and the peers' default
+BODIES = {"disc-normal": "disc", "ball-axisymmetric": "ball", "ball": "ball_3d"}    # our scenes, and the script <program>_<body>.py beside each
 
 
 @cache
@@ -35,11 +36,11 @@ def find(program: str) -> str | None:
     return python if found else None
 
 
-def run(program: str, form: str, mesh_size: float, contact_mesh_size: float, dt: float, limit: float = 600,
+def run(program: str, form: str, mesh_size: float, contact_mesh_size: float, dt: float, limit: float = 600, scene: str = "disc-normal",
         **flags: Value) -> tuple[dict | None, str]:
     """(what the peer prints, "") or (None, the reason there is nothing).
 
-    program: ngsolve or getfem; form: plain, tuned or (NGSolve) tuned-realcompile; sizes [m], step dt [s], limit [s].
+    program: ngsolve or (the disc alone) getfem; form: plain, tuned or (NGSolve) tuned-realcompile; sizes [m], step dt [s], limit [s]; scene: of BODIES.
     Further flags by the names of the peers: law, nu, speed, penalty, young, density, tolerance, history.
     """
     flags |= {"form": form, "dt": dt, "mesh_size": mesh_size, "contact_mesh_size": contact_mesh_size}
@@ -47,7 +48,7 @@ def run(program: str, form: str, mesh_size: float, contact_mesh_size: float, dt:
         if program == "getfem":     # on our mesh; netgen makes its own with the same sizes
             flags["mesh"] = str(Path(folder) / "mesh.msh")
             mesh.write(mesh.disc(RADIUS, mesh_size, contact_mesh_size, half=True), Path(flags["mesh"]))
-        return _printed(program, f"{program}_disc.py", folder, limit, flags)
+        return _printed(program, f"{program}_{BODIES[scene]}.py", folder, limit, flags)
 
 
 def two_bodies(limit: float, **flags: Value) -> tuple[dict | None, str]:

@@ -23,7 +23,8 @@ from pathlib import Path
 import netgen.occ as occ
 import ngsolve as ng
 import numpy as np
-from ngsolve import BND, Det, Grad, Id, IfPos, InnerProduct, Inv, Trace, ds, dx, log, x, y
+from ngsolve import BND, Det, Grad, Id, IfPos, InnerProduct, Trace, ds, dx, x, y
+from ngsolve_body import strain_energy, stress
 from peer import with_numbers
 
 FINE_ANGLE = 60             # degrees from the axis: where the discs' outline is fine and in contact
@@ -161,21 +162,6 @@ class Pair:
         """Coefficients (scalar dofs, 2)."""
         return vector.FV().NumPy().reshape(2, -1).T
 
-    def strain_energy(self, C):
-        """W of C = F^T F (2 x 2, plane strain) [J/m3]."""
-        lam, mu = self.o.lame_lambda, self.o.lame_mu
-        if self.o.law == "svk":
-            return lam / 8 * (Trace(C) - 2) ** 2 + mu / 4 * InnerProduct(C - Id(2), C - Id(2))
-        log_J = 0.5 * log(Det(C))
-        return mu / 2 * (Trace(C) - 2) - mu * log_J + lam / 2 * log_J ** 2
-
-    def second_piola(self, C):
-        """S = 2 dW/dC [Pa]."""
-        lam, mu = self.o.lame_lambda, self.o.lame_mu
-        if self.o.law == "svk":
-            return lam / 2 * (Trace(C) - 2) * Id(2) + mu * (C - Id(2))
-        return mu * (Id(2) - Inv(C)) + lam * 0.5 * log(Det(C)) * Inv(C)
-
     def assemble(self):
         o, (trial, test) = self.o, self.space.TnT()
         volume = dx(intrules={ng.TRIG: ng.IntegrationRule(ng.TRIG, ORDER)})
@@ -183,11 +169,11 @@ class Pair:
         os.environ["PATH"] = f"{sys.prefix}/bin:" + os.environ["PATH"]                           # of NGSolve's compiler script
         how = dict(realcompile=True, wait=True) if o.realcompile else {}
         self.stress = ng.BilinearForm(self.space, nonassemble=True)
-        self.stress += InnerProduct(F * self.second_piola(F.trans * F), Grad(test)).Compile(**how) * volume
+        self.stress += InnerProduct(F * stress(F.trans * F, o), Grad(test)).Compile(**how) * volume
         self.mass = ng.BilinearForm(o.density * InnerProduct(trial, test) * dx, symmetric=True).Assemble().mat
         self.inverse = self.mass.Inverse(self.space.FreeDofs(), inverse="sparsecholesky")
         self.weights = [ng.LinearForm(o.density * test[1] * dx(body)).Assemble().vec for body in BODIES]
-        self.elastic = [self.strain_energy(F_now.trans * F_now) * dx(body, intrules={ng.TRIG: ng.IntegrationRule(ng.TRIG, ORDER)})
+        self.elastic = [strain_energy(F_now.trans * F_now, o) * dx(body, intrules={ng.TRIG: ng.IntegrationRule(ng.TRIG, ORDER)})
                         for body in BODIES]
         strain = 0.5 * (Grad(trial) + Grad(trial).trans)
         linear = ng.BilinearForm(self.space, symmetric=True)

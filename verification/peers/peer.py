@@ -1,7 +1,7 @@
 """What the peer programs share: their flags, the mesh of the half disc, the march and the line of JSON.
 
-The problem is the scene disc-normal: half a disc (u_x = 0 on the axis x = 0), plane strain, falling on the rigid plane
-y = 0 with the traction t_N = k max(0, -gap) per unit reference length, energy-momentum step, constant dt. SI units, per
+The problem is the scene disc-normal, ball-axisymmetric or ball: a body, one half of it or less by symmetry, falling on the rigid plane
+y = 0 with the traction t_N = k max(0, -gap) per unit reference area, energy-momentum step, constant dt. SI units, the disc's per
 metre of thickness. A peer gives a Model; `march` runs it until the contact has been over for a tenth of its length.
 """
 
@@ -19,11 +19,11 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from orchestrate import mesh  # noqa: E402
 
-LONGEST = 20e-3             # s: no contact of this disc lasts that long
+LONGEST = 20e-3             # s: no contact of these bodies lasts that long
 
 
 class Model(Protocol):
-    """A half disc in a peer program; its state is at the end of the last step."""
+    """Half of the body in a peer program; its state is at the end of the last step."""
 
     program: str
     version: str
@@ -32,13 +32,13 @@ class Model(Protocol):
     factorizations: int
 
     def step(self) -> float:
-        """Goes one dt on; the mean normal force of the HALF disc in this step [N/m]. Raises StepFailed."""
+        """Goes one dt on; the mean normal force on the HALF body in this step [N/m; N]. Raises StepFailed."""
 
     def penetration(self) -> float:
         """Largest -gap of the points where contact is integrated, negative in flight [m]."""
 
     def energy(self) -> float:
-        """Kinetic + elastic + contact energy of the HALF disc [J/m]."""
+        """Kinetic + elastic + contact energy of the HALF body [J/m; J]."""
 
     def velocity(self) -> float:
         """Mean of v_y over the mass [m/s]."""
@@ -49,22 +49,22 @@ class StepFailed(Exception):
 
 
 def small(work: float, accepted: float) -> bool:
-    """Whether Newton's method is there: the work of its residual against what is accepted [J/m]. Raises StepFailed."""
+    """Whether Newton's method is there: the work of its residual against what is accepted [J/m; J]. Raises StepFailed."""
     if not math.isfinite(work):
         raise StepFailed("a stress is not a number")
     return abs(work) <= accepted
 
 
-def arguments(program: str, forms: tuple[str, ...]) -> argparse.Namespace:
+def arguments(program: str, forms: tuple[str, ...], scene: str = "disc-normal") -> argparse.Namespace:
     """The flags that all peers take, with lame_lambda and lame_mu [Pa] added."""
-    parser = argparse.ArgumentParser(description=f"disc-normal with {program}; ends with a line of JSON")
+    parser = argparse.ArgumentParser(description=f"{scene} with {program}; ends with a line of JSON")
     parser.add_argument("--form", choices=forms, default="tuned", help="how the program is used (default tuned)")
     parser.add_argument("--mesh", type=Path, help="mesh of the half disc (.msh of orchestrate.mesh) in place of sizes")
     numbers = {"mesh-size": (8e-3, "m"), "contact-mesh-size": (2.5e-3, "m"), "dt": (2e-5, "s"), "nu": (0.45, "-"),
                "speed": (8.0, "m/s"), "penalty": (1e10, "Pa/m"), "young": (7e6, "Pa"), "density": (1722.0, "kg/m3"),
                "radius": (0.05, "m"), "tolerance": (5e-12, "largest work of the residual in a step, over the energy")}
     parser.add_argument("--law", choices=("svk", "neohookean"), default="svk")
-    parser.add_argument("--history", type=Path, help="writes t,normal_force there: whole disc, mean of the step that ends at t")
+    parser.add_argument("--history", type=Path, help="writes t,normal_force there: whole body, mean of the step that ends at t")
     return with_numbers(parser, numbers)
 
 

@@ -1,0 +1,236 @@
+"""Pictures of a body in three dimensions: cut open, with the von Mises stress, and from below, with the contact pressure. They are rendered by
+PyVista, where it is installed (INSTALL). The arrays that they are drawn from need it not."""
+
+import os
+import subprocess
+import sys
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+from matplotlib.cm import ScalarMappable
+
+from .. import vtu
+from ..parameters import Value
+from .contact import PRESSURE
+
+INSTALL = ".venv/bin/python -m pip install pyvista==0.49.1 vtk==9.7.2"
+PROBE = "import pyvista; p = pyvista.Plotter(off_screen=True, window_size=(8, 8)); p.add_mesh(pyvista.Sphere()); p.screenshot(None, return_img=True)"
+INSTANTS = 4               # of the picture at most
+FINE = 4                   # parts of the side of a face
+PIXELS = (700, 620)        # of a view
+COLOURS = {"stress": "viridis", "pressure": "YlOrRd"}
+GROUND = "#d0d0d0"
+AXES = {"quarter": (0, 2), "half": (2,)}       # of a symmetric body: along which the computed part has a mirror image
+
+
+@cache
+def missing() -> str:
+    """Why nothing can be rendered here; empty where it can. Asked of another process: where there is no OpenGL at all VTK crashes."""
+    if not os.environ.get("DISPLAY"):
+        os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")   # off-screen, without a look for a screen
+    try:
+        probe = subprocess.run([sys.executable, "-c", PROBE], capture_output=True, text=True, timeout=120)
+    except (OSError, subprocess.TimeoutExpired) as error:
+        return f"PyVista cannot render here: {type(error).__name__}"
+    if "ModuleNotFoundError" in probe.stderr:
+        return f"PyVista is not installed ({INSTALL})"
+    return "" if probe.returncode == 0 else "PyVista cannot render here: it needs EGL or a screen (apt-get install libegl1)"
+
+
+# ---- the surface
+
+@dataclass(frozen=True)
+class Skin:
+    """A surface in triangles (t, 3) between its vertices; each vertex is `shape` (m, 6) of the nodes (m, 6) of a quadratic face."""
+
+    nodes: np.ndarray
+    shape: np.ndarray
+    triangles: np.ndarray
+
+    def at(self, field: np.ndarray) -> np.ndarray:
+        """The field (nodes, ...) at the vertices (m, ...)."""
+        return np.einsum("ma,ma...->m...", self.shape, field[self.nodes])
+
+
+def skin(points: np.ndarray, tetrahedra: np.ndarray) -> Skin:
+    """The faces that bound quadratic tetrahedra, each in FINE x FINE straight triangles; a vertex where faces meet is one."""
+    faces = tetrahedra[:, vtu.FACES].reshape(-1, 6)
+    _, first, count = np.unique(np.sort(faces[:, :3], axis=1), axis=0, return_index=True, return_counts=True)
+    faces = faces[first[count == 1]]
+    number = {place: k for k, place in enumerate((i, j) for i in range(FINE + 1) for j in range(FINE + 1 - i))}
+    r, s = np.array(list(number)).T / FINE
+    q = 1 - r - s
+    shape = np.stack([q * (2 * q - 1), r * (2 * r - 1), s * (2 * s - 1), 4 * q * r, 4 * r * s, 4 * s * q], axis=1)
+    pieces = [(number[i, j], number[i + 1, j], number[i, j + 1]) for i, j in number if i + j < FINE]
+    pieces += [(number[i + 1, j], number[i + 1, j + 1], number[i, j + 1]) for i, j in number if i + j < FINE - 1]
+    triangles = (np.array(pieces) + len(shape) * np.arange(len(faces))[:, None, None]).reshape(-1, 3)
+    every = Skin(np.repeat(faces, len(shape), axis=0), np.tile(shape, (len(faces), 1)), triangles)
+    rounded = np.round(every.at(points) / (1e-7 * np.ptp(points, axis=0).max())).astype(np.int64)
+    _, kept, row = np.unique(rounded, axis=0, return_index=True, return_inverse=True)
+    return Skin(every.nodes[kept], every.shape[kept], row.reshape(-1)[triangles])
+
+
+def mirrored(solid: vtu.Solid, axis: int) -> tuple[vtu.Solid, np.ndarray]:
+    """The body with its mirror image along `axis`, of one mesh with it; and whether a tetrahedron is of the image."""
+    points, n = solid.points, len(solid.points)
+    on_plane = np.abs(points[:, axis]) < 1e-9 * np.ptp(points, axis=0).max()
+    twin = np.where(on_plane, np.arange(n), n + np.cumsum(~on_plane) - 1)
+    flip = np.where(np.arange(3) == axis, -1.0, 1.0)
+    both = lambda field, sign=1.0: np.concatenate([field, sign * field[~on_plane]])   # noqa: E731
+    fields = {"displacement": both(solid.fields["displacement"], flip), "von_mises": both(solid.fields["von_mises"])}
+    count = len(solid.tetrahedra)
+    return vtu.Solid(both(points, flip), np.vstack([solid.tetrahedra, twin[solid.tetrahedra]]), fields), np.arange(2 * count) >= count
+
+
+def whole(solid: vtu.Solid, axes: tuple[int, ...]) -> vtu.Solid:
+    """The body of which the part where the coordinates `axes` are positive was computed."""
+    for axis in axes:
+        solid, _ = mirrored(solid, axis)
+    return solid
+
+
+def in_front(solid: vtu.Solid, axes: tuple[int, ...]) -> np.ndarray:
+    """Which tetrahedra (t,) are taken away to look into the body: those before the plane z = 0, of a quarter's mirror images one quarter."""
+    middle = solid.points[solid.tetrahedra[:, :4]].mean(axis=1)
+    return (middle[:, 2] > 0) & ((middle[:, 0] > 0) | (0 not in axes))
+
+
+# ---- the pressure on it
+
+class Pressure:
+    """The pressure (m,) [Pa] at the vertices (m, 3) of a skin in the reference configuration: the mean of the points of contact nearby, weighted with their
+    area A and exp(-(distance/h)^2), h^2 the largest A. Points that bear no load at the time have none, and where points that ever bear some
+    fill less than all of the neighbourhood, of radius 2 h, the rest of it has none: the force is kept."""
+
+    def __init__(self, table: pd.DataFrame, axes: tuple[int, ...], vertices: np.ndarray):
+        self.table, self.largest = table, float(table.pressure.max()) if len(table) else 0.0
+        self.points = table.drop_duplicates(["X", "Y", "Z"])[["X", "Y", "Z", "weight"]].to_numpy()
+        known, self.source = self.points[:, :3], np.arange(len(self.points))
+        for axis in axes:
+            known = np.vstack([known, known * np.where(np.arange(3) == axis, -1, 1)])
+            self.source = np.concatenate([self.source, self.source])
+        self.near, self.share = np.zeros(len(vertices), bool), np.zeros((0, len(known)))
+        if len(known):
+            shares = self.points[self.source, 3] / 2 ** len(axes)
+            h = np.sqrt(shares.max())
+            low, high = known.min(axis=0) - 2 * h, known.max(axis=0) + 2 * h
+            self.near = ((vertices > low) & (vertices < high)).all(axis=1)
+            square = ((vertices[self.near, None] - known) ** 2).sum(axis=2) / h**2
+            weight = np.where(square < 4, np.exp(-square), 0) * shares
+            self.share = weight / np.maximum(weight.sum(axis=1, keepdims=True), np.pi * h**2 * (1 - np.exp(-4)))
+
+    def at(self, t: float) -> np.ndarray:
+        now = self.table[self.table.t == self._instant(t)]
+        load = dict(zip(now[["X", "Y", "Z"]].itertuples(index=False, name=None), now.pressure))
+        values = np.array([load.get((x, y, z), 0.0) for x, y, z, _ in self.points])
+        found = np.zeros(len(self.near))
+        found[self.near] = self.share @ values[self.source] if len(values) else 0.0
+        return found
+
+    def _instant(self, t: float) -> float:
+        """The time of the table that is `t` to the digits that are written; nan where no point bears load then."""
+        times = self.table.t.unique()
+        nearest = times[np.abs(times - t).argmin()] if len(times) else np.nan
+        return nearest if abs(nearest - t) <= 1e-6 * max(abs(t), np.ptp(times) if len(times) else 0) else np.nan
+
+
+# ---- the views
+
+@dataclass(frozen=True)
+class Sight:
+    """What is seen at an instant: vertices (m, 3) [m] and von Mises stress [MPa] of the cut body, vertices and pressure [MPa] of all of it."""
+
+    cut: np.ndarray
+    stress: np.ndarray
+    outside: np.ndarray
+    pressure: np.ndarray
+
+    def between(self, other: "Sight", share: float) -> "Sight":
+        """A share of the way to another instant."""
+        return Sight(*((1 - share) * getattr(self, name) + share * getattr(other, name) for name in self.__dataclass_fields__))
+
+
+class Views:
+    """The snapshots `series` of a body in three dimensions, rendered. `times` [s]; `stress`, `pressure`: the largest that is drawn [MPa]; `loaded`: at
+    which snapshots the body is touched."""
+
+    def __init__(self, series: list[tuple[float, Path]], table: pd.DataFrame, scene: dict[str, Value]):
+        axes = AXES.get(scene.get("symmetry"), ())
+        solids = [whole(vtu.read_solid(path), axes) for _, path in series]
+        points, tetrahedra = solids[0].points, solids[0].tetrahedra
+        self.cut, self.outside = skin(points, tetrahedra[~in_front(solids[0], axes)]), skin(points, tetrahedra)
+        self.times = np.array([t for t, _ in series])
+        self.ground = scene.get("script") == "ball-plane"      # the plane y = 0
+        pressure = Pressure(table, axes, self.outside.at(points))
+        self.sights = [self._sight(solid, pressure.at(t)) for t, solid in zip(self.times, solids)]
+        self.stress = float(np.quantile([sight.stress for sight in self.sights], 0.999)) or 1.0    # one spot does not darken all the rest
+        self.pressure = max(float(sight.pressure.max()) for sight in self.sights) or 1.0
+        self.loaded = [k for k, sight in enumerate(self.sights) if sight.pressure.max() > 0.05 * self.pressure]
+        self.towards = (0.75, 0.42, 1.0) if 0 in axes else (0.3, 0.3, 1.0)     # the eye
+        ends = np.array([[sight.outside.min(axis=0), sight.outside.max(axis=0)] for sight in self.sights])
+        self.low, self.high = ends[:, 0].min(axis=0), ends[:, 1].max(axis=0)
+
+    def _sight(self, solid: vtu.Solid, pressure: np.ndarray) -> Sight:
+        place = solid.points + solid.fields["displacement"]
+        return Sight(self.cut.at(place), 1e-6 * self.cut.at(solid.fields["von_mises"]), self.outside.at(place), 1e-6 * pressure)
+
+    def at(self, t: float) -> Sight:
+        """What is seen at the time t [s], between two snapshots linear in time."""
+        place = np.interp(t, self.times, np.arange(len(self.times)))
+        return self.sights[int(np.floor(place))].between(self.sights[int(np.ceil(place))], place % 1)
+
+    def render(self, sight: Sight) -> tuple[np.ndarray, np.ndarray]:
+        """Both views as images (height, width, 3): the cut body from the front, all of it from below, through the plane."""
+        return (self._image(sight.cut, self.cut.triangles, sight.stress, self.stress, COLOURS["stress"], self.towards, self.ground),
+                self._image(sight.outside, self.outside.triangles, sight.pressure, self.pressure, COLOURS["pressure"], (0.25, -1.0, 0.55), False))
+
+    def _image(self, vertices: np.ndarray, triangles: np.ndarray, values: np.ndarray, largest: float, colours: str,
+               towards: tuple[float, float, float], ground: bool) -> np.ndarray:
+        import pyvista
+        plotter = pyvista.Plotter(off_screen=True, window_size=PIXELS)
+        try:
+            surface = pyvista.PolyData(vertices, np.column_stack([np.full(len(triangles), 3), triangles]).ravel())
+            surface.point_data["value"] = values
+            plotter.add_mesh(surface, scalars="value", cmap=colours, clim=(0, largest), show_scalar_bar=False, smooth_shading=True,
+                             split_sharp_edges=True, feature_angle=40, ambient=0.45, diffuse=0.55)
+            centre, size = (self.low + self.high) / 2, self.high - self.low
+            if ground:
+                plotter.add_mesh(pyvista.Plane(center=(centre[0], 0, centre[2]), direction=(0, 1, 0), i_size=size[0], j_size=size[2]),
+                                 color=GROUND, lighting=False)
+            plotter.camera_position = [centre + 10 * np.linalg.norm(size) * np.array(towards) / np.linalg.norm(towards), centre, (0, 1, 0)]
+            plotter.enable_parallel_projection()
+            plotter.camera.parallel_scale = 0.38 * np.linalg.norm(size)
+            plotter.enable_anti_aliasing("ssaa")
+            plotter.background_color = "white"
+            return plotter.screenshot(None, return_img=True)
+        finally:
+            plotter.close()
+
+
+def draw(series: list[tuple[float, Path]], table: pd.DataFrame, scene: dict[str, Value]) -> plt.Figure | None:
+    """The body at up to INSTANTS times at which it is touched: above cut open, with its stress, below from below, with the contact pressure. None of a
+    body in the plane, without contact, and where nothing can be rendered."""
+    if table.empty or vtu.read_solid(series[0][1]) is None or missing():
+        return None
+    views = Views(series, table, scene)
+    picked = [views.loaded[k] for k in np.unique(np.linspace(0, len(views.loaded) - 1, INSTANTS).round().astype(int))] if views.loaded else [0]
+    figure, grid = plt.subplots(2, len(picked), figsize=(2.5 * len(picked) + 0.9, 4.6), squeeze=False)
+    for column, k in zip(grid.T, picked):
+        for axes, image in zip(column, views.render(views.sights[k])):
+            axes.imshow(image)
+            axes.set_axis_off()
+        column[0].set_title(f"{1e3 * views.times[k]:.2f} ms", pad=2)
+    for row, bar in zip(grid, bars(views)):
+        figure.colorbar(bar[0], ax=row, label=bar[1], shrink=0.8, aspect=22, extend="max")
+    return figure
+
+
+def bars(views: Views) -> list[tuple[ScalarMappable, str]]:
+    """Colours and label of the stress and of the pressure."""
+    from .figures import STRESS
+    return [(ScalarMappable(plt.Normalize(0, largest), COLOURS[name]), label)
+            for name, largest, label in (("stress", views.stress, STRESS), ("pressure", views.pressure, PRESSURE))]
