@@ -126,7 +126,7 @@ def difference(fine: Mapping, coarse: Mapping, speed: float, radius: float | Non
 
     energy = value(fine, "largest_energy") or value(fine, "energy_initial") or value(fine, "energy_final")
     rebound = max(math.hypot(apart(f"rebound_vx{of}", speed), apart(f"rebound_vy{of}", speed)) for of in suffixes(fine))
-    rim = max(apart(f"spin{of}", speed / (value(fine, f"reach{of}") or radius)) for of in suffixes(fine))
+    rim = max(apart(f"rebound_spin{of}", speed / (value(fine, f"reach{of}") or radius)) for of in suffixes(fine))
     found = {"impulse": apart("impulse", value(fine, "impulse")), "rebound": rebound, "rebound_spin": rim, "energy": max(apart(name, energy) for name in ("energy_final", "vibration_energy")),
              "friction_work": apart("friction_work", energy)}
     for name in ("thresholded_contact_time", "contact_time", "peak_force"):

@@ -1,6 +1,7 @@
 """What is in the folder of a finished run: its history, its scene as used, its summary."""
 
 import json
+import re
 import tomllib
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -64,7 +65,7 @@ def read_answers(folder: Path) -> tuple[dict, dict[str, Value], float]:
 def suffixes(columns: Iterable[str]) -> list[str]:
     """What stands behind the names of columns (of history.csv) or numbers (of summary.json) that are of one body: _1, _2 ..., or
     nothing, where there is one body only."""
-    return [f"_{b}" for b in range(1, 1 + sum(name.startswith("spin_") for name in columns))] or [""]
+    return [f"_{b}" for b in range(1, 1 + sum(bool(re.fullmatch(r"(rebound_)?spin_\d+", name)) for name in columns))] or [""]
 
 
 def read_summary(folder: Path) -> dict:

@@ -178,4 +178,4 @@ def test_gross_slip_is_that_of_the_rigid_ball(disc):
     restitution = s["rebound_vy"] / normal
     assert s["sticking_time"] < 0.01 * s["contact_time"] and s["energy_drift"] < 1e-9
     assert h["momentum_x"][0] - h["momentum_x"][-1] == pytest.approx(0.1 * s["impulse"], rel=1e-3)
-    assert -s["spin"] == pytest.approx(2.5 * 0.1 * (1 + restitution) * normal / 0.05, rel=0.03)
+    assert -s["rebound_spin"] == pytest.approx(2.5 * 0.1 * (1 + restitution) * normal / 0.05, rel=0.03)

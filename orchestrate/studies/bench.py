@@ -60,7 +60,7 @@ class Case:
 CASES = {
     "normal-svk": Case("disc-normal", {"law": "svk"}, ("impulse", "rebound_vy", "contact_time")),
     "normal-neohookean": Case("disc-normal", {"law": "neohookean"}, ("impulse", "rebound_vy", "contact_time")),
-    "oblique-neohookean": Case("disc-oblique", {"law": "neohookean"}, ("impulse", "rebound_vx", "rebound_vy", "spin", "friction_work", "contact_time"), 0.000625),
+    "oblique-neohookean": Case("disc-oblique", {"law": "neohookean"}, ("impulse", "rebound_vx", "rebound_vy", "rebound_spin", "friction_work", "contact_time"), 0.000625),
     "disc-block-svk": Case("disc-block", {"law": "svk", "penalty": 1e9}, tuple(NGSOLVE), 0.005, 20),
 }
 
