@@ -5,6 +5,8 @@ import pandas as pd
 import pytest
 
 from orchestrate import run, scene
+from orchestrate.failure import Unreadable
+from orchestrate.report import impacts
 
 COARSE = {"law": "neohookean", "accuracy": 0.1, "fields": 0}
 OBLIQUE = COARSE | {"speed": 12, "angle": 60, "friction_static": 0.7, "friction_dynamic": 0.5, "slip_velocity": 0.1}
@@ -92,3 +94,15 @@ def test_in_contact_at_the_end(tmp_path):
     assert rows.over.tolist() == [0] and rows.end.tolist() == [1e-3]
     rows, found = go(tmp_path, "disc-normal", COARSE | {"end_time": 1e-3, "height": 1.0})
     assert rows.empty and found.summary["restitution"] is None
+
+
+def test_bounces_are_drawn(tmp_path):
+    """Where a meeting has several impacts there is a figure of restitution; grazing intervals are none; a damaged table is said."""
+    rows, found = go(tmp_path, "disc-normal", COARSE | {"speed": 0, "height": 0.02, "gravity": 9.81, "end_time": 0.25, "accuracy": 0.3})
+    impacts.plt.close(figure := impacts.draw(rows, ["body"]))
+    assert figure.axes[0].get_ylabel() == "restitution" and len(figure.axes[0].lines[0].get_xdata()) == len(rows)
+    light = rows.assign(impulse=[1.0] + [1e-3] * (len(rows) - 1))
+    assert impacts.draw(light, ["body"]) is None and impacts.draw(rows[:1], ["body"]) is None
+    (found.folder / "contacts.csv").write_text("body\n1\n")
+    with pytest.raises(Unreadable, match="contacts.csv lacks the columns partner, start"):
+        impacts.read(found.folder)
