@@ -3,12 +3,12 @@
 from pathlib import Path
 
 import matplotlib.pyplot as plt
-import numpy as np
 import pandas as pd
 
 from ..failure import Unreadable
 
 LIGHTEST = 0.01                  # of the largest impulse of a meeting: what is less is the grazing end of an impact
+LEAST_SLIP = 0.05                # of the approach: of less the restitution along the partner is that of vibrations
 COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"]
 NEEDED = ["body", "partner", "start", "end", "impulse", "approach", "separation", "restitution", "restitution_tangential"]
 
@@ -36,7 +36,7 @@ def several(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def draw(table: pd.DataFrame, names: list[str]) -> plt.Figure | None:
-    """Restitution, across and along the partner, over the impacts of each meeting, and below them the speeds of approach; None where none has several.
+    """Restitution, across and along the partner, over the impacts of each meeting, and below them the speeds before each; None where none has several.
     `names`: of the bodies."""
     impacts = several(table)
     if impacts.empty:
@@ -46,10 +46,13 @@ def draw(table: pd.DataFrame, names: list[str]) -> plt.Figure | None:
         other = names[int(partner) - 1] if partner > 0 else f"obstacle {-int(partner)}" if len(names) > 1 else "plane"
         label, t = f"{names[int(body) - 1]} – {other}", 1e3 * rows.start
         top.plot(t, rows.restitution, "o-", color=colour, markersize=4, linewidth=0.8, label=f"{label}: across")
-        if rows.restitution_tangential.notna().any():
-            top.plot(t, rows.restitution_tangential, "s--", color=colour, markersize=4, linewidth=0.8, fillstyle="none", label=f"{label}: along")
+        along = rows.restitution_tangential.where(rows.slip_before > LEAST_SLIP * rows.approach)
+        if along.notna().any():
+            top.plot(t, along, "s--", color=colour, markersize=4, linewidth=0.8, fillstyle="none", label=f"{label}: along")
         below.plot(t, rows.approach, "o-", color=colour, markersize=4, linewidth=0.8)
-    top.set(ylabel="restitution", ylim=(min(0.0, *np.nan_to_num(top.get_ylim())), 1.05))
+        if along.notna().any():
+            below.plot(t, rows.slip_before, "s--", color=colour, markersize=4, linewidth=0.8, fillstyle="none")
+    top.set(ylabel="restitution", ylim=(min(0.0, top.get_ylim()[0]), 1.05))
     top.legend(fontsize=7, ncols=2)
-    below.set(xlabel="start of the contact [ms]", ylabel="speed of approach [m/s]", ylim=(0, None))
+    below.set(xlabel="start of the contact [ms]", ylabel="speed before [m/s]", ylim=(0, 1.1 * below.get_ylim()[1]))
     return figure
