@@ -110,7 +110,7 @@ def other(values: Mapping[str, Value], used: Mapping[str, Value], factor: float,
     if own_mesh:
         sizes["mesh_size"] = min(sizes["mesh_size"], used["radius"])
     kept = {name: used[name] for name in ("penalty", "slip_velocity", "friction_dynamic")}
-    return dict(values) | kept | sizes | {"accuracy": min(LARGEST, factor**2 * used["accuracy"]), "fields": 0}
+    return dict(values) | kept | sizes | {"accuracy": min(LARGEST, factor**2 * used["accuracy"]), "fields": 0, "modes": 0}
 
 
 def difference(fine: Mapping, coarse: Mapping, speed: float, radius: float | None) -> dict[str, float]:
