@@ -63,7 +63,7 @@ def test_spectrum_of_a_force(tmp_path):
     exact = 2 / np.pi * abs(np.cos(np.pi * f * period) / (1 - (2 * f * period) ** 2))
     assert vibration.spectrum(t, np.full(2000, 5e-4), np.sin(np.pi * (t - 2.5e-4)), f) == pytest.approx(exact, rel=1e-5)
     table, found = of(tmp_path, "disc-normal", {"accuracy": 0.3, "modes": 12})
-    assert (found.folder / "figures/vibration.png").exists() and len(vibration.read(found.folder)) == 12
+    assert len(vibration.read(found.folder)) == 12 and (figure := vibration.draw(table, found.history, "/m")) and len(figure.axes) == 2
     (found.folder / "modes.csv").write_text("mode\n1\n")
     with pytest.raises(Unreadable, match="modes.csv lacks the columns frequency"):
         vibration.read(found.folder)
