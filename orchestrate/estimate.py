@@ -110,7 +110,7 @@ def other(values: Mapping[str, Value], used: Mapping[str, Value], factor: float,
     if own_mesh:
         sizes["mesh_size"] = min(sizes["mesh_size"], used["radius"])
     kept = {name: used[name] for name in ("penalty", "slip_velocity", "friction_dynamic")}
-    return dict(values) | kept | sizes | {"accuracy": min(LARGEST, factor**2 * used["accuracy"]), "fields": 0}
+    return dict(values) | kept | sizes | {"accuracy": min(LARGEST, factor**2 * used["accuracy"]), "fields": 0, "modes": 0}
 
 
 def difference(fine: Mapping, coarse: Mapping, speed: float, radius: float | None) -> dict[str, float]:
@@ -126,7 +126,7 @@ def difference(fine: Mapping, coarse: Mapping, speed: float, radius: float | Non
 
     energy = value(fine, "largest_energy") or value(fine, "energy_initial") or value(fine, "energy_final")
     rebound = max(math.hypot(*(apart(f"rebound_v{axis}{of}", speed) for axis in "xyz")) for of in suffixes(fine))
-    rim = max(math.hypot(*(apart(f"spin{about}{of}", speed / (value(fine, f"reach{of}") or radius)) for about in ("", "_x", "_y"))) for of in suffixes(fine))
+    rim = max(math.hypot(*(apart(f"rebound_spin{about}{of}", speed / (value(fine, f"reach{of}") or radius)) for about in ("", "_x", "_y"))) for of in suffixes(fine))
     found = {"impulse": apart("impulse", value(fine, "impulse")), "rebound": rebound, "rebound_spin": rim, "energy": max(apart(name, energy) for name in ("energy_final", "vibration_energy")),
              "friction_work": apart("friction_work", energy)}
     for name in ("thresholded_contact_time", "contact_time", "peak_force"):

@@ -65,7 +65,7 @@ def read_answers(folder: Path) -> tuple[dict, dict[str, Value], float]:
 def suffixes(columns: Iterable[str]) -> list[str]:
     """What stands behind the names of columns (of history.csv) or numbers (of summary.json) that are of one body: _1, _2 ..., or
     nothing, where there is one body only."""
-    return [f"_{b}" for b in range(1, 1 + sum(re.fullmatch("spin_[0-9]+", name) is not None for name in columns))] or [""]
+    return [f"_{b}" for b in range(1, 1 + sum(re.fullmatch("(rebound_)?spin_[0-9]+", name) is not None for name in columns))] or [""]
 
 
 def read_summary(folder: Path) -> dict:

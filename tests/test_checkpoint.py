@@ -9,6 +9,7 @@ import time
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from orchestrate import freefem, parameters, results, run, scene
@@ -72,6 +73,8 @@ def assert_same(folder: Path, straight: Path) -> None:
     for name in set(expected) - set(EFFORT):
         exact = not isinstance(expected[name], float)
         assert there[name] == (expected[name] if exact else pytest.approx(expected[name], rel=1e-9, abs=1e-11)), name
+    there, expected = (pd.read_csv(each / "contacts.csv") for each in (folder, straight))
+    pd.testing.assert_frame_equal(there, expected, rtol=1e-9)
     fields = sorted(path.name for path in (straight / "fields").glob("*"))
     assert fields == sorted(path.name for path in (folder / "fields").glob("*"))
     for name in fields:
@@ -100,7 +103,7 @@ def test_half_a_run_and_the_rest_are_the_whole(tmp_path, name):
     summary = results.read_summary(out)
     assert summary["resumed_at"] == results.read_history(out)["t"][knows - 1]
     assert results.read_summary(tmp_path / "straight")["resumed_at"] is None
-    assert not {path.name for path in out.iterdir()} - {"scene.toml", "history.csv", "summary.json", "fields", "fields.pvd"}
+    assert not {path.name for path in out.iterdir()} - {"scene.toml", "history.csv", "contacts.csv", "summary.json", "fields", "fields.pvd"}
 
 
 # ---- the same command

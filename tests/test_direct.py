@@ -33,7 +33,7 @@ def names(folder: Path) -> set[str]:
     return {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
 
 
-RESULTS = {"scene.toml", "history.csv", "summary.json"}
+RESULTS = {"scene.toml", "history.csv", "contacts.csv", "summary.json"}
 
 
 @pytest.mark.parametrize("name", [ODD, "-out", "-", "--", "a b/c d", "é", "a\nb"])
@@ -114,7 +114,7 @@ def test_failure_does_not_cost_an_earlier_result(tmp_path):
     assert call(*COARSE, "-speed", "0", "-out", "out", cwd=tmp_path)[0] == 10
     assert names(tmp_path) == {f"out/{name}" for name in RESULTS}
     assert call("-accuracy", "0.4", "-speed", "60", "-out", "out", cwd=tmp_path)[0] in (11, 12)
-    assert names(tmp_path / "out") == {"scene.toml", "history.csv", "failure.json"} and (tmp_path / "out.1/history.csv").read_bytes() == before
+    assert names(tmp_path / "out") == {"scene.toml", "history.csv", "contacts.csv", "failure.json"} and (tmp_path / "out.1/history.csv").read_bytes() == before
 
 
 @pytest.mark.parametrize("size", [0, 200, 3000, 6000])

@@ -8,7 +8,7 @@ import pytest
 from orchestrate import estimate, parameters
 from orchestrate.failure import Failure
 
-ANSWERS = {"impulse": 2.0, "rebound_vx": 1.0, "rebound_vy": 3.0, "spin": -8.0, "energy_initial": 5.0, "energy_final": 4.5, "vibration_energy": 1.0,
+ANSWERS = {"impulse": 2.0, "rebound_vx": 1.0, "rebound_vy": 3.0, "rebound_spin": -8.0, "energy_initial": 5.0, "energy_final": 4.5, "vibration_energy": 1.0,
            "friction_work": 0.5, "thresholded_contact_time": 3.9e-3, "contact_time": 4e-3, "peak_force": 7e4}
 START = {"mesh_size": 0.016, "contact_mesh_size": 0.003, "dt": 0.0}    # of the first run of the fake disc
 
@@ -16,7 +16,7 @@ START = {"mesh_size": 0.016, "contact_mesh_size": 0.003, "dt": 0.0}    # of the 
 # ---- what two runs differ by
 
 @pytest.mark.parametrize("change, found", [
-    ({"impulse": 2.1}, {"impulse": 0.05}), ({"rebound_vx": 1.3, "rebound_vy": 2.6}, {"rebound": 0.05}), ({"spin": -10.0}, {"rebound_spin": 0.1}),
+    ({"impulse": 2.1}, {"impulse": 0.05}), ({"rebound_vx": 1.3, "rebound_vy": 2.6}, {"rebound": 0.05}), ({"rebound_spin": -10.0}, {"rebound_spin": 0.1}),
     ({"energy_final": 4.25}, {"energy": 0.05}), ({"vibration_energy": 1.5}, {"energy": 0.1}),
     ({"friction_work": 0.75}, {"friction_work": 0.05, estimate.OF_ITSELF: 0.5}), ({"contact_time": 5e-3}, {"contact_time": 0.25}),
     ({"thresholded_contact_time": 3.51e-3}, {"thresholded_contact_time": 0.1}), ({"peak_force": 7.7e4}, {"peak_force": 0.1}), ({}, {})])

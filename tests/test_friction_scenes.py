@@ -53,7 +53,7 @@ def test_oblique_impact_closes_its_balance(oblique):
     """Friction takes energy and never gives any; with it the balance closes; the body leaves turning forwards."""
     summary, work = oblique.summary, oblique.history["friction_work"]
     assert summary["energy_drift"] < 1e-9 and (np.diff(work) >= -1e-9 * summary["energy_initial"]).all()
-    assert 0 < summary["friction_work"] == pytest.approx(work[-1]) and summary["spin"] < 0
+    assert 0 < summary["friction_work"] == pytest.approx(work[-1]) and summary["rebound_spin"] < 0
     assert summary["sliding_time"] + summary["sticking_time"] == pytest.approx(summary["contact_time"], rel=0.02)
 
 

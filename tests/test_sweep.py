@@ -177,11 +177,11 @@ def test_bad_input_of_a_point_is_said_with_its_code(fake, tmp_path, capsys):
 
 
 def test_a_parameter_with_the_name_of_a_result_keeps_its_values(fake, tmp_path):
-    """spin is a parameter and a number of the summary: the latter is spin_end where the former varies."""
+    """No number of the summary has the name of a parameter."""
     out = tmp_path / "out"
     assert sweep.main([str(write(tmp_path, COARSE + "[product]\nspin = [-100, 0, 100]\n")), "--out", str(out)]) == 0
     rows = table(out)
-    assert rows.spin.tolist() == [-100, 0, 100] and rows.spin_end.tolist() == [0, 0, 0]
+    assert rows.spin.tolist() == [-100, 0, 100] and rows.rebound_spin.tolist() == [0, 0, 0]
 
 
 @pytest.mark.parametrize("text", ["[]", '{"exit_code": 11}', '{"exit_code": 11, "provenance": {}}', '{"exit_code": 12, "provenance": null}'])

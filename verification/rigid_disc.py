@@ -30,4 +30,4 @@ def oblique(folder: Path) -> Iterator[Row]:
             (centre, rim), slides, size = leaves(lost), 1 > 3 * lost, penalty * STIFF["radius"] / STIFF["young"]
             words = f"{'slides' if slides else 'rolls'}, {angle}°, {LAWS[law]}"
             yield Row(f"{words}: centre", size, found["rebound_vx"] / along, centre)
-            yield Row(f"{words}: rim", size, -found["spin"] * STIFF["radius"] / along, rim)
+            yield Row(f"{words}: rim", size, -found["rebound_spin"] * STIFF["radius"] / along, rim)

@@ -67,7 +67,7 @@ def test_friction_acts_against_the_slip(disc, spin, sense):
     """A disc that spins and falls straight is driven the way its lowest point does not go, and its spin is slowed."""
     result = disc(**OBLIQUE | dict(angle=90, speed=6, spin=spin))
     check_balances(result)
-    assert sense * result.summary["rebound_vx"] > 1 and abs(result.summary["spin"]) < 300
+    assert sense * result.summary["rebound_vx"] > 1 and abs(result.summary["rebound_spin"]) < 300
 
 
 # ---- limits
@@ -127,14 +127,14 @@ def test_half_a_rubbing_disc_is_the_whole_disc(disc, tmp_path, regularization, s
     assert abs(full.history["friction_force"]).max() < even * full.history["normal_force"].max()
     assert full.summary["contact_time"] == pytest.approx(half.summary["contact_time"], rel=band)
     assert full.summary["energy_drift"] < 1e-9 and half.summary["energy_drift"] < 1e-9
-    assert abs(full.summary["rebound_vx"]) < 0.1 * even and abs(full.summary["spin"]) < 10 * even
+    assert abs(full.summary["rebound_vx"]) < 0.1 * even and abs(full.summary["rebound_spin"]) < 10 * even
 
 
 def test_two_ways_are_mirror_images(disc):
     """Spinning the other way at a normal impact gives the mirror image of the motion."""
     left, right = (disc(**OBLIQUE | dict(angle=90, speed=6, spin=spin)).summary for spin in (400, -400))
     assert left["rebound_vx"] == pytest.approx(-right["rebound_vx"], rel=0.01)   # the mesh itself is not a mirror image
-    assert left["spin"] == pytest.approx(-right["spin"], rel=0.01)
+    assert left["rebound_spin"] == pytest.approx(-right["rebound_spin"], rel=0.01)
     assert left["friction_work"] == pytest.approx(right["friction_work"], rel=0.03)
 
 
@@ -148,7 +148,7 @@ def test_integrators_agree_at_small_steps(disc, integrator, rebound, work, balan
     """With friction, too, every implicit integrator tends to the answer of the conserving one."""
     settings = OBLIQUE | dict(dt=1e-5, penalty=1e9)
     reference, found = disc(**settings).summary, disc(integrator=integrator, **settings).summary
-    for name in ("rebound_vx", "rebound_vy", "spin"):
+    for name in ("rebound_vx", "rebound_vy", "rebound_spin"):
         assert found[name] == pytest.approx(reference[name], rel=rebound), name
     assert found["friction_work"] == pytest.approx(reference["friction_work"], rel=work)
     assert found["sticking_time"] == pytest.approx(reference["sticking_time"], rel=0.05)
@@ -160,7 +160,7 @@ def test_explicit_steps_agree(disc):
     the error of the lumped mass on this mesh (3 %, of the work 10 %; 1 % on one 3.6 times finer), and find the same sticking."""
     settings = OBLIQUE | dict(penalty=1e9, slip_velocity=1)
     reference, found = disc(dt=1e-5, **settings).summary, disc(integrator="central-difference", **settings).summary
-    for name, band in (("rebound_vx", 0.03), ("rebound_vy", 0.03), ("spin", 0.03), ("friction_work", 0.1), ("sticking_time", 0.05)):
+    for name, band in (("rebound_vx", 0.03), ("rebound_vy", 0.03), ("rebound_spin", 0.03), ("friction_work", 0.1), ("sticking_time", 0.05)):
         assert found[name] == pytest.approx(reference[name], rel=band), name
     assert found["energy_drift"] < 1e-5
 

@@ -27,7 +27,7 @@ def test_disc_that_slides_throughout(disc, law, regularization, friction, angle)
     centre, rim = leaves(lost)
     assert 1 > 3.2 * lost
     assert found["rebound_vx"] / along - 1 == pytest.approx(centre - 1, rel=0.03)
-    assert found["spin"] == pytest.approx(-rim * along / RADIUS, rel=0.03)
+    assert found["rebound_spin"] == pytest.approx(-rim * along / RADIUS, rel=0.03)
     assert found["sticking_time"] < 0.03 * found["contact_time"]
 
 
@@ -40,7 +40,7 @@ def test_disc_that_rolls(disc, law, angle):
     centre, rim = leaves(lost)
     assert 1 < 0.95 * 3 * lost
     assert found["rebound_vx"] == pytest.approx(centre * along, rel=0.03)
-    assert found["spin"] == pytest.approx(-rim * along / RADIUS, rel=0.03)
+    assert found["rebound_spin"] == pytest.approx(-rim * along / RADIUS, rel=0.03)
     assert found["sliding_time"] < 0.9 * found["contact_time"]
 
 
@@ -50,5 +50,5 @@ def test_rolling_is_the_limit_of_a_rigid_disc(disc):
     slips = []
     for penalty in (1e11, 1e10, 2e9):
         found, along, _, _ = impact(disc, 0.2, 60, law="neohookean", penalty=penalty)
-        slips.append((found["rebound_vx"] + RADIUS * found["spin"]) / along)
+        slips.append((found["rebound_vx"] + RADIUS * found["rebound_spin"]) / along)
     assert slips[0] < -0.01 and abs(slips[0]) > 3 * abs(slips[1]) and abs(slips[2]) < 0.003, slips

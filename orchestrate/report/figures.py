@@ -33,7 +33,7 @@ filterwarnings("ignore", "Glyph .* missing from", UserWarning)    # a letter tha
 def draw(folder: Path, warnings: list[str]) -> list[Path]:
     """Draws all figures of the run in `folder` into folder/figures, with its warnings below; the files. Unreadable where the
     folder is broken. energies.png is the last: where it is, all are."""
-    from . import bodies, contact as contacts, solid
+    from . import bodies, contact as contacts, impacts, solid, vibration
     history, scene = read_history(folder), read_scene(folder)
     snapshots = vtu.series(folder / "fields.pvd")
     target = folder / "figures"
@@ -52,6 +52,12 @@ def draw(folder: Path, warnings: list[str]) -> list[Path]:
             drawn |= {"contact": along} if along else {}
             inside = solid.draw(snapshots, table, scene) if snapshots and "Z" in table else None
             drawn |= {"solid": inside} if inside else {}
+        if (folder / "contacts.csv").exists():
+            bounces = impacts.draw(impacts.read(folder), bodies.names(scene) if bodies.are_several(scene) else ["body"])
+            drawn |= {"bounces": bounces} if bounces else {}
+        if (folder / "modes.csv").exists():
+            rings = vibration.draw(vibration.read(folder), history, per_metre(scene))
+            drawn |= {"vibration": rings} if rings else {}
         for name, figure in reversed(drawn.items()):
             figure.suptitle(title(scene), fontsize=9)
             footer(figure, warnings)

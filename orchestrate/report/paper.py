@@ -238,7 +238,7 @@ def rolls(results: Results) -> Finding:
     """Agrees where the disc, set down at v₀, ends rolling at 2/3 v₀ within 1 %, as a rigid one."""
     end, used = results.summary("disc-rolling"), read_scene(results.run("disc-rolling"))
     ratio = end["rebound_vx"] / used["speed"]
-    rim = -used["radius"] * end["spin"] / used["speed"]
+    rim = -used["radius"] * end["rebound_spin"] / used["speed"]
     good = abs(ratio / (2 / 3) - 1) < 0.01 and abs(rim / (2 / 3) - 1) < 0.01
     return Finding(AGREES if good else DIFFERS, f"set down on the plane it comes to roll: centre {ratio:.4f} v₀, rim {rim:.4f} v₀ (rigid: 2/3).",
                    [results.run("disc-rolling") / "figures/rolling.png"], [results.run("disc-rolling")])

@@ -12,7 +12,7 @@ from ..results import RunResult, suffixes
 
 REFERENCE = Path(__file__).resolve().parent / "reference"
 
-LEFT_OUT_AT_ZERO = ("friction_work", "rebound_vx", "spin", "sliding_time", "sticking_time", "reverse_slip_time", "unsolved_jumps")
+LEFT_OUT_AT_ZERO = ("friction_work", "creep_work", "rotation_energy", "impulse_ratio", "rebound_vx", "rebound_spin", "sliding_time", "sticking_time", "reverse_slip_time", "unsolved_jumps")
 
 
 @dataclass(frozen=True)
@@ -46,13 +46,20 @@ def rows(per_metre: bool) -> list[Quantity]:
         Quantity("impulse", "impulse", f"N s{per}", digits=".5g"),
         Quantity("rebound_vx", "rebound velocity, x", "m/s"),
         Quantity("rebound_vy", "rebound velocity, y", "m/s"),
-        Quantity("spin", "spin", "rad/s"),
+        Quantity("rebound_spin", "rebound spin", "rad/s"),
+        Quantity("restitution", "restitution"),
+        Quantity("restitution_tangential", "  tangential"),
+        Quantity("impulse_ratio", "  impulse along over across"),
+        Quantity("angle_out", "angle of reflection", "degrees"),
         Quantity("sliding_time", "load slides for", "ms", 1e3),
         Quantity("reverse_slip_time", "  of it backwards", "ms", 1e3),
         Quantity("sticking_time", "load sticks for", "ms", 1e3),
         Quantity("energy_initial", "energy at the start", f"J{per}"),
-        Quantity("vibration_energy", "left in vibration", f"J{per}"),
+        Quantity("translation_energy", "left in translation", f"J{per}"),
+        Quantity("rotation_energy", "  in rotation", f"J{per}"),
+        Quantity("vibration_energy", "  in vibration", f"J{per}"),
         Quantity("friction_work", "lost to friction", f"J{per}"),
+        Quantity("creep_work", "  of it where points creep", f"J{per}"),
         Quantity("energy_drift", "energy drift", "of the start", digits=".1e"),
         Quantity("max_penetration", "largest penetration", "mm", 1e3, ".3g"),
         Quantity("min_jacobian", "smallest det F", digits=".3f"),

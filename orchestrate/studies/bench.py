@@ -70,7 +70,7 @@ BALL = {"law": "neohookean", "nu": 0.45, "speed": 8.0, "penalty": 1.5e10}
 CASES = {
     "normal-svk": Case("disc-normal", {"law": "svk"}, ("impulse", "rebound_vy", "contact_time")),
     "normal-neohookean": Case("disc-normal", {"law": "neohookean"}, ("impulse", "rebound_vy", "contact_time")),
-    "oblique-neohookean": Case("disc-oblique", {"law": "neohookean"}, ("impulse", "rebound_vx", "rebound_vy", "spin", "friction_work", "contact_time"), 0.000625),
+    "oblique-neohookean": Case("disc-oblique", {"law": "neohookean"}, ("impulse", "rebound_vx", "rebound_vy", "rebound_spin", "friction_work", "contact_time"), 0.000625),
     "disc-block-svk": Case("disc-block", {"law": "svk", "penalty": 1e9}, tuple(NGSOLVE), 0.005, 20),
     "ball-axisymmetric": Case("ball-axisymmetric", BALL, ("impulse", "rebound_vy", "contact_time")),
     "ball": Case("ball", BALL, ("impulse", "rebound_vy", "contact_time"), 0.005, families=("adaptive, P2", "midpoint", "central-difference"),

@@ -21,7 +21,7 @@ from . import study
 
 ANSWERS = {                 # by scene; all but the last are promised to ASKED
     "disc-normal": ("contact_time", "impulse", "rebound_vy", "peak_force"),
-    "disc-oblique": ("rebound_vx", "rebound_vy", "spin", "friction_work", "contact_time")}
+    "disc-oblique": ("rebound_vx", "rebound_vy", "rebound_spin", "friction_work", "contact_time")}
 SHOWN = 1e-4                # %; differences below are drawn there
 ASKED = 0.5                 # % of the converged values, for the run with default parameters
 LABELS = {"mesh": ("mesh factor", "off the finest mesh [%]"), "step": ("time step [s]", "off the smallest step [%]"),

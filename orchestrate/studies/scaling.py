@@ -52,7 +52,7 @@ def dimensionless(summary: pd.Series, values: dict) -> dict:
     """The answers of a summary in units of radius, density and c."""
     c, radius, density = draws.bar_speed(values["young"], values["density"]), values["radius"], values["density"]
     mass, time = density * radius**2, radius / c
-    units = {"impulse": mass * c, "rebound_vx": c, "rebound_vy": c, "spin": 1 / time, "energy_initial": mass * c**2, "energy_final": mass * c**2,
+    units = {"impulse": mass * c, "rebound_vx": c, "rebound_vy": c, "rebound_spin": 1 / time, "energy_initial": mass * c**2, "energy_final": mass * c**2,
              "vibration_energy": mass * c**2, "friction_work": mass * c**2, "thresholded_contact_time": time, "contact_time": time,
              "peak_force": mass * c / time}
     return {name: summary[name] / unit for name, unit in units.items()}

@@ -36,8 +36,7 @@ def study(points: list[Point], folder: Path, base: Point, limit: float, name: st
     Every run is the scene `name` with `base` and the point's parameters on top, in folder/runs/, and may take `limit`
     seconds; `cores` of them run at a time; with `estimate` each estimates its error (estimated_error: the largest promised one). What is there already is not run again: finished runs, and failures of the same scene and code. A run
     that fails is a row like any other, with its exit code and message; NotInstalled, without FreeFem++, is raised.
-    Several studies may share a folder: what one is running, the others leave to it. A number of the summary that has the
-    name of a parameter of the point (spin) is called <name>_end.
+    Several studies may share a folder: what one is running, the others leave to it.
     """
     places = [place(folder, point) for point in points]
     given = scene.load(name)
@@ -51,8 +50,7 @@ def study(points: list[Point], folder: Path, base: Point, limit: float, name: st
         for where, outcome in _outcomes(to_do, limit, cores, estimate):
             found[where] = outcome
             line.update()
-    return pd.DataFrame([point | {f"{name}_end" if name in point else name: value for name, value in found[where].items()}
-                         for where, point in zip(places, points)])
+    return pd.DataFrame([point | found[where] for where, point in zip(places, points)])
 
 
 def place(folder: Path, point: Point) -> Path:

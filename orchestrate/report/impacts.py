@@ -1,0 +1,58 @@
+"""The impacts of a run, a row each (contacts.csv), and restitution over several of them."""
+
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import pandas as pd
+
+from ..failure import Unreadable
+
+LIGHTEST = 0.01                  # of the largest impulse of a meeting: what is less is the grazing end of an impact
+LEAST_SLIP = 0.05                # of the approach: of less the restitution along the partner is that of vibrations
+COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"]
+NEEDED = ["body", "partner", "start", "end", "impulse", "approach", "separation", "restitution", "restitution_tangential"]
+
+
+def read(folder: Path) -> pd.DataFrame:
+    """contacts.csv of the run in `folder`: a row for every interval of contact of two bodies, or of a body with an obstacle (partner < 0).
+
+    Columns and units: edp/core/run/columns.idp. Unreadable where it is not such a table.
+    """
+    path = folder / "contacts.csv"
+    try:
+        table = pd.read_csv(path)
+    except (OSError, ValueError) as error:
+        raise Unreadable(f"{path} cannot be read: {error}; run with --force") from None
+    if not set(NEEDED) <= set(table):
+        raise Unreadable(f"{path} lacks the columns {', '.join(name for name in NEEDED if name not in table)}; run with --force")
+    return table
+
+
+def several(table: pd.DataFrame) -> pd.DataFrame:
+    """The impacts of those meetings that have more than one; intervals with less than LIGHTEST of the largest impulse of their meeting are none."""
+    by = table.groupby(["body", "partner"])
+    impacts = table[table.impulse >= LIGHTEST * by.impulse.transform("max")]
+    return impacts[impacts.groupby(["body", "partner"]).impulse.transform("size") > 1]
+
+
+def draw(table: pd.DataFrame, names: list[str]) -> plt.Figure | None:
+    """Restitution, across and along the partner, over the impacts of each meeting, and below them the speeds before each; None where none has several.
+    `names`: of the bodies."""
+    impacts = several(table)
+    if impacts.empty:
+        return None
+    figure, (top, below) = plt.subplots(2, 1, figsize=(6.4, 5), sharex=True)
+    for colour, ((body, partner), rows) in zip(COLOURS, impacts.groupby(["body", "partner"])):
+        other = names[int(partner) - 1] if partner > 0 else f"obstacle {-int(partner)}" if len(names) > 1 else "plane"
+        label, t = f"{names[int(body) - 1]} – {other}", 1e3 * rows.start
+        top.plot(t, rows.restitution, "o-", color=colour, markersize=4, linewidth=0.8, label=f"{label}: across")
+        along = rows.restitution_tangential.where(rows.slip_before > LEAST_SLIP * rows.approach)
+        if along.notna().any():
+            top.plot(t, along, "s--", color=colour, markersize=4, linewidth=0.8, fillstyle="none", label=f"{label}: along")
+        below.plot(t, rows.approach, "o-", color=colour, markersize=4, linewidth=0.8)
+        if along.notna().any():
+            below.plot(t, rows.slip_before, "s--", color=colour, markersize=4, linewidth=0.8, fillstyle="none")
+    top.set(ylabel="restitution", ylim=(min(0.0, top.get_ylim()[0]), 1.05))
+    top.legend(fontsize=7, ncols=2)
+    below.set(xlabel="start of the contact [ms]", ylabel="speed before [m/s]", ylim=(0, 1.1 * below.get_ylim()[1]))
+    return figure

@@ -1,0 +1,108 @@
+"""contacts.csv: every interval of contact in numbers, on scenes whose numbers are known from momenta, energies and the history."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from orchestrate import run, scene
+from orchestrate.failure import Unreadable
+from orchestrate.report import impacts
+
+COARSE = {"law": "neohookean", "accuracy": 0.1, "fields": 0}
+OBLIQUE = COARSE | {"speed": 12, "angle": 60, "friction_static": 0.7, "friction_dynamic": 0.5, "slip_velocity": 0.1}
+
+
+def go(tmp_path, name: str, values: dict) -> tuple[pd.DataFrame, run.RunResult]:
+    found = run.run(scene.load(name), values, tmp_path / "out", estimate=False)
+    return pd.read_csv(found.folder / "contacts.csv"), found
+
+
+@pytest.mark.parametrize("given", [{}, {"integrator": "newmark"}, {"integrator": "bdf2"}], ids=str)
+def test_an_interval_adds_up_to_the_history(tmp_path, given):
+    """A single impact is one row: its times, impulses, work and energies are those of summary and history."""
+    rows, found = go(tmp_path, "disc-normal", OBLIQUE | given)
+    row, s, h = rows.iloc[0], found.summary, found.history
+    assert len(rows) == 1 and (row.body, row.partner, row.over) == (1, -1, 1)
+    for name, other in {"time": "contact_time", "thresholded_time": "thresholded_contact_time", "start": "contact_start", "impulse": "impulse",
+                        "friction_work": "friction_work", "creep_work": "creep_work", "slip_work": "slip_work", "restitution": "restitution"}.items():
+        assert row[name] == pytest.approx(s[other], rel=1e-9), name
+    for along in "xy" if given != {"integrator": "bdf2"} else "":      # whose momentum is no sum of impulses
+        assert row[f"impulse_{along}"] == pytest.approx(h[f"momentum_{along}"][-1] - h[f"momentum_{along}"][0], rel=1e-7)
+    assert 0 < row.creep_work < row.friction_work and row.creep_work + row.slip_work == pytest.approx(row.friction_work)
+
+
+def test_restitution_and_angles_of_an_oblique_impact(tmp_path):
+    """Newton's is that of the centre's velocities across the plane, the tangential one that of v_x + spin times R; without gravity Poisson's and
+    the energetic one are the same as Newton's; the impulse along the plane over that across is their ratio."""
+    rows, found = go(tmp_path, "disc-normal", OBLIQUE)
+    row, s, h = rows.iloc[0], found.summary, found.history
+    last = np.flatnonzero(h["normal_force"] > 0)[-1]
+    rim = h["vx"][last] + 0.05 * h["spin"][last]
+    assert (row.normal_x, row.normal_y) == pytest.approx((0, 1), abs=1e-12)
+    assert row.approach == pytest.approx(12 * np.sin(np.pi / 3)) and row.separation == pytest.approx(s["rebound_vy"], rel=1e-3)
+    assert row.restitution == pytest.approx(row.restitution_poisson, rel=1e-4) == pytest.approx(row.restitution_energetic, rel=1e-4)
+    assert row.slip_before == pytest.approx(6) and row.slip_after == pytest.approx(rim, rel=2e-3)
+    assert row.restitution_tangential == pytest.approx(-rim / 6, rel=2e-3)
+    assert row.restitution_tangential == pytest.approx(s["restitution_tangential"])
+    assert row.impulse_ratio == pytest.approx(-row.impulse_x / row.impulse_y) and row.angle_in == pytest.approx(60)
+    assert row.angle_out == pytest.approx(np.degrees(np.arctan2(s["rebound_vy"], s["rebound_vx"])), rel=1e-6) == pytest.approx(s["angle_out"])
+    assert row.translation_energy + row.rotation_energy + row.vibration_energy + row.friction_work == pytest.approx(s["energy_initial"])
+
+
+def test_bounces_are_rows(tmp_path):
+    """Several bounces under gravity are several impacts, one after the other; what a body loses in one is missing in the next approach."""
+    rows, _ = go(tmp_path, "disc-normal", COARSE | {"speed": 0, "height": 0.02, "gravity": 9.81, "end_time": 0.5, "accuracy": 0.3})
+    assert len(rows) >= 3 and (rows.start[1:].to_numpy() > rows.end[:-1].to_numpy()).all()
+    first, second = rows.iloc[0], rows.iloc[1]
+    assert first.approach == pytest.approx(np.sqrt(2 * 9.81 * 0.02), rel=1e-3) and 0.5 < first.restitution <= 1
+    assert second.approach == pytest.approx(first.separation, rel=0.02)
+    assert second.start - first.end == pytest.approx(2 * first.separation / 9.81, rel=0.02)
+
+
+@pytest.mark.parametrize("pairing", ["closest-point", "pairwise"])
+def test_two_bodies_and_three(tmp_path, pairing):
+    """The disc on the block is one meeting, of body 1 with body 2: its impulse is what each has of momentum."""
+    rows, found = go(tmp_path, "disc-block", {"law": "neohookean", "accuracy": 0.3, "fields": 0, "pairing": pairing})
+    assert (rows.body == 1).all() and (rows.partner == 2).all()
+    assert rows.impulse_y.sum() == pytest.approx(found.summary["impulse_y_1"], rel=1e-9)
+    closing = found.history["vy_1"][0] - found.history["vy_2"][0]
+    after = found.summary["rebound_vy_1"] - found.summary["rebound_vy_2"]
+    assert rows.approach.iloc[0] == pytest.approx(-closing) and rows.separation.iloc[-1] == pytest.approx(after, rel=1e-6)
+    assert found.summary["restitution"] == pytest.approx(-after / closing, rel=1e-6)
+
+
+def test_meetings_are_told_apart(tmp_path):
+    """Three discs in a row: the first hits the second, the second the third; each pair has its row, and the run has no restitution of its own."""
+    rows, found = go(tmp_path, "three-in-a-row", {"accuracy": 0.3, "fields": 0})
+    assert set(zip(rows.body, rows.partner)) == {(1, 2), (2, 3)}
+    per = rows.groupby(["body", "partner"])[["impulse_x", "impulse_y"]].sum()
+    assert found.summary["impulse_x_1"] == pytest.approx(per.loc[(1, 2)].impulse_x, rel=1e-8)
+    assert found.summary["impulse_x_3"] == pytest.approx(-per.loc[(2, 3)].impulse_x, rel=1e-8)
+    assert found.summary["restitution"] is None
+
+
+def test_of_a_ball(tmp_path):
+    """Bodies of revolution and three dimensions have the same columns; the axis takes no impulse along the plane."""
+    rows, found = go(tmp_path, "ball-axisymmetric", COARSE)
+    assert rows.iloc[0].impulse_y == pytest.approx(found.summary["impulse"]) and rows.iloc[0].impulse_x == 0
+    assert rows.iloc[0].restitution == pytest.approx(found.summary["rebound_vy"] / 8)
+
+
+def test_in_contact_at_the_end(tmp_path):
+    """What is not over says so, and ends with the run."""
+    rows, _ = go(tmp_path, "disc-normal", COARSE | {"end_time": 1e-3})
+    assert rows.over.tolist() == [0] and rows.end.tolist() == [1e-3]
+    rows, found = go(tmp_path, "disc-normal", COARSE | {"end_time": 1e-3, "height": 1.0})
+    assert rows.empty and found.summary["restitution"] is None
+
+
+def test_bounces_are_drawn(tmp_path):
+    """Where a meeting has several impacts there is a figure of restitution; grazing intervals are none; a damaged table is said."""
+    rows, found = go(tmp_path, "disc-normal", COARSE | {"speed": 0, "height": 0.02, "gravity": 9.81, "end_time": 0.25, "accuracy": 0.3})
+    impacts.plt.close(figure := impacts.draw(rows, ["body"]))
+    assert figure.axes[0].get_ylabel() == "restitution" and len(figure.axes[0].lines[0].get_xdata()) == len(rows)
+    light = rows.assign(impulse=[1.0] + [1e-3] * (len(rows) - 1))
+    assert impacts.draw(light, ["body"]) is None and impacts.draw(rows[:1], ["body"]) is None
+    (found.folder / "contacts.csv").write_text("body\n1\n")
+    with pytest.raises(Unreadable, match="contacts.csv lacks the columns partner, start"):
+        impacts.read(found.folder)

@@ -1,0 +1,69 @@
+"""Natural modes of the free disc and ball against Love's and Lamb's closed forms, and the energy in them against that of the vibration."""
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from orchestrate import run, scene
+from orchestrate.failure import Unreadable
+from orchestrate.report import vibration
+from verification import modes
+
+NU = 0.3
+SLOW = {"law": "neohookean", "nu": NU, "speed": 0.2, "fields": 0}
+
+FINE = {"accuracy": 0.02, "mesh_size": 0.01, "end_time": 1e-5}
+
+
+def of(tmp_path, name: str, values: dict) -> tuple[pd.DataFrame, run.RunResult]:
+    found = run.run(scene.load(name), SLOW | values, tmp_path / "out", estimate=False)
+    return pd.read_csv(found.folder / "modes.csv"), found
+
+
+def reduced(table: pd.DataFrame) -> np.ndarray:
+    """omega R/c_s."""
+    shear = math.sqrt(7e6 / (2 * (1 + NU)) / 1722)
+    return 2 * math.pi * table.frequency.to_numpy() * 0.05 / shear
+
+
+def test_frequencies_of_the_disc(tmp_path):
+    """The first twelve modes of the whole disc to 0.5 %, pairs as pairs; of its half those that mirror."""
+    found, exact = reduced(of(tmp_path, "disc-normal", FINE | {"symmetry": "full", "modes": 12})[0]), modes.disc(NU, 6)
+    assert len(found) == 12 and found == pytest.approx(exact[:12], rel=5e-3)
+    half = reduced(of(tmp_path, "disc-normal", FINE | {"modes": 6})[0])
+    single = np.unique(exact.round(9))
+    assert all(abs(single / each - 1).min() < 5e-3 for each in half)
+
+
+def test_frequencies_of_the_ball(tmp_path):
+    """As a body of revolution it has one spheroidal mode of each order, to 0.5 %, and no torsional one; in three dimensions these, too."""
+    exact = np.sort(np.concatenate([modes.spheroidal(NU, n, 6) for n in range(9)]))
+    found = reduced(of(tmp_path, "ball-axisymmetric", FINE | {"modes": 6})[0])
+    assert found == pytest.approx(exact[:6], rel=5e-3)
+    solid = reduced(of(tmp_path, "ball", {"accuracy": 0.1, "mesh_size": 0.015, "contact_mesh_size": 0.0125, "end_time": 1e-5, "modes": 3})[0])
+    every = np.concatenate([exact, *(modes.torsional(n, 6) for n in range(1, 6))])
+    assert all(abs(every / each - 1).min() < 5e-3 for each in solid)
+
+
+@pytest.mark.parametrize("name, values", [("disc-normal", {}), ("disc-normal", {"angle": 60, "spin": 20, "friction_static": 0.3}), ("ball-axisymmetric", {"speed": 2})], ids=str)
+def test_energies_add_up(tmp_path, name, values):
+    """After a slow impact the energies of all modes add up to that of the vibration to 1 %, the strain to that of the law."""
+    table, found = of(tmp_path, name, {"accuracy": 0.3, "mesh_size": 0.02, "contact_mesh_size": 0.01, "modes": 500} | values)
+    assert table.energy.sum() == pytest.approx(found.summary["vibration_energy"], rel=0.01)
+    assert table.strain_energy.sum() == pytest.approx(found.history["elastic"][-1], rel=0.02)
+    assert (table.energy >= 0).all() and table.frequency.is_monotonic_increasing
+
+
+def test_spectrum_of_a_force(tmp_path):
+    """Of a half sine in closed form: 2 T/pi cos(pi f T)/|1 - (2 f T)^2|; the figure is drawn with as many modes as were asked for."""
+    t, period = np.linspace(0, 1, 2001)[1:], 1.0
+    f = np.array([0.0, 0.8, 2.3])
+    exact = 2 / np.pi * abs(np.cos(np.pi * f * period) / (1 - (2 * f * period) ** 2))
+    assert vibration.spectrum(t, np.full(2000, 5e-4), np.sin(np.pi * (t - 2.5e-4)), f) == pytest.approx(exact, rel=1e-5)
+    table, found = of(tmp_path, "disc-normal", {"accuracy": 0.3, "modes": 12})
+    assert len(vibration.read(found.folder)) == 12 and (figure := vibration.draw(table, found.history, "/m")) and len(figure.axes) == 2
+    (found.folder / "modes.csv").write_text("mode\n1\n")
+    with pytest.raises(Unreadable, match="modes.csv lacks the columns frequency"):
+        vibration.read(found.folder)
