@@ -12,7 +12,7 @@ import pytest
 from orchestrate import assembly, freefem, multibody, parameters, run, scene, vtu
 from orchestrate.describe import describe
 from orchestrate.failure import BadInput, Failure
-from orchestrate.report import bodies, figures, report
+from orchestrate.report import bodies, figures, impacts, report
 from orchestrate.sweeps import sweep
 
 MINE = """
@@ -182,10 +182,12 @@ def test_coarser_and_finer_elements(mine):
 
 @pytest.mark.parametrize("which", ["block", "mine"])
 def test_figures_of_several_bodies(which, request):
-    """Energies, velocities, forces and shapes are drawn; the title names the bodies' materials."""
+    """Energies, velocities, forces, shapes and pressure are drawn, restitution where there are several impacts; the title names the bodies' materials."""
     found = request.getfixturevalue(which)
     found = found[0] if which == "mine" else found
-    assert {path.name for path in (found.folder / "figures").iterdir()} == {"contact.png", "energies.png", "force.png", "shapes.png", "velocity.png"}
+    drawn = {path.name for path in (found.folder / "figures").iterdir()}
+    assert drawn - {"bounces.png"} == {"contact.png", "energies.png", "force.png", "shapes.png", "velocity.png"}
+    assert ("bounces.png" in drawn) == (len(impacts.several(impacts.read(found.folder))) > 0)
     assert all(path.stat().st_size > 5000 for path in (found.folder / "figures").iterdir())
     assert ("target: neo-Hookean, E = 4 MPa" if which == "mine" else "disc on block: St. Venant") in figures.title(found.scene)
     assert "rebound velocity, " + ("x, target" if which == "mine" else "y, block") in report.report(found)
@@ -324,4 +326,4 @@ def test_flags_of_another_script_are_refused(script, flags, said):
 def test_scripts_describe_themselves():
     """The scripts that there are, and of two bodies the columns of each."""
     assert describe()["scripts"] == "disc-plane|disc-block|ball-axisymmetric|ball-plane|bodies|bodies-axisymmetric|bodies-3d" and describe(script="disc-block")["bodies"] == 2
-    assert set(multibody.built_in()) == {"two-discs", "three-in-a-row", "disc-bowl", "disc-corner", "disc-step", "two-balls", "ball-cylinder"} < set(scene.built_in())
+    assert set(multibody.built_in()) == {"two-discs", "three-in-a-row", "disc-bowl", "disc-corner", "disc-step", "two-balls", "ball-cylinder", "ball-block", "balls-3d"} < set(scene.built_in())
