@@ -221,7 +221,7 @@ def values(folder) -> dict:
 
 @pytest.mark.parametrize("words, said", [
     (("disc-normal", "--set", "block_width=3"), "block_width: disc-plane takes no such parameter (accepted: in disc-block)"),
-    (("disc-block", "--mesh", "MESH"), "mesh: disc-block takes no such parameter (accepted: in disc-plane|ball-axisymmetric|bodies)"),
+    (("disc-block", "--mesh", "MESH"), "mesh: disc-block takes no such parameter (accepted: in disc-plane|ball-axisymmetric|bodies|bodies-3d)"),
     (("two-discs", "--mesh", "MESH"), "mesh: is of one body"),
     (("two-discs", "--set", "body.3.young=1e6"), "body.3.young: there is no body.3 in the scene (accepted: body.1 to body.2)"),
     (("two-discs", "--set", "radius=1"), "radius: '1' belongs to no such key"),
@@ -312,7 +312,7 @@ def _other_triangles(text: str, what: str, new) -> str:
 @pytest.mark.parametrize("script, flags, said", [
     ("bodies", ("-accuracy", "0.4"), "bodies: -bodies FILE is missing"),
     ("bodies", ("-radius", "1"), "radius: bodies takes no such parameter (accepted: in disc-plane|disc-block|ball-plane|ball-axisymmetric)"),
-    ("disc-block", ("-bodies", "x"), "bodies: disc-block takes no such parameter (accepted: in bodies)"),
+    ("disc-block", ("-bodies", "x"), "bodies: disc-block takes no such parameter (accepted: in bodies|bodies-3d)"),
     ("disc-plane", ("-block_height", "1"), "block_height: disc-plane takes no such parameter (accepted: in disc-block)"),
 ])
 def test_flags_of_another_script_are_refused(script, flags, said):
@@ -323,5 +323,5 @@ def test_flags_of_another_script_are_refused(script, flags, said):
 
 def test_scripts_describe_themselves():
     """The scripts that there are, and of two bodies the columns of each."""
-    assert describe()["scripts"] == "disc-plane|disc-block|ball-axisymmetric|ball-plane|bodies" and describe(script="disc-block")["bodies"] == 2
+    assert describe()["scripts"] == "disc-plane|disc-block|ball-axisymmetric|ball-plane|bodies|bodies-3d" and describe(script="disc-block")["bodies"] == 2
     assert set(multibody.built_in()) == {"two-discs", "three-in-a-row", "disc-bowl", "disc-corner", "disc-step"} < set(scene.built_in())
