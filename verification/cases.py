@@ -69,5 +69,5 @@ CASES = (
     Case("V17", "ball, obliquely: rigid, sliding throughout and rolling; elastic, Maw, Barber and Fawcett", "radius of the contact / radius", 0.05, rebounds,
          beside=curve, note="In three dimensions. Rigid: with the measured restitution. Elastic: ν = 0.45, share of the slip at the contact that is lost and regained "
                             "backwards, 1 + β. Theory is of half-spaces: what a ball differs from them falls with the contact's radius, and counts most where it sticks "
-                            "(small ψ₁)."),
+                            "(small ψ₁). Elements are half the contact's radius; on finer ones it is larger, at ψ₁ = 0.6 by half or more (docs/ball-3d.md)."),
 )
