@@ -70,15 +70,15 @@ def staging(folder: Path) -> Iterator[tuple[Path, int]]:
         leaving.callback(_take_away, [made for made in (stage, *stage.parents) if not made.exists()])   # a signal may come at any moment
         lock = leaving.enter_context(_open(_lock(stage, folder)))
         if not folder.exists() and _is_complete(stage):   # killed between the two renames of replace
-            os.rename(stage, folder)
+            os.rename(stage, folder)              # with its lock, which stays
             lock = leaving.enter_context(_open(_lock(stage, folder)))
-        if folder.exists():
+        elif folder.exists():
             leaving.enter_context(_open(_hold(folder, folder)))   # against a run without Python
         _refuse_files_of_others(stage)
         try:
             yield stage, lock
         finally:
-            if not checkpoints(stage):
+            if _holds(lock, stage) and not checkpoints(stage):   # once in its place, that name may already be another run's
                 shutil.rmtree(stage, ignore_errors=True)
 
 
@@ -123,12 +123,17 @@ def _lock(stage: Path, folder: Path) -> int:
             lock = _hold(stage, folder)
         except FileNotFoundError:   # its run has just put it in its place
             continue
-        try:
-            if os.path.samestat(os.fstat(lock), os.stat(stage)):
-                return lock
-        except FileNotFoundError:   # likewise, while we locked it
-            pass
+        if _holds(lock, stage):     # not likewise, while we locked it
+            return lock
         os.close(lock)
+
+
+def _holds(lock: int, path: Path) -> bool:
+    """Whether `path` is the folder that was opened as `lock`."""
+    try:
+        return os.path.samestat(os.fstat(lock), os.stat(path))
+    except FileNotFoundError:
+        return False
 
 
 def _hold(path: Path, folder: Path) -> int:

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from orchestrate import freefem, mesh, results, run, scene
+from orchestrate import folder, freefem, mesh, results, run, scene
 from orchestrate.describe import describe
 from orchestrate.failure import BadInput, Failure, NotInstalled, Unreadable
 
@@ -243,3 +243,22 @@ def test_bad_input_that_only_the_script_finds_leaves_nothing(tmp_path):
     with pytest.raises(Failure, match="speed|end_time") as error:
         go(tmp_path / "a/b/out", {"speed": 0})
     assert error.value.code == 10 and not list(tmp_path.iterdir())
+
+
+def test_what_another_run_makes_meanwhile_stays(tmp_path):
+    """A run that has put its folder in its place does not take away the next one's, which has the same name by then."""
+    with folder.staging(tmp_path / "out") as (stage, _):
+        stage.rename(tmp_path / "out")
+        stage.mkdir()
+        (stage / "checkpoint.json").write_text("{}")
+    assert (stage / "checkpoint.json").exists()
+
+
+def test_killed_between_two_renames(tmp_path):
+    """A complete folder that was not yet put in its place is, by the next run, which starts with an empty one."""
+    part = tmp_path / "out.part"
+    part.mkdir()
+    (part / "checkpoint.json").write_text("{}")
+    (part / "summary.json").write_text('{"status": "ok", "provenance": {"code": "1"}}')
+    with folder.staging(tmp_path / "out") as (stage, _):
+        assert not any(stage.iterdir()) and (tmp_path / "out/summary.json").exists()
