@@ -366,7 +366,7 @@ BAD = [
     ([("contact.pair", [{"bodies": ["disc", "block"], "penalty": 0}])], "contact.pair.1.penalty: 0 is out of range"),
     ([("end_time", -1)], "end_time: -1 is out of range (accepted: 0 to 1e+09)"),
     ([("radius", 1)], "radius: '1' belongs to no such key"),
-    ([("script", "disc-plane")], "script: 'disc-plane' is not that of [[body]] tables (accepted: bodies)"),
+    ([("script", "disc-plane")], "script: 'disc-plane' is not that of [[body]] tables in dimension = 'plane-strain' (accepted: bodies)"),
     ([("title", 1)], "title: '1' is no text"),
 ]
 
