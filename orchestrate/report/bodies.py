@@ -63,7 +63,7 @@ def draw(history: dict[str, np.ndarray], scene: dict[str, Value], snapshots: lis
     """The figures by name; `history` from the first touch on."""
     bodies, per = dict(zip(names(scene), suffixes(history))), per_metre(scene)
     drawn = {"energies": energies(history, bodies, per), "velocity": velocities(history, bodies), "force": forces(history, bodies, per)}
-    if snapshots:
+    if snapshots and len(vtu.read(snapshots[0][1]).triangles):       # none where whole bodies in three dimensions have no plane of symmetry
         drawn["shapes"] = shapes(snapshots, scene)
     return drawn
 
