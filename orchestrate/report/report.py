@@ -1,5 +1,6 @@
 """What a finished run is told in: its key figures, beside the published numbers of the same scene."""
 
+import re
 import sys
 import tomllib
 from dataclasses import dataclass, replace
@@ -12,7 +13,7 @@ from ..results import RunResult, suffixes
 
 REFERENCE = Path(__file__).resolve().parent / "reference"
 
-LEFT_OUT_AT_ZERO = ("friction_work", "rebound_vx", "spin", "sliding_time", "sticking_time", "reverse_slip_time", "unsolved_jumps")
+LEFT_OUT_AT_ZERO = ("friction_work", "rebound_vx", "rebound_vz", "spin_x", "spin_y", "spin", "sliding_time", "sticking_time", "reverse_slip_time", "unsolved_jumps")
 
 
 @dataclass(frozen=True)
@@ -46,6 +47,9 @@ def rows(per_metre: bool) -> list[Quantity]:
         Quantity("impulse", "impulse", f"N s{per}", digits=".5g"),
         Quantity("rebound_vx", "rebound velocity, x", "m/s"),
         Quantity("rebound_vy", "rebound velocity, y", "m/s"),
+        Quantity("rebound_vz", "rebound velocity, z", "m/s"),
+        Quantity("spin_x", "spin about x", "rad/s"),
+        Quantity("spin_y", "spin about y", "rad/s"),
         Quantity("spin", "spin", "rad/s"),
         Quantity("sliding_time", "load slides for", "ms", 1e3),
         Quantity("reverse_slip_time", "  of it backwards", "ms", 1e3),
@@ -127,7 +131,7 @@ def report(result: RunResult) -> str:
     width = max(24, *(len(quantity.label) + 1 for quantity in quantities))
     for quantity in quantities:
         value = summary.get(quantity.key)
-        if value is None or (abs(value) < 1e-9 and quantity.key.rstrip("_0123456789") in LEFT_OUT_AT_ZERO):
+        if value is None or (abs(value) < 1e-9 and re.sub("_[0-9]+$", "", quantity.key) in LEFT_OUT_AT_ZERO):
             continue
         beside = [quantity.beside(number) for number in known.get(quantity.key, [])] or [""]
         lines.append(f"  {quantity.label:<{width}}{quantity.text(value):<18}{beside[0]}".rstrip())
