@@ -8,6 +8,7 @@ import pytest
 
 from orchestrate import approach, assembly, mesh, mirror, multibody, parameters, run, solid_file, solid_mesh, solids
 from orchestrate.failure import BadInput
+from orchestrate.report import bodies, figures, report
 from orchestrate.scene import load
 from orchestrate.tables import to_toml
 from test_direct import call
@@ -300,7 +301,7 @@ def falls(tmp_path_factory):
     """A ball on a rigid plane: a quarter of it, half, and all, on meshes of the same sizes."""
     folder, found = tmp_path_factory.mktemp("falls"), {}
     for symmetry in ("quarter", "half", "full"):
-        scene = read(BALL | {"position": [0, 0.05, 0], "velocity": [0, -2, 0]}, obstacles=[FLOOR | {"point": [0, 0, 0]}], symmetry=symmetry)
+        scene = read(BALL | {"position": [0, 0.05, 0], "velocity": [0, -2, 0]}, obstacles=[FLOOR | {"point": [0, 0, 0]}], symmetry=symmetry, fields=2)
         found[symmetry] = run.run(scene, {}, folder / symmetry, estimate=False)
     return found
 
@@ -313,6 +314,20 @@ def test_parts_stand_for_the_whole(falls):
         assert s["impulse"] == pytest.approx(falls["full"].summary["impulse"], rel=0.01) and s["energy_drift"] < 1e-8
         assert s["rebound_vy"] == pytest.approx(falls["full"].summary["rebound_vy"], rel=0.02)
         assert s["contact_time"] == pytest.approx(falls["full"].summary["contact_time"], rel=0.06)
+
+
+def test_report_and_figures(falls, tmp_path):
+    """Forces in N, energies in J of a body in three dimensions; the parts are drawn with their mirror images among the obstacles, of a whole body
+    that has no plane of symmetry in its mesh all but its shapes."""
+    found = falls["quarter"]
+    text = report.report(found)
+    assert "N s" in text and "/m" not in text.replace("m/s", "")
+    assert figures.is_half(found.scene) and not figures.is_half(falls["half"].scene) and not figures.is_half(falls["full"].scene)
+    plane, = bodies.obstacles_of(found.scene)
+    assert plane.gap_in_plane(np.array([[3, 2.0]]), 1.0) == pytest.approx([2.0])
+    drawn = {path.stem for path in figures.draw(found.folder, [])}
+    assert {"energies", "force", "velocity", "shapes"} <= drawn
+    assert "shapes" not in {path.stem for path in figures.draw(falls["full"].folder, [])}
 
 
 def test_it_is_the_ball_of_the_other_dimension(falls, tmp_path):
