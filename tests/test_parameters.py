@@ -70,7 +70,7 @@ def test_each_script_takes_its_own_parameters():
         with pytest.raises(BadInput) as asked:
             describe({name: value}, script)
         assert str(error.value) == str(asked.value) == f"{name}: {script} takes no such parameter (accepted: in {'|'.join(parameters.table()[name].scripts)})"
-    with pytest.raises(BadInput, match="script: 'ball' is not known .accepted: disc-plane|disc-block|ball-axisymmetric|ball-plane|bodies"):
+    with pytest.raises(BadInput, match="script: 'ball' is not known .accepted: disc-plane|disc-block|ball-axisymmetric|ball-plane|bodies|bodies-3d"):
         describe({}, "ball")
 
 
