@@ -361,5 +361,18 @@ def test_a_ball_on_a_free_block(tmp_path):
     assert list(h) == found_columns(found) and found.scene["symmetry"] == "quarter"
 
 
+def test_a_pair_is_that_of_the_other_dimension(tmp_path):
+    """A ball on a free cylinder up to the largest force: impulse, velocities and force as of bodies of revolution, to the coarse meshes' error."""
+    cylinder = {"name": "cylinder", "shape": "cylinder", "radius": 0.08, "height": 0.06}
+    ball = {key: value for key, value in BALL.items() if key not in ("position", "velocity")}
+    top = {"end_time": 2e-3, "accuracy": 0.1}
+    solid = run.run(read(BALL | {"position": [0, 0.05, 0]}, cylinder | {"position": [0, -0.03, 0]}, obstacles=(), **top), {}, tmp_path / "solid", estimate=False).summary
+    scene = multibody.read(SCENE | top | {"dimension": "axisymmetric", "body": [ball | {"position": 0.05, "velocity": -8}, cylinder | {"position": -0.03}]}, tmp_path, "flat")
+    flat = run.run(scene, {}, tmp_path / "flat", estimate=False).summary
+    assert flat["impulse"] > 2.5
+    for name, off in (("impulse", 0.02), ("impulse_y_1", 0.02), ("rebound_vy_1", 0.02), ("rebound_vy_2", 0.03), ("peak_force", 0.06)):
+        assert solid[name] == pytest.approx(flat[name], rel=off), name
+
+
 def found_columns(found) -> list[str]:
     return load(str(found.folder / "scene.toml")).columns
