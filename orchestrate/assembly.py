@@ -82,7 +82,7 @@ def _solids(scene: Multibody, sizes: list[Sizes | None]) -> tuple[solid_mesh.Sol
     meshes = [solids.mesh_of(body, one, folded) for body, one in zip(scene.bodies, sizes)]
     count = sum(solid_mesh.unknowns(one.cells, scene.values["degree"]) for one in meshes)
     if count > solid_mesh.MOST_UNKNOWNS:
-        raise BadInput(f"mesh_size: the bodies have {count} unknowns (accepted: up to {solid_mesh.MOST_UNKNOWNS}; larger mesh_size, contact_mesh_size or accuracy)")
+        raise BadInput(f"mesh_size: the bodies have {count} unknowns (accepted: up to {solid_mesh.MOST_UNKNOWNS}; larger mesh_size, contact_mesh_size or accuracy, coarser files, degree = 1)")
     centres = side_by_side(meshes, 1)
     return *solid_mesh.stack(meshes, centres), centres
 

@@ -1,4 +1,5 @@
-"""The bodies of a scene: [[body]] tables as outlines (or meshes) with material, place and motion, SI units.
+"""The bodies of a scene: [[body]] tables as outlines (or meshes) with material, place and motion, SI units. In plane strain (flat.py; of revolution
+and in three dimensions shapes and motions are those of revolution.py and solids.py):
 
     [[body]]
     name = "disc"                # body1, body2 ... where it is left out

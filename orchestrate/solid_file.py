@@ -17,7 +17,7 @@ from . import mesh
 from .failure import BadInput
 from .mesh import FREE, Sizes
 from .places import ROOT
-from .solid_mesh import NEVER, TURN, SolidMesh, boundary, cells_of, generate
+from .solid_mesh import NEVER, TURN, SolidMesh, boundary, cell_volumes, cells_of, generate
 
 MESHES, GEOMETRIES = (".msh", ".mesh"), (".geo", ".step", ".stp")
 CONTACT = "contact"
@@ -105,6 +105,9 @@ def _meshed(path: Path, sizes: Sizes | None) -> SolidMesh:
 
 def _labelled(model, points: np.ndarray, cells: np.ndarray) -> SolidMesh:
     """With the labels of boundary faces from the physical surfaces of a model."""
+    volumes = cell_volumes(points, cells)
+    if not (volumes > 1e-12 * np.ptp(points, axis=0).max()**3 / len(cells)).all():
+        raise BadInput(f"a tetrahedron is flat: its volume is {np.nanmin(volumes):.3g} m3, or it has a corner that is no number")
     faces = boundary(cells)
     named = _contact_triangles(model)
     if named is None:

@@ -30,7 +30,7 @@ SHAPES = {"ball": ("radius",), "box": ("width", "height", "depth"), "cylinder": 
 MOTION = ("angle", "turn", "spin")
 SAMPLES = 1500               # points on a surface where its shape is wanted as points
 NEAREST = 16                 # triangles of a surface, by their centres, among which the nearest one is sought
-CHUNK = 200                  # points at a time, against as many triangles as there are
+AT_ONCE = 500_000            # pairs of a point and a triangle
 
 
 class Shape(Protocol):
@@ -187,18 +187,25 @@ class Surface:
 
     def gap(self, points: np.ndarray) -> np.ndarray:
         """The distance from the nearest triangle; inside, where they are seen under a full solid angle."""
-        return np.concatenate([self._gap(points[at:at + CHUNK]) for at in range(0, len(points), CHUNK)])
+        chunk = max(1, AT_ONCE // len(self.triangles))
+        distance = np.concatenate([self._distance(points[at:at + chunk]) for at in range(0, len(points), chunk)])
+        low, high = self.corners.min(axis=0), self.corners.max(axis=0)
+        for at in np.array_split(boxed := np.flatnonzero(((points > low) & (points < high)).all(axis=1)), len(boxed) // chunk + 1):
+            distance[at] *= np.where(self._solid_angle(points[at]) > 2 * math.pi, -1, 1)
+        return distance
 
-    def _gap(self, points: np.ndarray) -> np.ndarray:
+    def _distance(self, points: np.ndarray) -> np.ndarray:
         away = ((points[:, None] - self.triangles.mean(axis=1))**2).sum(axis=2)
         few = min(NEAREST, len(self.triangles))
         near = self.triangles[np.argpartition(away, few - 1, axis=1)[:, :few]]
-        distance = distance_to_triangles(points[:, None], near).min(axis=1)
+        return distance_to_triangles(points[:, None], near).min(axis=1)
+
+    def _solid_angle(self, points: np.ndarray) -> np.ndarray:
+        """Of all triangles, seen from points: 4 pi inside, 0 outside (van Oosterom and Strackee 1983)."""
         a, b, c = (self.triangles[:, k] - points[:, None] for k in range(3))
         la, lb, lc = (np.linalg.norm(one, axis=2) for one in (a, b, c))
         below = la * lb * lc + (a * b).sum(axis=2) * lc + (b * c).sum(axis=2) * la + (c * a).sum(axis=2) * lb
-        angle = 2 * np.arctan2((a * np.cross(b, c)).sum(axis=2), below).sum(axis=1)      # van Oosterom and Strackee (1983)
-        return np.where(angle > 2 * math.pi, -distance, distance)
+        return 2 * np.arctan2((a * np.cross(b, c)).sum(axis=2), below).sum(axis=1)
 
     def sampled(self, spacing: float) -> np.ndarray:
         """Corners, and points of a grid in each triangle whose sides are longer than the spacing."""

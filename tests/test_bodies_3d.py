@@ -8,6 +8,7 @@ import pytest
 
 from orchestrate import approach, assembly, mesh, mirror, multibody, parameters, run, solid_file, solid_mesh, solids
 from orchestrate.failure import BadInput
+from orchestrate.report import bodies, figures, report
 from orchestrate.scene import load
 from orchestrate.tables import to_toml
 from test_direct import call
@@ -300,7 +301,7 @@ def falls(tmp_path_factory):
     """A ball on a rigid plane: a quarter of it, half, and all, on meshes of the same sizes."""
     folder, found = tmp_path_factory.mktemp("falls"), {}
     for symmetry in ("quarter", "half", "full"):
-        scene = read(BALL | {"position": [0, 0.05, 0], "velocity": [0, -2, 0]}, obstacles=[FLOOR | {"point": [0, 0, 0]}], symmetry=symmetry)
+        scene = read(BALL | {"position": [0, 0.05, 0], "velocity": [0, -2, 0]}, obstacles=[FLOOR | {"point": [0, 0, 0]}], symmetry=symmetry, fields=2)
         found[symmetry] = run.run(scene, {}, folder / symmetry, estimate=False)
     return found
 
@@ -313,6 +314,20 @@ def test_parts_stand_for_the_whole(falls):
         assert s["impulse"] == pytest.approx(falls["full"].summary["impulse"], rel=0.01) and s["energy_drift"] < 1e-8
         assert s["rebound_vy"] == pytest.approx(falls["full"].summary["rebound_vy"], rel=0.02)
         assert s["contact_time"] == pytest.approx(falls["full"].summary["contact_time"], rel=0.06)
+
+
+def test_report_and_figures(falls, tmp_path):
+    """Forces in N, energies in J of a body in three dimensions; the parts are drawn with their mirror images among the obstacles, of a whole body
+    that has no plane of symmetry in its mesh all but its shapes."""
+    found = falls["quarter"]
+    text = report.report(found)
+    assert "N s" in text and "/m" not in text.replace("m/s", "")
+    assert figures.is_half(found.scene) and not figures.is_half(falls["half"].scene) and not figures.is_half(falls["full"].scene)
+    plane, = bodies.obstacles_of(found.scene)
+    assert plane.gap_in_plane(np.array([[3, 2.0]]), 1.0) == pytest.approx([2.0])
+    drawn = {path.stem for path in figures.draw(found.folder, [])}
+    assert {"energies", "force", "velocity", "shapes"} <= drawn
+    assert "shapes" not in {path.stem for path in figures.draw(falls["full"].folder, [])}
 
 
 def test_it_is_the_ball_of_the_other_dimension(falls, tmp_path):
@@ -344,6 +359,19 @@ def test_a_ball_on_a_free_block(tmp_path):
     assert s["dofs"] < 4000 and h["normal_force"].max() > 100 and s["energy_drift"] < 1e-8
     assert np.ptp(h["momentum_y"]) < 1e-8 * abs(h["momentum_y"]).max() and h["vy_2"][-1] < 0 and h["vy_1"][-1] > -8
     assert list(h) == found_columns(found) and found.scene["symmetry"] == "quarter"
+
+
+def test_a_pair_is_that_of_the_other_dimension(tmp_path):
+    """A ball on a free cylinder up to the largest force: impulse, velocities and force as of bodies of revolution, to the coarse meshes' error."""
+    cylinder = {"name": "cylinder", "shape": "cylinder", "radius": 0.08, "height": 0.06}
+    ball = {key: value for key, value in BALL.items() if key not in ("position", "velocity")}
+    top = {"end_time": 2e-3, "accuracy": 0.1}
+    solid = run.run(read(BALL | {"position": [0, 0.05, 0]}, cylinder | {"position": [0, -0.03, 0]}, obstacles=(), **top), {}, tmp_path / "solid", estimate=False).summary
+    scene = multibody.read(SCENE | top | {"dimension": "axisymmetric", "body": [ball | {"position": 0.05, "velocity": -8}, cylinder | {"position": -0.03}]}, tmp_path, "flat")
+    flat = run.run(scene, {}, tmp_path / "flat", estimate=False).summary
+    assert flat["impulse"] > 2.5
+    for name, off in (("impulse", 0.02), ("impulse_y_1", 0.02), ("rebound_vy_1", 0.02), ("rebound_vy_2", 0.03), ("peak_force", 0.06)):
+        assert solid[name] == pytest.approx(flat[name], rel=off), name
 
 
 def found_columns(found) -> list[str]:

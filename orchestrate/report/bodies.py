@@ -63,7 +63,7 @@ def draw(history: dict[str, np.ndarray], scene: dict[str, Value], snapshots: lis
     """The figures by name; `history` from the first touch on."""
     bodies, per = dict(zip(names(scene), suffixes(history))), per_metre(scene)
     drawn = {"energies": energies(history, bodies, per), "velocity": velocities(history, bodies), "force": forces(history, bodies, per)}
-    if snapshots:
+    if snapshots and len(vtu.read(snapshots[0][1]).triangles):       # none where whole bodies in three dimensions have no plane of symmetry
         drawn["shapes"] = shapes(snapshots, scene)
     return drawn
 
@@ -124,8 +124,8 @@ def energies(history: dict[str, np.ndarray], bodies: dict[str, str], per: str = 
 
 def velocities(history: dict[str, np.ndarray], bodies: dict[str, str]) -> plt.Figure:
     """Velocities [m/s] of the centres of mass and spins [rad/s], a panel a component, a line a body."""
-    components = {"vx": "$v_x$ [m/s]", "vy": "$v_y$ [m/s]", "spin": "spin [rad/s]"}
-    moving = [name for name in components if any(history[name + of].any() for of in bodies.values())] or ["vy"]
+    components = {"vx": "$v_x$ [m/s]", "vy": "$v_y$ [m/s]", "vz": "$v_z$ [m/s]", "spin_x": "spin about x [rad/s]", "spin_y": "spin about y [rad/s]", "spin": "spin [rad/s]"}
+    moving = [name for name in components if any(np.any(history.get(name + of, 0)) for of in bodies.values())] or ["vy"]
     figure, grid = panels(len(moving), 2.8)
     for axes, name in zip(grid, moving):
         axes.axhline(0, color=GREY, linewidth=0.6)
@@ -144,9 +144,9 @@ def forces(history: dict[str, np.ndarray], bodies: dict[str, str], per: str = "/
     if history["friction_force"].any():
         lines[f"friction force {unit}"] = {"": "friction_force"}
     if len(bodies) > 1:
-        for component in ("x", "y"):
+        for component in "xyz":
             columns = {name: f"force_{component}{of}" for name, of in bodies.items()}
-            if any(history[column].any() for column in columns.values()):
+            if any(np.any(history.get(column, 0)) for column in columns.values()):
                 lines[f"force along {component} {unit}"] = columns
     figure, grid = panels(len(lines), 2.8)
     for axes, (words, columns) in zip(grid, lines.items()):

@@ -1,5 +1,6 @@
 """What a finished run is told in: its key figures, beside the published numbers of the same scene."""
 
+import re
 import sys
 import tomllib
 from dataclasses import dataclass, replace
@@ -12,7 +13,7 @@ from ..results import RunResult, suffixes
 
 REFERENCE = Path(__file__).resolve().parent / "reference"
 
-LEFT_OUT_AT_ZERO = ("friction_work", "creep_work", "rotation_energy", "impulse_ratio", "rebound_vx", "rebound_spin", "sliding_time", "sticking_time", "reverse_slip_time", "unsolved_jumps")
+LEFT_OUT_AT_ZERO = ("friction_work", "creep_work", "rotation_energy", "impulse_ratio", "rebound_vx", "rebound_vz", "rebound_spin_x", "rebound_spin_y", "rebound_spin", "sliding_time", "sticking_time", "reverse_slip_time", "unsolved_jumps")
 
 
 @dataclass(frozen=True)
@@ -46,6 +47,9 @@ def rows(per_metre: bool) -> list[Quantity]:
         Quantity("impulse", "impulse", f"N s{per}", digits=".5g"),
         Quantity("rebound_vx", "rebound velocity, x", "m/s"),
         Quantity("rebound_vy", "rebound velocity, y", "m/s"),
+        Quantity("rebound_vz", "rebound velocity, z", "m/s"),
+        Quantity("rebound_spin_x", "rebound spin about x", "rad/s"),
+        Quantity("rebound_spin_y", "rebound spin about y", "rad/s"),
         Quantity("rebound_spin", "rebound spin", "rad/s"),
         Quantity("restitution", "restitution"),
         Quantity("restitution_tangential", "  tangential"),
@@ -134,7 +138,7 @@ def report(result: RunResult) -> str:
     width = max(24, *(len(quantity.label) + 1 for quantity in quantities))
     for quantity in quantities:
         value = summary.get(quantity.key)
-        if value is None or (abs(value) < 1e-9 and quantity.key.rstrip("_0123456789") in LEFT_OUT_AT_ZERO):
+        if value is None or (abs(value) < 1e-9 and re.sub("_[0-9]+$", "", quantity.key) in LEFT_OUT_AT_ZERO):
             continue
         beside = [quantity.beside(number) for number in known.get(quantity.key, [])] or [""]
         lines.append(f"  {quantity.label:<{width}}{quantity.text(value):<18}{beside[0]}".rstrip())
