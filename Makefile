@@ -60,7 +60,8 @@ verify: $(READY) ## exact solutions with convergence: bar, rod, Hertz, rigid bod
 	@$(PYTHON) -m orchestrate $@ $(ARGS)
 
 paper: override ARGS :=
-paper: disc-normal disc-oblique disc-rolling disc-block ball-axisymmetric ball-comparison friction-laws $(SWEEPS) stick-slip verify ## all of the above, and results/paper/report.html
+paper: disc-normal disc-oblique disc-rolling disc-block ball-axisymmetric friction-laws $(SWEEPS) stick-slip verify ## all of the above, and results/paper/report.html
+	@$(PYTHON) -m orchestrate compare disc-normal disc-normal-neohookean ball-axisymmetric-svk ball-axisymmetric
 	@$(PYTHON) -m orchestrate $@
 
 movie: CASE := disc-oblique

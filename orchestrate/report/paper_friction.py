@@ -79,12 +79,12 @@ def _angle(rows: pd.DataFrame, k: int) -> tuple[float, float]:
 
 @states("Section 3.1", "oblique disc, SVK, 12 m/s at π/3, μ_d = 0.5, μ_e = 0.7: contact time 0.0045 s, as the paper may have run it")
 def oblique_time(results: Results) -> Finding:
-    """Half a unit of the last digit: agrees where each of three coarse meshes meets it with SVK, partly where one does."""
-    runs = [results.summary("disc-oblique-svk"), *results.summaries(JUMP, law="svk", friction_static=VALUES["friction_static"])]
+    """Half a unit of the last digit: agrees where both of two coarse meshes meet it with SVK, partly where one does."""
+    runs = [results.summary("disc-oblique-svk"), results.summaries(JUMP, law="svk", friction_static=VALUES["friction_static"])[-1]]
     met = [within(end["contact_time"], 4.5e-3, 0.5e-4) for end in runs]
     rows = finished(results, "oblique")
     other = ", ".join(f"{1e3 * time:.2f} ± {1e3 * error:.2f} ms (ν = {nu:g})" for nu, (time, error) in ((nu, bar(rows, "contact_time", nu=nu)) for nu in rows.nu))
-    return Finding(AGREES if all(met) else PARTLY if any(met) else DIFFERS, "on three coarse meshes " + "; ".join(
+    return Finding(AGREES if all(met) else PARTLY if any(met) else DIFFERS, "on two coarse meshes " + "; ".join(
         f"{both_times(end)}, {end['dofs']} dofs, {when(end['ellipticity_lost_time'], 'ellipticity lost')}, {when(end['breakdown_time'], 'det F ≤ 0')}" for end in runs)
         + f". Where ellipticity is lost no mesh is the answer. (The neo-Hookean disc, another law, converges to {other}.)",
         [results.picture("disc-oblique-svk", "force")], [results.run("disc-oblique-svk"), *results.sweep_runs(JUMP), *results.sweep_runs("oblique")])
@@ -146,20 +146,27 @@ def _losses(history: History) -> tuple[float, float, float]:
 
 @states("Section 3.1, figure 6a", "the elastic energy is null before the contact and in it fluctuates together with the kinetic energy")
 def elastic(results: Results) -> Finding:
-    """With a law, on both meshes: where it is null to 1e-9 of the total at the start, later exceeds 5 % of it, and its changes in a step mirror
-    those of the kinetic energy (correlation below -0.9)."""
-    def of(law: str) -> tuple[bool, str]:
-        parts, good = [], []
-        for history in impact(results, law):
-            steps, start = touching(history), total(history)[0]
-            before, most = abs(history["elastic"][0]) / start, history["elastic"].max() / start
-            mirror = float(np.corrcoef(*(np.diff(history[name])[steps[1:] - 1] for name in ("kinetic", "elastic")))[0, 1])
-            good.append(before < CONSTANT and most > 0.05 and mirror < -0.9)
-            parts.append(f"{before:.0e} before, up to {100 * most:.0f} % in it, with {maxima(history['elastic'][steps], 0.01 * start)} maxima above 1 %, correlation {mirror:.3f}")
-        return all(good), " and ".join(parts)
-    verdict, words = of_both(of)
-    return Finding(verdict, f"of the total at the start, on two meshes; {words}.", [results.picture("disc-oblique-svk", "energies"), results.picture("disc-oblique", "energies")],
+    """With SVK, on both meshes: agrees where it is null to 1e-9 of the total at the start, its changes in the contact mirror those of the
+    kinetic energy (correlation below -0.9), and it has several maxima that stand out by more than 1 % of the total; partly where it rises and
+    falls once."""
+    found, words = {}, []
+    for law in LAWS:
+        before, mirror, most, counts = zip(*map(_exchange, impact(results, law)))
+        found[law] = max(before) < CONSTANT and max(mirror) < -0.9, min(counts) > 1
+        words.append(f"{LAWS[law]}: {max(before):.0e} before, in it up to {100 * max(most):.0f} % with {' and '.join(map(str, counts))} maxima, correlation with the kinetic {max(mirror):.3f}")
+    exchanged, fluctuates = found["svk"]
+    said = "" if fluctuates else " With SVK it rises and falls once."
+    return Finding(DIFFERS if not exchanged else AGREES if fluctuates else PARTLY, f"of the total at the start, on two meshes; {'; '.join(words)}." + said, [results.picture("disc-oblique-svk", "energies"), results.picture("disc-oblique", "energies")],
                    results.sweep_runs(JUMP))
+
+
+def _exchange(history: History) -> tuple[float, float, float, int]:
+    """Of the elastic energy: its share of the total before the contact, the correlation of its changes in a step with those of the kinetic energy, its
+    largest share, and the maxima that stand out by more than 1 % of the total."""
+    steps, start = touching(history), total(history)[0]
+    mirror = np.corrcoef(*(np.diff(history[name])[steps[1:] - 1] for name in ("kinetic", "elastic")))[0, 1]
+    return (float(abs(history["elastic"][:max(steps[0], 1)]).max() / start), float(mirror), float(history["elastic"].max() / start),
+            maxima(history["elastic"][steps], 0.01 * start))
 
 
 @states("Section 3.1", "the disc slides first and sticks in about the last third of the contact, in which the energy is constant again")
@@ -167,17 +174,17 @@ def sliding_first(results: Results) -> Finding:
     """Over the search of ε, k, ν with SVK at 60° (the paper calls normal incidence π/2): agrees where all runs do both, partly where some
     do. Constant energy: at most 5 % of the friction work in the last third."""
     every = results.stick_slip()
-    counts, shares = {}, []
-    for law, rows in every[every.exit == 0].groupby("law"):
+    counts = {}
+    for law in LAWS:
+        rows = every[(every.exit == 0) & (every.law == law)]
         counts[law] = int((rows["order"] & rows["quiet"]).sum()), len(rows), int(rows["order"].sum())
-        shares += [slip_share(e) for e in rows.rebound_vy / _normal()]
-    both, runs, _ = counts.get("svk", (0, 0, 0))
+    both, runs, _ = counts["svk"]
     said = ", ".join(f"{LAWS[law]}: {order} of {n} runs, {both} of them with at most {100 * stick_slip.QUIET:g} % of the friction work in the last third"
                      for law, (both, n, order) in counts.items())
-    e = results.summary("disc-oblique-svk")["rebound_vy"] / _normal()
+    restitution = {name: results.summary(name)["rebound_vy"] / _normal() for name in ("disc-oblique-svk", "disc-oblique")}
+    shares = " and ".join(f"{slip_share(e):.2f} with the e = {e:.3f} of {name}" for name, e in restitution.items())
     return Finding(AGREES if runs and both == runs else PARTLY if both else DIFFERS, f"slides first and sticks last: {said}. A rigid disc explains it: its slip ends at the share "
-                   f"v_t/(3 μ_d (1 + e) v_n) of the normal impulse, {slip_share(e):.2f} with the e = {e:.3f} of the run disc-oblique-svk ({min(shares):.2f} to {max(shares):.2f} over "
-                   "the search), not at two thirds; the deformable disc then sticks and slips back at the end.", [results.folder / "stick-slip/stick-slip.png"],
+                   f"v_t/(3 μ_d (1 + e) v_n) of the normal impulse, {shares}, not at two thirds; the deformable disc then sticks and slips back at the end.", [results.folder / "stick-slip/stick-slip.png"],
                    [study.place(results.folder / "stick-slip", point) for point in stick_slip.grid(stick_slip.AXES)])
 
 

@@ -27,19 +27,19 @@ def stepped(results: Results) -> Finding:
 def reflections(results: Results) -> Finding:
     """Not decided where no ν has a rise beyond twice its error bar: there is no step to explain. Else agrees where for every ν there are as
     many as the number of transits 2R/c in the contact falls through whole numbers, with the pressure or the shear waves of small strains."""
-    used, words, as_many, steps = results.scene("disc-normal"), [], [], 0
+    used, words, as_many, steps, fewer = results.scene("disc-normal"), [], [], 0, 0
     for nu, group in results.table(SVK).groupby("nu"):
         trend = sweep_figures.steps_against(group[group.speed < _end(group)], "speed", "contact_time")
         if not trend:
             return Finding(OPEN, f"ν = {nu:g}: too few runs finished.", results.drawn(SVK), results.sweep_runs(SVK))
         counts = {wave: (trend.first / transit, trend.last / transit) for wave, transit in _transits(used, nu).items()}
-        as_many.append(any(floor(first) - floor(last) == trend.established for first, last in counts.values()))
+        whole = [floor(first) - floor(last) for first, last in counts.values()]
+        as_many.append(trend.established in whole)
+        fewer = max(fewer, *whole)
         steps += trend.established
         words.append(f"ν = {nu:g}: {trend.established} rises beyond twice their error bar; " + ", ".join(
             f"{first:.2f} to {last:.2f} transits of {wave} waves" for wave, (first, last) in counts.items()))
-    told = "; ".join(words) + ": so few reflections less over the whole curve would make one or two steps." if max(
-        floor(first) - floor(last) for first, last in counts.values()) < 3 else "; ".join(words) + "."
-    return Finding(OPEN if not steps else AGREES if all(as_many) else DIFFERS, told, results.drawn(SVK), results.sweep_runs(SVK))
+    return Finding(OPEN if not steps else AGREES if all(as_many) else DIFFERS, f"{'; '.join(words)}. By these numbers the curve would have at most {fewer} such steps.", results.drawn(SVK), results.sweep_runs(SVK))
 
 
 def _transits(used: dict, nu: float) -> dict[str, float]:
@@ -129,8 +129,8 @@ def vibro_impact(results: Results) -> Finding:
 
 
 def _of(rows: pd.DataFrame, law: str, speed: float, column: str) -> tuple[float, float]:
-    """(value, error bar) of a law at a speed; the bar at least the root mean square of the law's."""
-    return bar(rows[rows.law == law], column, speed=speed)
+    """(value, error bar) of a law at a speed; the bar at least the root mean square of both laws' there."""
+    return bar(rows[rows.speed == speed], column, law=law)
 
 
 def _end(group: pd.DataFrame) -> float:
