@@ -108,7 +108,7 @@ def disc_time(results: Results) -> Finding:
     text = "; ".join(f"ν = {nu:g}: k = {sweep_figures.spans(ranges)}" for nu, ranges in met.items())
     return Finding(AGREES if met else DIFFERS, f"with SVK met for {text or 'no ν and k'} [Pa/m] (the time above 1 % of the peak force for "
                    f"{'ν = ' + ', '.join(f'{nu:g}' for nu in above) if above else 'no ν'}); the default run (ν = 0.45, k = 10¹⁰ Pa/m) gives {both_times(results.summary(DISC))}.",
-                   results.drawn("calibrate"), results.sweep_runs("calibrate") + [results.run(DISC)])
+                   [*results.drawn("calibrate"), results.picture(DISC, "force")], results.sweep_runs("calibrate") + [results.run(DISC)])
 
 
 @states("Section 3.3, figure 10", "normal impact of the ball, SVK, without friction: the energy is constant")
