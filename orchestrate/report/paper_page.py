@@ -34,7 +34,8 @@ def page(findings: list[tuple[str, str, Finding]], more: str = "") -> str:
     rows = "\n".join(f"<tr><td>{escape(item)}</td><td>{escape(text)}</td><td>{escape(found.ours)}</td>"
                      f'<td style="color:{COLOURS[found.verdict]}"><a href="#s{k}">{found.verdict}</a></td></tr>'
                      for k, (item, text, found) in enumerate(findings))
-    sections = "\n".join(_section(k, *each) for k, each in enumerate(findings))
+    shown = {}
+    sections = "\n".join(_section(k, *each, shown) for k, each in enumerate(findings))
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><title>The paper's statements and our numbers</title>
 <style>
@@ -66,9 +67,12 @@ that law, “not decided” means that the effect is smaller than the errors. �
 """
 
 
-def _section(k: int, item: str, text: str, found: Finding) -> str:
+def _section(k: int, item: str, text: str, found: Finding, shown: dict[Path, int]) -> str:
+    """A statement with its pictures; of one that an earlier statement has, by `shown`, a link to that."""
+    pictures = [f'<p>{escape(caption(path))}: <a href="#s{shown[path]}">shown above</a>.</p>' if path in shown else _picture(path) for path in found.figures]
+    shown |= {path: k for path in found.figures if path not in shown}
     return (f'<h2 id="s{k}">{escape(item)}: {escape(text)}</h2>\n<p><b style="color:{COLOURS[found.verdict]}">{found.verdict}</b>: {escape(found.ours)}</p>\n'
-            + "\n".join(map(_picture, found.figures)) + f"\n{_provenance(found.runs)}\n<p>{BACK}</p>")
+            + "\n".join(pictures) + f"\n{_provenance(found.runs)}\n<p>{BACK}</p>")
 
 
 def _picture(path: Path) -> str:
