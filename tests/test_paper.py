@@ -274,7 +274,7 @@ def test_page_leads_to_every_statement_and_back(tmp_path):
     picture.write_bytes(b"picture")
     text = paper_page.page([("Figure 1", "first", Finding(AGREES, "1", [picture])), ("Figure 2", "second", Finding(DIFFERS, "2", [picture]))])
     for k in (0, 1):
-        assert text.count(f'id="s{k}"') == 1 and f'<li><a href="#s{k}">Figure {k + 1}</a>' in text
+        assert text.count(f'id="s{k}"') == 1 and f'<a href="#s{k}" title="{("first", "second")[k]}">Figure {k + 1}</a>' in text
     assert text.count('href="#top"') == 3 and text.count('id="top"') == 1 and text.count("data:image/png") == 1
     assert f"<figcaption>{sweep.load('oblique').title} (make oblique)</figcaption>" in text and '<a href="#s0">shown above</a>' in text
     assert f"by ffimpact {paper_page._version()}" in text and run.code_hash() in text
@@ -286,6 +286,29 @@ def test_pictures_say_what_they_show():
     pictures = [*(results.picture(name, kind) for name, kinds in paper.RUNS.items() for kind in kinds), *(results.drawn(name)[0] for name in sweep.built_in()),
                 results.folder / "stick-slip/stick-slip.png", results.folder / "friction-laws/friction-laws.png", results.folder / paper_bodies.ACCELERATIONS]
     assert not [path for path in pictures if len(paper_page.caption(path)) < 30]
+
+
+def test_the_page_of_all_statements(tmp_path, monkeypatch, capsys):
+    """The command writes the page with every statement, its verdict and its pictures, and says the same; counts add up."""
+    given = Memory(tmp_path, base())
+    for *_, find in STATEMENTS:
+        for path in find(given).figures:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(b"picture")
+    monkeypatch.setattr(paper.judging, "Results", lambda folder: given)
+    monkeypatch.setattr(paper, "require", lambda results: None)
+    monkeypatch.setattr(paper, "verification", lambda folder: '<h2 id="verification">Verification</h2>')
+    assert main(["paper", "--results", str(tmp_path)]) == 0
+    text, said = (tmp_path / "paper/report.html").read_text(), capsys.readouterr().out
+    assert all(f'id="s{k}"' in text for k in range(len(STATEMENTS))) and 'href="#verification"' in text
+    assert sum(int(number) for number, _ in re.findall(f"([0-9]+) ({'|'.join(paper.COLOURS)})", said.splitlines()[-2])) == len(STATEMENTS)
+
+
+def test_the_pictures_of_the_page_are_asked_for(tmp_path):
+    """What the page shows of runs and what the cases must have left are the same."""
+    given = Memory(tmp_path, base())
+    shown = {(path.parent.parent.name, path.stem) for *_, find in STATEMENTS for path in find(given).figures if path.parent.name == "figures"}
+    assert shown == {(name, kind) for name, kinds in paper.RUNS.items() for kind in kinds}
 
 
 def test_a_missing_case_stops_it(tmp_path, capsys):

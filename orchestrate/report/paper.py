@@ -18,7 +18,7 @@ from ..sweeps import sweep
 from . import paper_judging as judging, paper_friction, paper_impacts, paper_bodies   # noqa: F401: these register the statements, in this order
 from .paper_page import COLOURS, page, verification
 
-RUNS = {"disc-normal": ("force",), "disc-normal-neohookean": (), "disc-oblique": ("flight", "force", "energies"), "disc-oblique-svk": ("force", "rolling", "energies"),
+RUNS = {"disc-normal": ("force",), "disc-normal-neohookean": (), "disc-oblique": ("flight", "force", "energies"), "disc-oblique-svk": ("flight", "force", "rolling", "energies"),
         "disc-rolling": ("rolling",), "disc-block": ("velocity", "shapes", "energies"), "disc-block-neohookean": ("velocity",),
         "ball-axisymmetric": (), "ball-axisymmetric-svk": ("energies", "force")}   # and the pictures of them on the page
 TARGETS = {"disc-oblique-svk": "disc-oblique", "disc-block-neohookean": "disc-block", "ball-axisymmetric-svk": "ball-axisymmetric",

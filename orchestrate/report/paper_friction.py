@@ -66,7 +66,7 @@ def angles(results: Results) -> Finding:
         return bool(found) and all(abs(out - ANGLE) > APART + error for out, error in found), ", ".join(
             f"{out:.1f} ± {error:.1g}°" + (f" (ν = {nu:g})" if law != "svk" else "") for (out, error), nu in zip(found, rows.get("nu", [np.nan] * len(rows))))
     verdict, words = of_both(of)
-    return Finding(verdict, f"from the plane {ANGLE:g}° in; out, {words}.", [results.picture("disc-oblique", "flight")],
+    return Finding(verdict, f"from the plane {ANGLE:g}° in; out, {words}. (The bar of SVK is between two coarse meshes, on which ellipticity is lost.)", [results.picture("disc-oblique-svk", "flight"), results.picture("disc-oblique", "flight")],
                    results.sweep_runs(JUMP) + results.sweep_runs("oblique"))
 
 

@@ -30,7 +30,8 @@ TITLES = {"friction-laws": "The friction laws (11) to (13), from the functions t
 def page(findings: list[tuple[str, str, Finding]], more: str = "") -> str:
     """The page as HTML, pictures and all; `more` comes behind the statements."""
     counts = ", ".join(f"{sum(found.verdict == verdict for *_, found in findings)} {verdict}" for verdict in COLOURS)
-    contents = "\n".join(f'<li><a href="#s{k}">{escape(item)}</a>: {escape(text)}</li>' for k, (item, text, _) in enumerate(findings))
+    contents = " ·\n".join(['<a href="#all">All verdicts</a>', *(f'<a href="#s{k}" title="{escape(text)}">{escape(item)}</a>' for k, (item, text, _) in enumerate(findings))]
+                           + ['<a href="#verification">Verification</a>'] * bool(more))
     rows = "\n".join(f"<tr><td>{escape(item)}</td><td>{escape(text)}</td><td>{escape(found.ours)}</td>"
                      f'<td style="color:{COLOURS[found.verdict]}"><a href="#s{k}">{found.verdict}</a></td></tr>'
                      for k, (item, text, found) in enumerate(findings))
@@ -51,11 +52,7 @@ details {{ font-size: .85em }} pre {{ white-space: pre-wrap }}
 Error bars of ours are what refining mesh and step changes. Verdicts follow from the numbers by fixed rules (orchestrate/report/paper_friction.py, paper_impacts.py, paper_bodies.py): a statement on St. Venant–Kirchhoff is decided by runs with
 that law, “not decided” means that the effect is smaller than the errors. “As the paper may have run it”: on a coarse mesh of linear triangles.</p>
 <p><b>{counts}</b></p>
-<nav><ol>
-<li><a href="#all">All verdicts</a></li>
-{contents}
-{'<li><a href="#verification">Verification</a></li>' if more else ""}
-</ol></nav>
+<nav>Contents: {contents}</nav>
 <h2 id="all">All verdicts</h2>
 <table><tr><th>where</th><th>the paper</th><th>here</th><th>verdict</th></tr>
 {rows}
