@@ -49,6 +49,13 @@ def test_restitution_and_angles_of_an_oblique_impact(tmp_path):
     assert row.translation_energy + row.rotation_energy + row.vibration_energy + row.friction_work == pytest.approx(s["energy_initial"])
 
 
+def test_a_touch_on_the_way_up(tmp_path):
+    """A body that vibrates touches again while its centre leaves: a row without approach, without restitution, also where nothing slides."""
+    rows, found = go(tmp_path, "disc-normal", {"fields": 0, "mesh_size": 0.016, "contact_mesh_size": 0.006, "dt": 2e-5})
+    assert len(rows) == found.summary["contact_intervals"] == 2 and rows.approach[1] < 0 < rows.separation[1]
+    assert rows.restitution.notna().tolist() == [True, False] and rows.restitution_tangential.isna().all()
+
+
 def test_bounces_are_rows(tmp_path):
     """Several bounces under gravity are several impacts, one after the other; what a body loses in one is missing in the next approach."""
     rows, _ = go(tmp_path, "disc-normal", COARSE | {"speed": 0, "height": 0.02, "gravity": 9.81, "end_time": 0.5, "accuracy": 0.3})

@@ -17,7 +17,7 @@ FRICTIONLESS = {"contact", "energies", "force", "shapes", "velocity"}
 
 @pytest.fixture(scope="module")
 def oblique(tmp_path_factory):
-    """The oblique impact as the paper ran it, with the real FreeFem++."""
+    """The oblique impact as the paper may have run it, with the real FreeFem++."""
     found = run.run(scene.load("disc-oblique-svk"), {"fields": 5}, tmp_path_factory.mktemp("friction") / "oblique")
     report.draw(found)
     return found

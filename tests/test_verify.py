@@ -9,7 +9,7 @@ import pytest
 from orchestrate import verify
 from orchestrate.__main__ import main
 from orchestrate.failure import Failure
-from orchestrate.report import paper
+from orchestrate.report import paper_page as paper
 from verification.case import Case, Row
 
 

@@ -1,0 +1,143 @@
+"""The page of the paper's statements beside our numbers, as HTML that holds everything itself."""
+
+import base64
+import json
+import tomllib
+from datetime import datetime
+from html import escape
+from pathlib import Path
+
+import pandas as pd
+
+from .. import parameters, scene, verify
+from ..parameters import ROOT, Value
+from ..results import read_scene
+from ..run import code_hash
+from ..studies import study
+from ..sweeps import sweep
+from .paper_judging import AGREES, DIFFERS, OPEN, PARTLY, Finding
+
+COLOURS = {AGREES: "#009e73", DIFFERS: "#d55e00", PARTLY: "#b8860b", OPEN: "#777777"}
+SHOWN = {"energies": "energies over time", "force": "contact force over time", "rolling": "velocity of the centre and the rim, and the share that slides", "velocity": "velocities over time",
+         "flight": "shapes on the flight and in the contact", "shapes": "deformed shapes"}   # what a picture of a run shows
+BACK = '<a href="#top">Back to the top</a>'
+TITLES = {"friction-laws": "The friction laws (11) to (13), from the functions that the solver runs (make friction-laws)",
+          "stick-slip": "Share of the load that slides in each third of the contact, over ε, k and ν (make stick-slip)",
+          "-and-".join(("disc-normal", "disc-normal-neohookean", "ball-axisymmetric-svk", "ball-axisymmetric")):
+          "Accelerations of the centre of mass, energies and velocities of discs and balls (make ball-comparison)"}
+
+
+def page(findings: list[tuple[str, str, Finding]], more: str = "") -> str:
+    """The page as HTML, pictures and all; `more` comes behind the statements."""
+    counts = ", ".join(f"{sum(found.verdict == verdict for *_, found in findings)} {verdict}" for verdict in COLOURS)
+    contents = " ·\n".join(['<a href="#all">All verdicts</a>', *(f'<a href="#s{k}" title="{escape(text)}">{escape(item)}</a>' for k, (item, text, _) in enumerate(findings))]
+                           + ['<a href="#verification">Verification</a>'] * bool(more))
+    rows = "\n".join(f"<tr><td>{escape(item)}</td><td>{escape(text)}</td><td>{escape(found.ours)}</td>"
+                     f'<td style="color:{COLOURS[found.verdict]}"><a href="#s{k}">{found.verdict}</a></td></tr>'
+                     for k, (item, text, found) in enumerate(findings))
+    shown = {}
+    sections = "\n".join(_section(k, *each, shown) for k, each in enumerate(findings))
+    return f"""<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8"><title>The paper's statements and our numbers</title>
+<style>
+body {{ font: 15px/1.45 system-ui, sans-serif; color: #222; max-width: 60em; margin: 2em auto; padding: 0 1em }}
+table {{ border-collapse: collapse; width: 100% }} td, th {{ border-bottom: 1px solid #ddd; padding: .35em .6em; text-align: left; vertical-align: top }}
+td a {{ color: inherit }} img {{ max-width: 100% }} h2 {{ margin-top: 2.2em; font-size: 1.1em }}
+h3 {{ margin-top: 1.6em; font-size: 1em }} figure {{ margin: 1em 0 }} figcaption {{ font-size: .85em; color: #555 }} nav {{ font-size: .9em }}
+details {{ font-size: .85em }} pre {{ white-space: pre-wrap }}
+</style></head><body>
+<h1 id="top">The paper's statements and our numbers</h1>
+<p>Buezas, Rosales and Filipich, <i>Nonlinear deformable bodies with unilateral contact including friction</i>. The paper states neither ν (only
+“ν → 0.5”) nor the contact stiffness, ε, mesh or step; a number that it prints is taken as known to half a unit of its last digit.
+Error bars of ours are what refining mesh and step changes. Verdicts follow from the numbers by fixed rules (orchestrate/report/paper_friction.py, paper_impacts.py, paper_bodies.py): a statement on St. Venant–Kirchhoff is decided by runs with
+that law, “not decided” means that the effect is smaller than the errors. “As the paper may have run it”: on a coarse mesh of linear triangles.</p>
+<p><b>{counts}</b></p>
+<nav>Contents: {contents}</nav>
+<h2 id="all">All verdicts</h2>
+<table><tr><th>where</th><th>the paper</th><th>here</th><th>verdict</th></tr>
+{rows}
+</table>
+{sections}
+{more}
+<p>Made {datetime.now():%Y-%m-%d %H:%M} by ffimpact {_version()}, code sha256 {code_hash()}. {BACK}</p>
+</body></html>
+"""
+
+
+def _section(k: int, item: str, text: str, found: Finding, shown: dict[Path, int]) -> str:
+    """A statement with its pictures; of one that an earlier statement has, by `shown`, a link to that."""
+    pictures = [f'<p>{escape(caption(path))}: <a href="#s{shown[path]}">shown above</a>.</p>' if path in shown else _picture(path) for path in found.figures]
+    shown |= {path: k for path in found.figures if path not in shown}
+    return (f'<h2 id="s{k}">{escape(item)}: {escape(text)}</h2>\n<p><b style="color:{COLOURS[found.verdict]}">{found.verdict}</b>: {escape(found.ours)}</p>\n'
+            + "\n".join(pictures) + f"\n{_provenance(found.runs)}\n<p>{BACK}</p>")
+
+
+def _picture(path: Path) -> str:
+    words = escape(caption(path))
+    return f'<figure><img alt="{words}" src="data:image/png;base64,{base64.b64encode(path.read_bytes()).decode()}"><figcaption>{words}</figcaption></figure>'
+
+
+def caption(path: Path) -> str:
+    """What a picture shows: of a run its scene's title and the quantity, of a sweep its title."""
+    if path.name == "sweep.png" and path.parent.name in sweep.built_in():
+        return f"{sweep.load(path.parent.name).title} (make {path.parent.name})"
+    if path.parent.name == "figures" and path.parent.parent.name in scene.built_in():
+        return f"{path.parent.parent.name}: {scene.load(path.parent.parent.name).title}: {SHOWN.get(path.stem, path.stem)}"
+    return TITLES.get(path.stem, path.stem.replace("-", " "))
+
+
+def _version() -> str:
+    return tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
+
+
+def verification(folder: Path) -> str:
+    """The section with what `make verify` left in `folder`: a table of the cases, then each with its figure and numbers."""
+    frame = pd.read_csv(folder / "verify.csv")
+    judged = verify.judged(frame)
+    table = _table(verify.overview(frame), verify.FORMATS)
+    parts = []
+    for case in verify.CASES:
+        rows, asked = frame[frame.case == case.name], judged[judged.case == case.name]
+        figure = folder / f"{verify.slug(case)}.png"
+        parts.append(f"<h3>{escape(case.name)}: {escape(case.title)}</h3>\n<p>{escape(case.note)}</p>\n"
+                     f"{_picture(figure) if figure.exists() else ''}\n<details><summary>all numbers ({len(rows)}, of which "
+                     f"{len(asked)} are judged)</summary>{_table(rows, verify.NUMBERS)}</details>")
+    return ('<h2 id="verification">Verification</h2>' "\n<p>Against exact solutions, by tolerances fixed beforehand (make verify): "
+            f"<b>{'all pass' if judged['pass'].all() else 'NOT all pass'}</b>. A row a case, with the number that is nearest to "
+            f"its tolerance; order: observed, of the largest error between the coarsest and the finest size.</p>\n{table}\n"
+            + "\n".join(parts) + f"\n<p>{BACK}</p>")
+
+
+def _table(frame: pd.DataFrame, formats: dict[str, str]) -> str:
+    """The columns named in `formats` as an HTML table."""
+    rows = [[*formats], *zip(*([study.cell(value, form) for value in frame[name]] for name, form in formats.items()))]
+    return "<table>" + "\n".join("<tr>" + "".join(f"<{tag}>{escape(text)}</{tag}>" for text in row) + "</tr>"
+                                 for tag, row in zip(["th"] + ["td"] * len(frame), rows)) + "</table>"
+
+
+def _provenance(folders: list[Path]) -> str:
+    """Parameters that differ from their defaults, common to all runs and by run, and where the runs come from."""
+    scenes = [read_scene(folder) for folder in folders if (folder / "scene.toml").exists()]
+    if not scenes:
+        return ""
+    standard = parameters.defaults()
+    common = {name: value for name, value in scenes[0].items()
+              if all(used.get(name) == value for used in scenes) and (name == "script" or standard.get(name) != value)}
+    varied = {name: sorted({used[name] for used in scenes if name in used}, key=lambda value: (isinstance(value, str), value)) for name in scenes[0]
+              if any(used.get(name) != scenes[0][name] for used in scenes)}
+    records = [json.loads(path.read_text()) for folder in folders
+               for path in (folder / "summary.json", folder / "failure.json") if path.exists()]
+    made = [record.get("provenance", {}) for record in records]
+    warned = study.warned("; ".join(each.get("warnings", [])) for each in records)
+    lines = [f"runs          {len(scenes)}", f"warnings      {warned or 'none'}",
+             "parameters    " + ", ".join(f"{name} = {value}" for name, value in common.items())]
+    lines += [f"varied        {name}: {_shown(values)}" for name, values in varied.items()]
+    for name, words in (("git", "commit"), ("code", "code sha256"), ("freefem", "FreeFem++"), ("gmsh", "gmsh")):
+        lines.append(f"{words:<14}" + ", ".join(sorted({str(each.get(name)) for each in made})))
+    meshes = sorted({str(each.get("mesh")) for each in made})
+    lines.append("mesh sha256   " + (", ".join(meshes) if len(meshes) <= 4 else f"{len(meshes)} meshes, in each run's summary.json"))
+    return f"<details><summary>parameters and provenance</summary><pre>{escape(chr(10).join(lines))}</pre></details>"
+
+
+def _shown(values: list[Value]) -> str:
+    return ", ".join(map(str, values)) if len(values) <= 8 else f"{len(values)} values from {values[0]} to {values[-1]}"

@@ -1,0 +1,131 @@
+"""Results of the paper's cases made up for the tests of its verdicts: small, complete, and held in memory."""
+
+from copy import deepcopy
+
+import numpy as np
+import pandas as pd
+
+from orchestrate.report import paper_judging
+from orchestrate.report.friction_laws import VALUES
+
+# An impact of eleven steps of contact and a flight after it: two maxima of the force, everything slides in its first two steps
+IMPACT = {"t": np.arange(14) * 4e-4, "dt": np.full(14, 4e-4), "normal_force": [0, 2, 5, 3, 6, 5, 6, 7, 6, 4, 2, 1, 0, 0],
+          "sliding_fraction": [0, 1, 1, 0.1, 0.9, 0.1, 0.9, 0.1, 0.9, 0.1, 0.9, 0, 0, 0], "contact": np.zeros(14),
+          "elastic": [0, 100, 300, 250, 400, 450, 500, 550, 400, 300, 200, 100, 100, 100], "vx": np.linspace(6, 2.6, 14), "spin": np.linspace(0, -130, 14)}
+IMPACT["kinetic"] = np.array([900, 890, 880, 870, 860] + [850] * 9) - IMPACT["elastic"]
+SMOOTH = IMPACT | {"sliding_fraction": [0, 1, 1, 0.8, 0.6, 0.4, 0.2, 0, 0, 0, 0, 0, 0, 0]}   # the control: equal coefficients
+END = {"contact_time": 4.51e-3, "thresholded_contact_time": 4.48e-3, "dofs": 304, "ellipticity_lost_time": 1e-4, "breakdown_time": None, "rebound_vx": 3.0, "rebound_vy": 8.7,
+       "energy_drift": 2e-11, "cpu_seconds": 2.0, "steps": 100, "newton_iterations": 300, "estimated_error": {"rebound": 0.002}}
+KEPT = END | {"ellipticity_lost_time": None}
+# Bodies of 10 kg/m that a force throws back
+PUSH = {"t": np.arange(5) * 1e-3, "dt": np.full(5, 1e-3), "normal_force": np.array([0, 50e3, 80e3, 20e3, 0])}
+PUSH["momentum_y"] = -80 + np.cumsum(PUSH["normal_force"] * 1e-3)
+PUSH["vy"] = PUSH["momentum_y"] / 10
+# A disc of 1000 kg/m on a block of 20000 kg/m: three steps of contact, one of flight
+BLOCK = {"t": [0, 0.01, 0.02, 0.03, 0.04], "normal_force": [0, 5, 5, 5, 0], "vy_1": [-10, -5, 1, 4, 4], "vy_2": [0, -0.25, -0.55, -0.7, -0.7],
+         "kinetic_1": [50e3, 20e3, 5e3, 9e3, 8e3], "elastic_1": [0, 10e3, 5e3, 1e3, 2e3], "kinetic_2": [0, 10e3, 20e3, 25e3, 20e3],
+         "elastic_2": [0, 9e3, 19e3, 15e3, 20e3], "kinetic": [50e3, 30e3, 25e3, 34e3, 28e3], "elastic": [0, 19e3, 24e3, 16e3, 22e3], "contact": [0, 1e3, 1e3, 0, 0]}
+BLOCK_END = {"mass_1": 1000.0, "mass_2": 20000.0, "energy_initial": 50e3, "vibration_energy_1": 2e3, "vibration_energy_2": 35.1e3, "estimated_error": {"rebound": 0.002}}
+DISC = {"radius": 0.05, "young": 7e6, "density": 1722, "speed": 8.0}
+
+
+class Memory(paper_judging.Results):
+    """Results from dictionaries: summaries, histories and scenes by run; tables by sweep; of its runs histories and summaries, plain and
+    refined, by (sweep, what they are chosen by)."""
+
+    def __init__(self, folder, given):
+        super().__init__(folder)
+        self.given = given
+
+    def summary(self, name):
+        return self.given["summary"][name]
+
+    def history(self, name):
+        return _arrays(self.given["history"][name])
+
+    def scene(self, name):
+        return self.given["scene"][name]
+
+    def table(self, name):
+        return self.given["table"][name].copy()
+
+    def histories(self, name, **values):
+        return [_arrays(each) for each in self.given["histories"][name, *sorted(values.items())]]
+
+    def summaries(self, name, **values):
+        return self.given["summaries"][name, *sorted(values.items())]
+
+    def friction_laws(self):
+        return self.given["laws"]
+
+    def stick_slip(self):
+        return self.given["stick-slip"]
+
+
+def _arrays(history):
+    return {name: np.array(values, dtype=float) for name, values in history.items()}
+
+
+def key(name, **values):
+    """Under which a sweep's histories and summaries are kept."""
+    return (name, *sorted(values.items()))
+
+
+def jump(law, static=0.7):
+    return key("friction-jump", friction_static=static, law=law)
+
+
+def forces(law, speed):
+    return key("law-comparison", law=law, speed=speed)
+
+
+def speeds(times, error=1e-5, nu=(0.3, 0.45)) -> pd.DataFrame:
+    """A sweep over the speed, 1 to 11 m/s."""
+    n = len(times)
+    table = pd.DataFrame({"speed": list(np.linspace(1, 11, n)) * len(nu), "nu": np.repeat(nu, n), "exit": 0, "contact_time": list(times) * len(nu),
+                          "contact_time_error": error, "ellipticity_lost_time": np.nan, "contact_intervals": 1.0, "contact_intervals_error": 0.0})
+    return table.assign(thresholded_contact_time=table.contact_time, thresholded_contact_time_error=error)
+
+
+def laws() -> pd.DataFrame:
+    """The friction laws as edp/friction-laws.edp tabulates them, at fewer velocities."""
+    epsilon, parts = VALUES["slip_velocity"], []
+    v = np.sort(np.append(np.linspace(-4, 4, 81), [1 - 1e-12, 1e-12 - 1])) * epsilon
+    stick = np.abs(v) < epsilon * (1 - 1e-14)
+    for panel, law, inside, outside in (("b", "sqrt", None, v / np.hypot(v, epsilon)), ("b", "tanh", None, np.tanh(v / epsilon)), ("b", "linear", v / epsilon, np.sign(v)),
+                                        ("b", "linear-printed", v / (2 * epsilon), np.sign(v)), ("c", "linear", 0.7 * v / epsilon, 0.5 * np.sign(v))):
+        ratio = outside if inside is None else np.where(stick, inside, outside)
+        parts.append(pd.DataFrame({"panel": panel, "law": law, "transition": "jump", "side": np.where(stick, "stick", "slip"), "v": v, "ratio": ratio}))
+    return pd.concat(parts, ignore_index=True)
+
+
+def base() -> dict:
+    """Results in which the verdicts are those of the first line of each statement's cases."""
+    both = ("svk", "neohookean")
+    rebound = {"rebound_vx": 3.0, "rebound_vx_error": 0.01, "rebound_vy": 8.7, "rebound_vy_error": 0.0, "contact_time": 4.1e-3, "contact_time_error": 3e-5, "exit": 0}
+    given = {
+        "laws": laws(),
+        "stick-slip": pd.DataFrame({"law": ["svk", "svk", "neohookean"], "exit": 0, "order": [False, False, True], "quiet": [False, True, True]}),
+        "summary": {"disc-normal": KEPT | {"contact_time": 4.65e-3, "thresholded_contact_time": 4.62e-3}, "disc-normal-neohookean": KEPT | {"contact_time": 4.2e-3, "thresholded_contact_time": 4.18e-3},
+                    "disc-oblique-svk": END, "disc-oblique": KEPT, "disc-rolling": KEPT | {"rebound_vx": 0.666}, "disc-block": BLOCK_END, "disc-block-neohookean": BLOCK_END,
+                    "ball-axisymmetric-svk": END | {"contact_time": 6.03e-3, "thresholded_contact_time": 5.9e-3}, "ball-axisymmetric": KEPT | {"contact_time": 5e-3, "thresholded_contact_time": 4.8e-3}},
+        "history": {name: PUSH for name in ("disc-normal", "disc-normal-neohookean", "ball-axisymmetric-svk")} | {"disc-block": BLOCK, "disc-block-neohookean": BLOCK},
+        "scene": {"disc-normal": DISC, "disc-oblique-svk": DISC, "disc-rolling": DISC | {"speed": 1.0}},
+        "histories": {jump(law, static): [IMPACT if static == 0.7 else SMOOTH] * 2 for law in both for static in (0.7, 0.5)}
+                     | {forces(law, speed): [PUSH] * 2 for law in both for speed in (1, 10)},
+        "summaries": {jump("svk"): [END, END | {"contact_time": 4.6e-3}]}
+                     | {forces(law, speed): [KEPT | {"cpu_seconds": 3.0 if law == "neohookean" else 2.0}] * 2 for law in both for speed in (1, 10)},
+        "table": {
+            "friction-jump": pd.DataFrame([rebound | {"law": law, "friction_static": static} for law in both for static in (0.7, 0.5)]),
+            "oblique": pd.DataFrame([rebound | {"nu": nu} for nu in (0.3, 0.45)]),
+            "contact-time-svk": speeds([5e-3, 4.8e-3, 4.9e-3, 4.5e-3, 4.6e-3, 4e-3]),
+            "contact-time-neohookean": speeds([5e-3, 4.8e-3, 4.7e-3, 4.5e-3]),
+            "law-comparison": pd.DataFrame([{"speed": speed, "law": law, "exit": 0, "contact_time": 4e-3 + longer, "contact_time_error": 1e-5, "thresholded_contact_time": 4e-3,
+                                             "peak_force": force, "peak_force_error": 10.0} for speed, law, longer, force in (
+                                                 (1, "svk", 0, 8000.0), (1, "neohookean", 0, 8100.0), (10, "svk", 5e-4, 90e3), (10, "neohookean", 0, 100e3))]),
+            "conservation": pd.DataFrame([{"integrator": scheme, "dt": dt, "exit": 0, "energy_drift": drift, "rebound_vy": 6.9} for scheme, drifts in (
+                ("bdf2", (0.1, 0.05, 0.02)), ("energy-momentum", (1e-11, 2e-11, 3e-11))) for dt, drift in zip((4e-5, 2e-5, 1e-5), drifts)]),
+            "calibrate": pd.DataFrame({"law": "svk", "nu": 0.3, "penalty": [1e9, 1e10], "exit": 0, "ellipticity_lost_time": np.nan, "contact_time": [4.9e-3, 4.8e-3],
+                                       "contact_time_error": 1e-6, "thresholded_contact_time": [4.85e-3, 4.75e-3], "thresholded_contact_time_error": 1e-6}),
+        }}
+    return deepcopy(given)
