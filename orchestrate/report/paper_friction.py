@@ -31,7 +31,7 @@ def friction_laws(results: Results) -> Finding:
                 "φ³ with v/(2ε)": ("b", "linear-printed", lambda v: step(v, v / (2 * epsilon))),
                 "μ_e, μ_d": ("c", "linear", lambda v: np.where(np.abs(v) < epsilon, VALUES["friction_static"] * v / epsilon, VALUES["friction_dynamic"] * np.sign(v)))}
     apart = {name: _apart(laws, panel, law, of) for name, (panel, law, of) in formulas.items()}
-    return Finding(AGREES if max(apart.values()) < EXACT else DIFFERS, "largest deviation of the tabulated law from its formula: "
+    return Finding(AGREES if max(apart.values()) < EXACT else DIFFERS, "largest deviation of the law as tabulated (friction-laws/laws.csv) from its formula: "
                    + ", ".join(f"{name} {value:.0e}" for name, value in apart.items()) + " (of the last with v/ε below ε).", [_laws(results)])
 
 
@@ -40,7 +40,7 @@ def adopted(results: Results) -> Finding:
     """Agrees where the law that runs use by default (linear) is (13) as printed, to 1e-9."""
     laws, epsilon = results.friction_laws(), VALUES["slip_velocity"]
     printed, used = (_apart(laws, "b", "linear", lambda v, n=n: np.where(np.abs(v) < epsilon, v / (n * epsilon), np.sign(v))) for n in (2, 1))
-    return Finding(AGREES if printed < EXACT else DIFFERS, f"two laws: the one that runs use deviates from (13) as printed by up to {printed:.3f}, and from v/ε by "
+    return Finding(AGREES if printed < EXACT else DIFFERS, f"two laws (friction-laws/laws.csv): the one that runs use deviates from (13) as printed by up to {printed:.3f}, and from v/ε by "
                    f"{used:.0e}. As printed φ³ jumps from 0.5 to 1 at |v| = ε, v/ε is continuous; the printed one is there as regularization = linear-printed.",
                    [_laws(results)])
 
@@ -185,7 +185,7 @@ def sliding_first(results: Results) -> Finding:
     shares = " and ".join(f"{slip_share(e):.2f} with the e = {e:.3f} of {name}" for name, e in restitution.items())
     return Finding(AGREES if runs and both == runs else PARTLY if both else DIFFERS, f"slides first and sticks last: {said}. A rigid disc explains it: its slip ends at the share "
                    f"v_t/(3 μ_d (1 + e) v_n) of the normal impulse, {shares}, not at two thirds; the deformable disc then sticks and slips back at the end.", [results.folder / "stick-slip/stick-slip.png"],
-                   [study.place(results.folder / "stick-slip", point) for point in stick_slip.grid(stick_slip.AXES)])
+                   [*(study.place(results.folder / "stick-slip", point) for point in stick_slip.grid(stick_slip.AXES)), *map(results.run, restitution)])
 
 
 def _normal() -> float:
@@ -209,7 +209,7 @@ def rolls(results: Results) -> Finding:
     end, used = results.summary("disc-rolling"), results.scene("disc-rolling")
     return Finding(verdict, f"means over the last third, on two meshes; {words}. The disc leaves with more spin than rolling has. (Set down on the plane, in a scene of our own that the "
                    f"verdict does not rest on, it comes to roll at {end['rebound_vx'] / used['speed']:.3f} v₀; rigid: 2/3.)",
-                   [results.picture("disc-oblique-svk", "rolling"), results.picture("disc-rolling", "rolling")], [*results.sweep_runs(JUMP), results.run("disc-rolling")])
+                   [results.picture("disc-oblique-svk", "rolling"), results.picture("disc-rolling", "rolling")], [*results.sweep_runs(JUMP), results.run("disc-oblique-svk"), results.run("disc-rolling")])
 
 
 def _last_third(history: History, radius: float) -> tuple[float, float]:

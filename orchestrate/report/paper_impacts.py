@@ -28,10 +28,11 @@ def reflections(results: Results) -> Finding:
     """Not decided where no ν has a rise beyond twice its error bar: there is no step to explain. Else agrees where for every ν there are as
     many as the number of transits 2R/c in the contact falls through whole numbers, with the pressure or the shear waves of small strains."""
     used, words, as_many, steps, fewer = results.scene("disc-normal"), [], [], 0, 0
+    where = results.drawn(SVK), [*results.sweep_runs(SVK), results.run("disc-normal")]
     for nu, group in results.table(SVK).groupby("nu"):
         trend = sweep_figures.steps_against(group[group.speed < _end(group)], "speed", "contact_time")
         if not trend:
-            return Finding(OPEN, f"ν = {nu:g}: too few runs finished.", results.drawn(SVK), results.sweep_runs(SVK))
+            return Finding(OPEN, f"ν = {nu:g}: too few runs finished.", *where)
         counts = {wave: (trend.first / transit, trend.last / transit) for wave, transit in _transits(used, nu).items()}
         whole = [floor(first) - floor(last) for first, last in counts.values()]
         as_many.append(trend.established in whole)
@@ -39,7 +40,7 @@ def reflections(results: Results) -> Finding:
         steps += trend.established
         words.append(f"ν = {nu:g}: {trend.established} rises beyond twice their error bar; " + ", ".join(
             f"{first:.2f} to {last:.2f} transits of {wave} waves" for wave, (first, last) in counts.items()))
-    return Finding(OPEN if not steps else AGREES if all(as_many) else DIFFERS, f"{'; '.join(words)}. By these numbers the curve would have at most {fewer} such steps.", results.drawn(SVK), results.sweep_runs(SVK))
+    return Finding(OPEN if not steps else AGREES if all(as_many) else DIFFERS, f"{'; '.join(words)}. By these numbers the curve would have at most {fewer} such steps.", *where)
 
 
 def _transits(used: dict, nu: float) -> dict[str, float]:
