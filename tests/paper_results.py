@@ -35,24 +35,30 @@ class Memory(paper_judging.Results):
 
     def __init__(self, folder, given):
         super().__init__(folder)
-        self.given = given
+        self.given, self.read = given, set()          # read: the folders of what was asked for
 
     def summary(self, name):
+        self.read.add(self.run(name))
         return self.given["summary"][name]
 
     def history(self, name):
+        self.read.add(self.run(name))
         return _arrays(self.given["history"][name])
 
     def scene(self, name):
+        self.read.add(self.run(name))
         return self.given["scene"][name]
 
     def table(self, name):
+        self.read |= set(self.sweep_runs(name))
         return self.given["table"][name].copy()
 
     def histories(self, name, **values):
+        self.read |= set(self.pair(name, **values))
         return [_arrays(each) for each in self.given["histories"][name, *sorted(values.items())]]
 
     def summaries(self, name, **values):
+        self.read |= set(self.pair(name, **values))
         return self.given["summaries"][name, *sorted(values.items())]
 
     def friction_laws(self):

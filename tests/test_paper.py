@@ -182,6 +182,14 @@ def test_every_verdict_can_fail(name):
     assert DIFFERS in verdicts and len(verdicts) > 1 and CASES[name][0][0] is SAME
 
 
+@pytest.mark.parametrize("name", FIND)
+def test_a_verdict_names_its_data(tmp_path, name):
+    """Every run that a statement reads is among those whose parameters and provenance the page gives for it; something is read or named in words."""
+    results = Memory(tmp_path, base())
+    found = FIND[name](results)
+    assert results.read <= set(found.runs) and (found.runs or "laws.csv" in found.ours) and found.figures
+
+
 def test_only_statements_have_cases():
     """No case is left behind by a statement that is gone, and no two statements share a name."""
     assert set(CASES) == set(FIND) and len(FIND) == len(STATEMENTS)

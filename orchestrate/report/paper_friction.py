@@ -31,7 +31,7 @@ def friction_laws(results: Results) -> Finding:
                 "φ³ with v/(2ε)": ("b", "linear-printed", lambda v: step(v, v / (2 * epsilon))),
                 "μ_e, μ_d": ("c", "linear", lambda v: np.where(np.abs(v) < epsilon, VALUES["friction_static"] * v / epsilon, VALUES["friction_dynamic"] * np.sign(v)))}
     apart = {name: _apart(laws, panel, law, of) for name, (panel, law, of) in formulas.items()}
-    return Finding(AGREES if max(apart.values()) < EXACT else DIFFERS, "largest deviation of the tabulated law from its formula: "
+    return Finding(AGREES if max(apart.values()) < EXACT else DIFFERS, "largest deviation of the law as tabulated (friction-laws/laws.csv) from its formula: "
                    + ", ".join(f"{name} {value:.0e}" for name, value in apart.items()) + " (of the last with v/ε below ε).", [_laws(results)])
 
 
@@ -40,7 +40,8 @@ def adopted(results: Results) -> Finding:
     """Agrees where the law that runs use by default (linear) is (13) as printed, to 1e-9."""
     laws, epsilon = results.friction_laws(), VALUES["slip_velocity"]
     printed, used = (_apart(laws, "b", "linear", lambda v, n=n: np.where(np.abs(v) < epsilon, v / (n * epsilon), np.sign(v))) for n in (2, 1))
-    return Finding(AGREES if printed < EXACT else DIFFERS, f"two laws: the one that runs use deviates from (13) as printed by up to {printed:.3f}, and from v/ε by "
+    return Finding(AGREES if printed < EXACT else DIFFERS,
+                   f"two laws (friction-laws/laws.csv): the one that runs use deviates from (13) as printed by up to {printed:.3f}, and from v/ε by "
                    f"{used:.0e}. As printed φ³ jumps from 0.5 to 1 at |v| = ε, v/ε is continuous; the printed one is there as regularization = linear-printed.",
                    [_laws(results)])
 
@@ -66,7 +67,8 @@ def angles(results: Results) -> Finding:
         return bool(found) and all(abs(out - ANGLE) > APART + error for out, error in found), ", ".join(
             f"{out:.1f} ± {error:.1g}°" + (f" (ν = {nu:g})" if law != "svk" else "") for (out, error), nu in zip(found, rows.get("nu", [np.nan] * len(rows))))
     verdict, words = of_both(of)
-    return Finding(verdict, f"from the plane {ANGLE:g}° in; out, {words}. (The bar of SVK is between two coarse meshes, on which ellipticity is lost.)", [results.picture("disc-oblique-svk", "flight"), results.picture("disc-oblique", "flight")],
+    return Finding(verdict, f"from the plane {ANGLE:g}° in; out, {words}. (The bar of SVK is between two coarse meshes.)",
+                   [results.picture("disc-oblique-svk", "flight"), results.picture("disc-oblique", "flight")],
                    results.sweep_runs(JUMP) + results.sweep_runs("oblique"))
 
 
@@ -153,10 +155,12 @@ def elastic(results: Results) -> Finding:
     for law in LAWS:
         before, mirror, most, counts = zip(*map(_exchange, impact(results, law)))
         found[law] = max(before) < CONSTANT and max(mirror) < -0.9, min(counts) > 1
-        words.append(f"{LAWS[law]}: {max(before):.0e} before, in it up to {100 * max(most):.0f} % with {' and '.join(map(str, counts))} maxima, correlation with the kinetic {max(mirror):.3f}")
+        words.append(f"{LAWS[law]}: {max(before):.0e} before, in it up to {100 * max(most):.0f} % with "
+                     f"{' and '.join(map(str, counts))} maxima, correlation with the kinetic {max(mirror):.3f}")
     exchanged, fluctuates = found["svk"]
     said = "" if fluctuates else " With SVK it rises and falls once."
-    return Finding(DIFFERS if not exchanged else AGREES if fluctuates else PARTLY, f"of the total at the start, on two meshes; {'; '.join(words)}." + said, [results.picture("disc-oblique-svk", "energies"), results.picture("disc-oblique", "energies")],
+    return Finding(DIFFERS if not exchanged else AGREES if fluctuates else PARTLY, f"of the total at the start, on two meshes; {'; '.join(words)}." + said,
+                   [results.picture("disc-oblique-svk", "energies"), results.picture("disc-oblique", "energies")],
                    results.sweep_runs(JUMP))
 
 
@@ -183,9 +187,11 @@ def sliding_first(results: Results) -> Finding:
                      for law, (both, n, order) in counts.items())
     restitution = {name: results.summary(name)["rebound_vy"] / _normal() for name in ("disc-oblique-svk", "disc-oblique")}
     shares = " and ".join(f"{slip_share(e):.2f} with the e = {e:.3f} of {name}" for name, e in restitution.items())
-    return Finding(AGREES if runs and both == runs else PARTLY if both else DIFFERS, f"slides first and sticks last: {said}. A rigid disc explains it: its slip ends at the share "
-                   f"v_t/(3 μ_d (1 + e) v_n) of the normal impulse, {shares}, not at two thirds; the deformable disc then sticks and slips back at the end.", [results.folder / "stick-slip/stick-slip.png"],
-                   [study.place(results.folder / "stick-slip", point) for point in stick_slip.grid(stick_slip.AXES)])
+    explained = "" if both else ", which explains it: the disc sticks long before two thirds, and slips back at the end"
+    return Finding(AGREES if runs and both == runs else PARTLY if both else DIFFERS, f"slides first and sticks last: {said}. The slip of a rigid disc ends at the share "
+                   f"v_t/(3 μ_d (1 + e) v_n) of the normal impulse, {shares}{explained}.",
+                   [results.folder / "stick-slip/stick-slip.png"],
+                   [*(study.place(results.folder / "stick-slip", point) for point in stick_slip.grid(stick_slip.AXES)), *map(results.run, restitution)])
 
 
 def _normal() -> float:
@@ -207,9 +213,10 @@ def rolls(results: Results) -> Finding:
         return all(abs(rim - centre) < 0.05 * abs(centre) for centre, rim in means), " and ".join(f"v_x = {centre:.2f}, −ω R = {rim:.2f} m/s" for centre, rim in means)
     verdict, words = of_both(of)
     end, used = results.summary("disc-rolling"), results.scene("disc-rolling")
-    return Finding(verdict, f"means over the last third, on two meshes; {words}. The disc leaves with more spin than rolling has. (Set down on the plane, in a scene of our own that the "
+    return Finding(verdict, f"means over the last third, on two meshes; {words}. (Set down on the plane, in a scene of our own that the "
                    f"verdict does not rest on, it comes to roll at {end['rebound_vx'] / used['speed']:.3f} v₀; rigid: 2/3.)",
-                   [results.picture("disc-oblique-svk", "rolling"), results.picture("disc-rolling", "rolling")], [*results.sweep_runs(JUMP), results.run("disc-rolling")])
+                   [results.picture("disc-oblique-svk", "rolling"), results.picture("disc-rolling", "rolling")],
+                   [*results.sweep_runs(JUMP), results.run("disc-oblique-svk"), results.run("disc-rolling")])
 
 
 def _last_third(history: History, radius: float) -> tuple[float, float]:

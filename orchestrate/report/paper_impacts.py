@@ -28,10 +28,11 @@ def reflections(results: Results) -> Finding:
     """Not decided where no ν has a rise beyond twice its error bar: there is no step to explain. Else agrees where for every ν there are as
     many as the number of transits 2R/c in the contact falls through whole numbers, with the pressure or the shear waves of small strains."""
     used, words, as_many, steps, fewer = results.scene("disc-normal"), [], [], 0, 0
+    where = results.drawn(SVK), [*results.sweep_runs(SVK), results.run("disc-normal")]
     for nu, group in results.table(SVK).groupby("nu"):
         trend = sweep_figures.steps_against(group[group.speed < _end(group)], "speed", "contact_time")
         if not trend:
-            return Finding(OPEN, f"ν = {nu:g}: too few runs finished.", results.drawn(SVK), results.sweep_runs(SVK))
+            return Finding(OPEN, f"ν = {nu:g}: too few runs finished.", *where)
         counts = {wave: (trend.first / transit, trend.last / transit) for wave, transit in _transits(used, nu).items()}
         whole = [floor(first) - floor(last) for first, last in counts.values()]
         as_many.append(trend.established in whole)
@@ -39,7 +40,7 @@ def reflections(results: Results) -> Finding:
         steps += trend.established
         words.append(f"ν = {nu:g}: {trend.established} rises beyond twice their error bar; " + ", ".join(
             f"{first:.2f} to {last:.2f} transits of {wave} waves" for wave, (first, last) in counts.items()))
-    return Finding(OPEN if not steps else AGREES if all(as_many) else DIFFERS, f"{'; '.join(words)}. By these numbers the curve would have at most {fewer} such steps.", results.drawn(SVK), results.sweep_runs(SVK))
+    return Finding(OPEN if not steps else AGREES if all(as_many) else DIFFERS, f"{'; '.join(words)}. By these numbers the curve would have at most {fewer} such steps.", *where)
 
 
 def _transits(used: dict, nu: float) -> dict[str, float]:
@@ -68,7 +69,8 @@ def longer_at_high_speed(results: Results) -> Finding:
     distance, _ = _distance(results, 10)
     thresholded = [1e3 * _of(rows, law, 10, "thresholded_contact_time")[0] for law in ("svk", "neohookean")]
     return Finding(DIFFERS if svk - neo <= of_svk + of_neo else PARTLY if known(lost) else AGREES,
-                   f"SVK {1e3 * svk:.3f} ± {1e3 * of_svk:.3f} ms, {when(lost, 'ellipticity lost')}; neo-Hookean {1e3 * neo:.3f} ± {1e3 * of_neo:.3f} ms (above 1 % of the peak force "
+                   f"SVK {1e3 * svk:.3f} ± {1e3 * of_svk:.3f} ms, {when(lost, 'ellipticity lost')}; neo-Hookean {1e3 * neo:.3f} ± {1e3 * of_neo:.3f} ms "
+                   f"(above 1 % of the peak force "
                    f"{thresholded[0]:.3f} and {thresholded[1]:.3f} ms); the histories differ by {100 * distance:.0f} % in L2.", results.drawn(FORCES), results.sweep_runs(FORCES))
 
 
@@ -91,7 +93,8 @@ def slower(results: Results) -> Finding:
         pairs = zip(*(results.summaries(FORCES, law=law, speed=speed) for law in ("neohookean", "svk")))
         for neo, svk in pairs:
             ratios.append(neo["cpu_seconds"] / svk["cpu_seconds"])
-            words.append(f"{speed:g} m/s, {svk['dofs']} dofs: {ratios[-1]:.2f} ({neo['steps']} to {svk['steps']} steps, {neo['newton_iterations']} to {svk['newton_iterations']} iterations)")
+            words.append(f"{speed:g} m/s, {svk['dofs']} dofs: {ratios[-1]:.2f} ({neo['steps']} to {svk['steps']} steps, "
+                         f"{neo['newton_iterations']} to {svk['newton_iterations']} iterations)")
     more = [ratio > 1.1 for ratio in ratios]
     return Finding(AGREES if all(more) else PARTLY if any(more) else DIFFERS, "processor time over that with SVK, which is measured and scatters; " + "; ".join(words) + ".",
                    results.drawn(FORCES), results.sweep_runs(FORCES))
@@ -110,7 +113,8 @@ def stiffer(results: Results) -> Finding:
             (svk, of_svk), (neo, of_neo) = (_of(rows, law, speed, name) for law in ("svk", "neohookean"))
             shares[speed] = sign * (neo - svk) / svk, (of_svk + of_neo) / svk
         good.append(shares[10][0] > shares[10][1] and shares[10][0] > shares[1][0])
-        words.append(f"{'peak force higher' if sign > 0 else 'contact shorter'} by " + " and ".join(f"{100 * share:.1f} ± {100 * error:.1f} % at {speed} m/s" for speed, (share, error) in shares.items()))
+        words.append(f"{'peak force higher' if sign > 0 else 'contact shorter'} by " + " and ".join(
+            f"{100 * share:.1f} ± {100 * error:.1f} % at {speed} m/s" for speed, (share, error) in shares.items()))
     lost = results.summaries(FORCES, law="svk", speed=10)[-1][LOST]
     return Finding(DIFFERS if not all(good) else PARTLY if known(lost) else AGREES, "than with SVK, " + "; ".join(words) + f"; SVK at 10 m/s: {when(lost, 'ellipticity lost')}.",
                    results.drawn(FORCES), results.sweep_runs(FORCES))

@@ -18,7 +18,8 @@ from ..sweeps import sweep
 from .paper_judging import AGREES, DIFFERS, OPEN, PARTLY, Finding
 
 COLOURS = {AGREES: "#009e73", DIFFERS: "#d55e00", PARTLY: "#b8860b", OPEN: "#777777"}
-SHOWN = {"energies": "energies over time", "force": "contact force over time", "rolling": "velocity of the centre and the rim, and the share that slides", "velocity": "velocities over time",
+SHOWN = {"energies": "energies over time", "force": "contact force over time", "rolling": "velocity of the centre and the rim, and the share that slides",
+         "velocity": "velocities over time",
          "flight": "shapes on the flight and in the contact", "shapes": "deformed shapes"}   # what a picture of a run shows
 BACK = '<a href="#top">Back to the top</a>'
 TITLES = {"friction-laws": "The friction laws (11) to (13), from the functions that the solver runs (make friction-laws)",
@@ -49,7 +50,8 @@ details {{ font-size: .85em }} pre {{ white-space: pre-wrap }}
 <h1 id="top">The paper's statements and our numbers</h1>
 <p>Buezas, Rosales and Filipich, <i>Nonlinear deformable bodies with unilateral contact including friction</i>. The paper states neither ν (only
 “ν → 0.5”) nor the contact stiffness, ε, mesh or step; a number that it prints is taken as known to half a unit of its last digit.
-Error bars of ours are what refining mesh and step changes. Verdicts follow from the numbers by fixed rules (orchestrate/report/paper_friction.py, paper_impacts.py, paper_bodies.py): a statement on St. Venant–Kirchhoff is decided by runs with
+Error bars of ours are what refining mesh and step changes. Verdicts follow from the numbers by fixed rules
+(orchestrate/report/paper_friction.py, paper_impacts.py, paper_bodies.py): a statement on St. Venant–Kirchhoff is decided by runs with
 that law, “not decided” means that the effect is smaller than the errors. “As the paper may have run it”: on a coarse mesh of linear triangles.</p>
 <p><b>{counts}</b></p>
 <nav>Contents: {contents}</nav>
