@@ -69,7 +69,7 @@ def lost_slip(folder: Path, psi: float, normal: float, **more) -> tuple[float, d
     start = psi * FRICTION * (2 - NU) / (2 * (1 - NU)) * normal
     flags = dict(speed=math.hypot(start, normal), angle=math.degrees(math.atan2(normal, start)), friction_static=FRICTION, slip_velocity=1e-3 * normal)
     found = disc(folder, **ELASTIC | flags | more).summary
-    return 1 - (found["rebound_vx"] + RADIUS * found["spin"]) / start, found
+    return 1 - (found["rebound_vx"] + RADIUS * found["rebound_spin"]) / start, found
 
 
 def rebounds(folder: Path) -> Iterator[Row]:
@@ -87,7 +87,7 @@ def rebounds(folder: Path) -> Iterator[Row]:
         found, along, _, lost = rigid(folder / "run", angle, 0.2)
         (centre, rim), words, size = leaves(lost, INERTIA), f"rigid, {angle}°", math.sqrt(2 * depth / RADIUS)
         yield Row(f"{words}: speed", size, found["rebound_vx"] / along, centre)
-        yield Row(f"{words}: spin", size, -found["spin"] * RADIUS / along, rim)
+        yield Row(f"{words}: spin", size, -found["rebound_spin"] * RADIUS / along, rim)
 
 
 def curve(axes: plt.Axes, folder: Path) -> None:

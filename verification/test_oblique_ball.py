@@ -14,7 +14,7 @@ def test_rigid_ball(tmp_path, angle, slides):
     centre, rim = leaves(lost, INERTIA)
     assert (1 > 3.5 * lost) == slides and found["energy_drift"] < 1e-8
     assert 1 - found["rebound_vx"] / along == pytest.approx(1 - centre, rel=0.02)
-    assert -found["spin"] * RADIUS / along == pytest.approx(rim, rel=0.02)
+    assert -found["rebound_spin"] * RADIUS / along == pytest.approx(rim, rel=0.02)
     assert (found["sticking_time"] < 0.01 * found["contact_time"]) == slides
 
 
