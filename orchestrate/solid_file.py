@@ -21,6 +21,7 @@ from .solid_mesh import NEVER, TURN, SolidMesh, boundary, cell_volumes, cells_of
 
 MESHES, GEOMETRIES = (".msh", ".mesh"), (".geo", ".step", ".stp")
 CONTACT = "contact"
+HEADER = b"$MeshFormat"
 TRIANGLES = {2: 3, 9: 6}         # gmsh's types of element: their nodes, of which the first three are the corners
 COARSE = 15                      # elements along the largest extent where only the shape of a geometry is wanted
 
@@ -60,7 +61,7 @@ def _child(path: Path, sizes: Sizes | None) -> SolidMesh:
             np.savez(wanted, bulk=sizes.bulk, contact=sizes.contact, near=sizes.near, slack=sizes.slack)
         child = subprocess.run([sys.executable, "-m", __name__, str(path), str(out), *([str(wanted)] if sizes else [])], cwd=ROOT,
                                stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace")
-        if child.returncode == 0:
+        if child.returncode == 0 and out.exists():     # a script in a geometry may end gmsh
             with np.load(out) as found:
                 return SolidMesh(found["points"], found["cells"], found["faces"], found["labels"])
         if child.returncode == BadInput("").code:
@@ -75,6 +76,10 @@ def _taken(path: Path, sizes: Sizes | None) -> SolidMesh:
     try:
         if is_geometry(path):
             return _meshed(path, sizes)
+        if path.suffix.lower() == ".msh":              # what gmsh does not know it runs as a script
+            with open(path, "rb") as file:
+                if not file.read(len(HEADER)) == HEADER:
+                    raise BadInput(f"it does not begin with {HEADER.decode()} (accepted: gmsh's .msh)")
         with mesh.gmsh_session() as gmsh:
             gmsh.open(str(path))
             return _labelled(gmsh.model, *cells_of(gmsh.model))

@@ -361,7 +361,10 @@ def shape(table: Table, folder: Path) -> tuple[Solid, SolidMesh | None]:
 
 
 def _of_file(table: Table, folder: Path) -> tuple[Solid, SolidMesh | None]:
-    path = folder / table.text("file", "")
+    name = table.text("file", "")
+    if not name:
+        raise BadInput(f"{table.at('file')}: is missing (accepted: {', '.join(solid_file.MESHES + solid_file.GEOMETRIES)})")
+    path = folder / name
     try:
         found = solid_file.read(path)
     except BadInput as error:

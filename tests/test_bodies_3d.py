@@ -180,6 +180,8 @@ def files(tmp_path_factory):
     (folder / "other.geo").write_text('SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 0.2, 0.06, 0.2}; Physical Surface("top") = {4};\n')
     (folder / "flat.geo").write_text('SetFactory("OpenCASCADE"); Rectangle(1) = {0, 0, 0, 1, 1};\n')
     (folder / "text.msh").write_text("no mesh")
+    (folder / "script.msh").write_text(f'SystemCall "touch {folder}/made";\n')
+    (folder / "leaves.geo").write_text("Exit;\n")
     return folder
 
 
@@ -217,13 +219,16 @@ def test_named_surfaces_may_touch(files):
 
 @pytest.mark.parametrize("name, words", [
     ("none.step", "body.1.file: 'none.step' is no file"), ("ball.stl", "body.1.file: 'ball.stl' is no mesh or geometry (accepted: .msh, .mesh, .geo, .step, .stp)"),
-    ("text.msh", "body.1.file: 'text.msh': "), ("flat.geo", "body.1.file: 'flat.geo': it has no volume"),
+    ("text.msh", "body.1.file: 'text.msh': it does not begin with $MeshFormat (accepted: gmsh's .msh)"),
+    ("script.msh", "body.1.file: 'script.msh': it does not begin with $MeshFormat"), ("leaves.geo", "body.1.file: 'leaves.geo': gmsh broke down over it (exit code 0)"),
+    ("", "body.1.file: is missing (accepted: .msh, .mesh, .geo, .step, .stp)"), ("flat.geo", "body.1.file: 'flat.geo': it has no volume"),
     ("other.geo", "body.1.file: 'other.geo': none of its physical surfaces (top) has the name 'contact'")])
 def test_files_that_cannot_be_used_are_named(files, name, words):
     """The entry, the file as given, and what is wrong with it, in one line."""
     with pytest.raises(BadInput) as caught:
         read({"shape": "mesh", "file": name}, folder=files)
     assert words in str(caught.value) and "\n" not in str(caught.value) and caught.value.code == 10
+    assert not (files / "made").exists()              # gmsh would run a script that is called a mesh
 
 
 # ---- symmetry
