@@ -9,6 +9,7 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 
 from .failure import Unreadable
 from .parameters import Value
@@ -43,6 +44,17 @@ def read_history(folder: Path) -> dict[str, np.ndarray]:
         return dict(zip(columns, rows.T, strict=True))
     except (OSError, ValueError) as error:
         raise Unreadable(f"{path} cannot be read: {why(error)}") from None
+
+
+def read_table(path: Path, columns: Iterable[str]) -> pd.DataFrame:
+    """A table of a run; Unreadable where it is not one that has these columns."""
+    try:
+        table = pd.read_csv(path)
+    except (OSError, ValueError) as error:
+        raise Unreadable(f"{path} cannot be read: {error}; run with --force") from None
+    if lacks := [name for name in columns if name not in table]:
+        raise Unreadable(f"{path} lacks the columns {', '.join(lacks)}; run with --force")
+    return table
 
 
 def read_scene(folder: Path) -> dict[str, Value]:

@@ -7,8 +7,8 @@ import numpy as np
 import pandas as pd
 from matplotlib.colors import ListedColormap
 
-from ..failure import Unreadable
 from ..parameters import Value
+from ..results import read_table
 
 INSTANTS = 6                     # profiles at most
 SLOW = 0.03                      # speed over sqrt(E/rho) up to which the pressure of a ball is shown beside Hertz'
@@ -26,14 +26,7 @@ def read(folder: Path) -> pd.DataFrame:
     X, Y, x, y: reference and present place; weight: share of the outline [m]; pressure (10), shear (11) [Pa] per reference length, means over the
     step that ends at t; slip_velocity [m/s]; slides (1 or 0). In three dimensions also Z, z, shear_z, slip_velocity_z; weight [m2]. Unreadable where it is not such a table.
     """
-    path = folder / "fields/contact.csv"
-    try:
-        table = pd.read_csv(path)
-    except (OSError, ValueError) as error:
-        raise Unreadable(f"{path} cannot be read: {error}; run with --force") from None
-    if not set(COLUMNS) <= set(table):
-        raise Unreadable(f"{path} lacks the columns {', '.join(name for name in COLUMNS if name not in table)}; run with --force")
-    return table
+    return read_table(folder / "fields/contact.csv", COLUMNS)
 
 
 def draw(table: pd.DataFrame, names: list[str], half: bool, free: np.ndarray, ball: dict[str, Value] | None = None) -> plt.Figure | None:

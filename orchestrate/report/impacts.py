@@ -5,7 +5,8 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import pandas as pd
 
-from ..failure import Unreadable
+from ..results import read_table
+
 
 LIGHTEST = 0.01                  # of the largest impulse of a meeting: what is less is the grazing end of an impact
 LEAST_SLIP = 0.05                # of the approach: of less the restitution along the partner is that of vibrations
@@ -18,14 +19,7 @@ def read(folder: Path) -> pd.DataFrame:
 
     Columns and units: edp/core/run/columns.idp. Unreadable where it is not such a table.
     """
-    path = folder / "contacts.csv"
-    try:
-        table = pd.read_csv(path)
-    except (OSError, ValueError) as error:
-        raise Unreadable(f"{path} cannot be read: {error}; run with --force") from None
-    if not set(NEEDED) <= set(table):
-        raise Unreadable(f"{path} lacks the columns {', '.join(name for name in NEEDED if name not in table)}; run with --force")
-    return table
+    return read_table(folder / "contacts.csv", NEEDED)
 
 
 def several(table: pd.DataFrame) -> pd.DataFrame:

@@ -6,7 +6,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
-from ..failure import Unreadable
+from ..results import read_table
+
 
 NEEDED = ["mode", "frequency", "energy", "strain_energy", "kinetic_energy"]
 
@@ -16,14 +17,7 @@ def read(folder: Path) -> pd.DataFrame:
 
     Unreadable where it is not such a table.
     """
-    path = folder / "modes.csv"
-    try:
-        table = pd.read_csv(path)
-    except (OSError, ValueError) as error:
-        raise Unreadable(f"{path} cannot be read: {error}; run with --force") from None
-    if not set(NEEDED) <= set(table):
-        raise Unreadable(f"{path} lacks the columns {', '.join(name for name in NEEDED if name not in table)}; run with --force")
-    return table
+    return read_table(folder / "modes.csv", NEEDED)
 
 
 def spectrum(t: np.ndarray, dt: np.ndarray, force: np.ndarray, frequencies: np.ndarray) -> np.ndarray:
