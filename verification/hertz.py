@@ -33,9 +33,20 @@ def hertz(folder: Path, share: float, law: str = "neohookean", nu: float = 0.3) 
     yield Row("largest pressure p₀", share, found["peak"], math.sqrt(load * stiffness / math.pi), 1)
 
 
+def profile(folder: Path, share: float, nu: float = 0.3) -> Iterator[Row]:
+    """Of the tractions that hertz() has left in `folder`, against the exact ellipse p = p0 sqrt(1 - (x/b)^2), over p0: root of the mean square
+    of the difference over |x| < b, and the largest one at any contact point with |x| < 0.9 b (at its end the exact slope is infinite)."""
+    rows, peak = pd.read_csv(folder / "pressure.csv"), NARROW / (2 * (1 - nu**2))
+    inside = rows[rows.x < NARROW]
+    off = inside.p / peak - np.sqrt(1 - (inside.x / NARROW) ** 2)
+    yield Row("profile: mean", share, math.sqrt(np.average(off**2, weights=inside.length)), 0, 1)
+    yield Row("profile: largest in 0.9 b", share, abs(off[inside.x < 0.9 * NARROW]).max(), 0, 1)
+
+
 def cylinder(folder: Path) -> Iterator[Row]:
     for share in (0.3, 0.15, 0.075, 0.0375):
         yield from hertz(folder / f"{share:g}", share)
+        yield from profile(folder / f"{share:g}", share)
 
 
 def ellipse(axes: plt.Axes, folder: Path) -> None:
