@@ -1,4 +1,4 @@
-"""Hertz: V6, a cylinder pressed on the plane (hertz.edp); V7, the impact of a ball on it; V15, of two balls (two-balls.edp)."""
+"""Hertz: V6, a cylinder and a ball pressed on the plane (hertz.edp); V7, the impact of a ball on it; V15, of two balls (two-balls.edp)."""
 
 import math
 from collections.abc import Iterator
@@ -18,46 +18,51 @@ BALL = dict(law="neohookean", young=1e8, nu=0.3, density=2500, radius=0.01)
 NARROW = 0.005              # half-width b over the radius: the small load
 
 
-def hertz(folder: Path, share: float, law: str = "neohookean", nu: float = 0.3) -> Iterator[Row]:
-    """A cylinder of radius 1 and E = 1 on the plane, elements of share * b: half-width and largest pressure of the fitted
+def hertz(folder: Path, share: float, law: str = "neohookean", nu: float = 0.3, body: str = "cylinder") -> Iterator[Row]:
+    """A cylinder, or ball, of radius 1 and E = 1 on the plane, elements of share * b: half-width and largest pressure of the fitted
     ellipse. The penalty grows as they shrink, k = 10 E*/h: what it gives way is an error of first order like the others."""
     folder.mkdir(parents=True, exist_ok=True)
-    stiffness = 1 / (1 - nu**2)
-    load = math.pi * stiffness * NARROW**2 / 4
-    found = measure("hertz", law=law, young=1, nu=nu, density=1, radius=1, speed=0, gravity=load / math.pi, dt=20,
-                    integrator="backward-euler", penalty=10 * stiffness / (share * NARROW), mesh_size=0.2,
-                    contact_mesh_size=share * NARROW, out=folder)
+    stiffness, ball = 1 / (1 - nu**2), body == "ball"
+    load = 4 / 3 * stiffness * NARROW**3 if ball else math.pi * stiffness * NARROW**2 / 4
+    found = measure("hertz-ball" if ball else "hertz", law=law, young=1, nu=nu, density=1, radius=1, speed=0,
+                    gravity=load / (4 / 3 * math.pi if ball else math.pi), dt=20, integrator="backward-euler",
+                    penalty=10 * stiffness / (share * NARROW), mesh_size=0.2, contact_mesh_size=share * NARROW, out=folder)
     if abs(found["imbalance"]) > 1e-6 or found["kinetic"] > 1e-9:
         raise Failure("hertz: not at rest")
-    yield Row("half-width b", share, found["width"], NARROW, 1)
-    yield Row("largest pressure p₀", share, found["peak"], math.sqrt(load * stiffness / math.pi), 1)
+    yield Row(f"{body}: half-width b", share, found["width"], NARROW, 1)
+    yield Row(f"{body}: pressure p₀", share, found["peak"], peak(nu, body), 1)
 
 
-def profile(folder: Path, share: float, nu: float = 0.3) -> Iterator[Row]:
+def peak(nu: float, body: str = "cylinder") -> float:
+    """Hertz' p0 at the half-width b of these: b E*/(2 R) of a cylinder, 2 b E*/(pi R) of a ball."""
+    return NARROW / (1 - nu**2) * (2 / math.pi if body == "ball" else 0.5)
+
+
+def profile(folder: Path, share: float, nu: float = 0.3, body: str = "cylinder") -> Iterator[Row]:
     """Of the tractions that hertz() has left in `folder`, against the exact ellipse p = p0 sqrt(1 - (x/b)^2), over p0: root of the mean square
     of the difference over |x| < b, and the largest one at any contact point with |x| < 0.9 b (at its end the exact slope is infinite)."""
-    rows, peak = pd.read_csv(folder / "pressure.csv"), NARROW / (2 * (1 - nu**2))
+    rows = pd.read_csv(folder / "pressure.csv")
     inside = rows[rows.x < NARROW]
-    off = inside.p / peak - np.sqrt(1 - (inside.x / NARROW) ** 2)
-    yield Row("profile: mean", share, math.sqrt(np.average(off**2, weights=inside.length)), 0, 1)
-    yield Row("profile: largest in 0.9 b", share, abs(off[inside.x < 0.9 * NARROW]).max(), 0, 1)
+    off = inside.p / peak(nu, body) - np.sqrt(1 - (inside.x / NARROW) ** 2)
+    yield Row(f"{body}: mean error", share, math.sqrt(np.average(off**2, weights=inside.length)), 0, 1)
+    yield Row(f"{body}: error in 0.9 b", share, abs(off[inside.x < 0.9 * NARROW]).max(), 0, 1)
 
 
-def cylinder(folder: Path) -> Iterator[Row]:
-    for share in (0.3, 0.15, 0.075, 0.0375):
-        yield from hertz(folder / f"{share:g}", share)
-        yield from profile(folder / f"{share:g}", share)
+def pressed(folder: Path) -> Iterator[Row]:
+    for body in ("cylinder", "ball"):
+        for share in (0.3, 0.15, 0.075, 0.0375):
+            yield from hertz(folder / body / f"{share:g}", share, body=body)
+            yield from profile(folder / body / f"{share:g}", share, body=body)
 
 
 def ellipse(axes: plt.Axes, folder: Path) -> None:
-    """The tractions at the contact points over x, for the coarsest and finest mesh, and the exact ellipse."""
-    sizes = sorted((float(path.name) for path in folder.iterdir()), reverse=True)
-    peak = NARROW / (2 * (1 - 0.3**2))
+    """The tractions at the contact points of the cylinder over x, for the coarsest and finest mesh, and the exact ellipse."""
+    sizes = sorted((float(path.name) for path in (folder / "cylinder").iterdir()), reverse=True)
     x = np.linspace(0, 1, 400)
     axes.plot(x, np.sqrt(1 - x**2), color=BLACK, linewidth=1, label="exact")
     for size, colour, marker in ((sizes[0], ORANGE, "s"), (sizes[-1], BLUE, ".")):
-        rows = pd.read_csv(folder / f"{size:g}/pressure.csv").sort_values("x")
-        axes.plot(rows.x / NARROW, rows.p / peak, color=colour, marker=marker, markersize=4, linestyle="none",
+        rows = pd.read_csv(folder / f"cylinder/{size:g}/pressure.csv").sort_values("x")
+        axes.plot(rows.x / NARROW, rows.p / peak(0.3), color=colour, marker=marker, markersize=4, linestyle="none",
                   label=f"elements of {size:g} b")
     axes.set(xlabel="$x/b$", ylabel="$p/p_0$", xlim=(0, 1.4), ylim=(-0.03, 1.15))
     axes.legend(loc="upper right")
