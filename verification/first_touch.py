@@ -1,0 +1,89 @@
+"""V18: the first microseconds of a disc on the plane. As long as the contact spreads faster than waves run, every column above it is a bar on a wall of
+its own: pressure rho U v over the half-width b = sqrt(2 R v t), F = 2 rho U v b, up to t = R v/(2 c_L^2). U is the speed of the plane shock,
+rho U v = -P(1 - v/U), P(lambda) the law's nominal stress of a column squeezed to lambda without widening; c_L, where v is small."""
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+from orchestrate import mesh
+from orchestrate.report.figures import BLACK, BLUE, ORANGE
+
+from .case import Row
+from .measure import disc, outcome
+
+RADIUS, YOUNG, NU, DENSITY = 0.05, 7e6, 0.45, 1722                          # the rubber of the paper
+LAME, SHEAR = YOUNG * NU / ((1 + NU) * (1 - 2 * NU)), YOUNG / (2 * (1 + NU))
+WAVE = math.sqrt((LAME + 2 * SHEAR) / DENSITY)                              # c_L [m/s]
+SPEEDS = (8, 0.8)                                                           # [m/s]
+SHARES = (0.1, 0.05, 0.025)                                                 # elements over b
+
+
+def touch(folder: Path, speed: float, share: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Ends of the steps since the first touch [s], their lengths and mean forces [N/m], up to R v/(2 c_L^2): neo-Hookean, elements of
+    share * b near the contact, steps of a quarter of their transit, penalty 20 rho c_L^2/h: it lags by a
+    twentieth of a transit."""
+    width = RADIUS * speed / WAVE
+    size, until = share * width, width / (2 * WAVE)
+    folder.mkdir(parents=True, exist_ok=True)
+    mesh.write(mesh.disc(RADIUS, RADIUS / 3, size, half=True, contact_arc=1.5 * width / RADIUS), folder / "disc.msh")
+    disc(folder / "run", mesh=folder / "disc.msh", law="neohookean", speed=speed, young=YOUNG, nu=NU, density=DENSITY, radius=RADIUS, fields=0,
+         dt=size / WAVE / 4, penalty=20 * DENSITY * WAVE**2 / size, end_time=1.05 * until)
+    return since_touch(folder)
+
+
+def since_touch(folder: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The same of a run that is there."""
+    history = outcome(folder / "run").history
+    start = history["t"][np.flatnonzero(history["normal_force"] > 0)[0] - 1]
+    return history["t"] - start, history["dt"], history["normal_force"]
+
+
+def shock(speed: float) -> float:
+    """U [m/s] at the velocity jump `speed`, neo-Hookean: P = mu (l - 1/l) + lambda ln(l)/l of the stretch l = 1 - v/U; by fixed-point iteration."""
+    U = WAVE
+    for _ in range(100):
+        stretch = 1 - speed / U
+        U = math.sqrt(-(SHEAR * (stretch - 1 / stretch) + LAME * math.log(stretch) / stretch) * U / (DENSITY * speed))
+    return U
+
+
+def force(speed: float, t: np.ndarray | float, wave: float) -> np.ndarray | float:
+    """F [N/m] at t [s] after the touch with this wave speed."""
+    return 2 * DENSITY * wave * speed * np.sqrt(2 * RADIUS * speed * t)
+
+
+def early(folder: Path, speed: float, share: float) -> Iterator[Row]:
+    """Force at R v/(2 c_L^2), from the history in the second half by least squares of F ~ sqrt(t) (it ripples as points touch one by one), and
+    the impulse until then."""
+    ends, steps, forces = touch(folder, speed, share)
+    until, middles = RADIUS * speed / (2 * WAVE**2), ends - steps / 2
+    late, whole = (middles > until / 2) & (middles < until), (ends > 0) & (ends <= until)
+    root = np.sqrt(middles[late])
+    found = (forces[late] * root * steps[late]).sum() / (root**2 * steps[late]).sum() * math.sqrt(until)
+    end = ends[whole][-1]
+    yield Row(f"{speed:g} m/s: force", share, found, force(speed, until, shock(speed)))
+    yield Row(f"{speed:g} m/s: impulse", share, (forces[whole] * steps[whole]).sum(), 2 / 3 * end * force(speed, end, shock(speed)))
+    if share == SHARES[-1]:
+        yield Row(f"{speed:g} m/s: with c_L", share, found, force(speed, until, WAVE))
+
+
+def touches(folder: Path) -> Iterator[Row]:
+    for speed in SPEEDS:
+        for share in SHARES:
+            yield from early(folder / f"{speed:g}-{share:g}", speed, share)
+
+
+def forces(axes: plt.Axes, folder: Path) -> None:
+    """F over the time since the touch, of the finest meshes: over 2 rho c_L v b at its end."""
+    t = np.linspace(0, 1, 200)
+    axes.plot(t, np.sqrt(t), color=BLACK, linewidth=1, label="$2\\rho c_L v\\sqrt{2Rvt}$")
+    for speed, colour in zip(SPEEDS, (ORANGE, BLUE)):
+        until = RADIUS * speed / (2 * WAVE**2)
+        ends, steps, found = since_touch(folder / f"{speed:g}-{SHARES[-1]:g}")
+        axes.plot((ends - steps / 2) / until, found / force(speed, until, WAVE), color=colour, linewidth=0.9, label=f"{speed:g} m/s")
+    axes.set(xlabel="time over $Rv/(2c_L^2)$", ylabel="force over that of $c_L$ at the end", xlim=(0, 1.05), ylim=(0, 1.15))
+    axes.legend(loc="lower right")
