@@ -15,6 +15,11 @@ SLOW = 0.03                      # speed over sqrt(E/rho) up to which the pressu
 MOST_BODIES = 4                  # those with the largest pressure
 PRESSURE = "contact pressure [MPa]"
 SLIP = {"slips back": "#0072b2", "sticks": "#bbbbbb", "slips forward": "#d55e00"}    # v_T < 0, > 0: on the plane along x
+RADIAL = {"slips inwards": "#0072b2", "sticks": "#bbbbbb", "slips outwards": "#d55e00"}    # from the axis
+SLIDES = {"sticks": "#bbbbbb", "slides": "#d55e00"}
+MAPS = 5                         # instants at most
+ALONG = "along the outline"
+WIDTH, LOAD = "#0072b2", "#d55e00"
 ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 1), "ncols": 3, "fontsize": 6.5, "handlelength": 1.0, "columnspacing": 0.8}
 COLUMNS = ["t", "body", "partner", "s", "X", "Y", "x", "y", "weight", "pressure", "shear", "slip_velocity", "slides"]
 
@@ -29,52 +34,148 @@ def read(folder: Path) -> pd.DataFrame:
     return read_table(folder / "fields/contact.csv", COLUMNS)
 
 
-def draw(table: pd.DataFrame, names: list[str], half: bool, free: np.ndarray, ball: dict[str, Value] | None = None) -> plt.Figure | None:
-    """A row of panels a body: pressure over the outline at some instants, over outline and time, and with friction the slip; None without contact.
-    Half a body is drawn with its mirror image, of one in three dimensions the points nearest to the plane z = 0. `free`: times [s] at which nothing is
-    touched. `ball`: the scene where the body is a ball that nothing turns: its pressure is drawn over the radius."""
+def draw(table: pd.DataFrame, names: list[str], half: bool, free: np.ndarray, ball: dict[str, Value] | None = None, symmetry: str = "full",
+         history: dict[str, np.ndarray] | None = None) -> plt.Figure | None:
+    """A row of panels a body: pressure over the outline at some instants, over outline and time, with friction where it sticks and slides, and with the
+    `history` half-width and largest pressure; None without contact. `free`: times [s] at which nothing is touched.
+
+    Half a body is drawn with its mirror image. `ball`: the scene where the body is a ball that nothing turns: all is drawn over the distance from
+    its axis. Of other bodies in three dimensions: of one the points nearest to the plane z = 0, of several all over the distance from the first touch;
+    below them the patch at some instants. `symmetry` (quarter, half, full): what of a body in three dimensions was computed."""
     if table.empty:
         return None
-    all_points = table
-    if "Z" in table:
-        table = table[table.Z.abs() <= max(0.15 * table.Z.abs().max(), table.Z.abs().min())]
     largest = table.groupby("body").pressure.max().nlargest(MOST_BODIES)
     instants = np.union1d(table.t, free[(free > table.t.min()) & (free < table.t.max())])
-    rubs, bodies = bool(table.shear.any()), sorted(largest.index)
-    figure, grid = plt.subplots(len(bodies), 3 if rubs else 2, figsize=(8.4, 2.5 * len(bodies) + 0.6), squeeze=False)
-    for row, body in zip(grid, bodies):
-        own = table[table.body == body].groupby(["t", "s"], as_index=False).first()     # twice only where an outline meets itself
-        if half:
-            own = pd.concat([own, own.assign(s=-own.s, shear=-own.shear, slip_velocity=-own.slip_velocity)]).drop_duplicates(["t", "s"])
+    rubs, bodies, solid = bool(table.shear.any()), sorted(largest.index), "Z" in table
+    shown = ["profiles", "pressure"] + ["slip"] * rubs + ["history"] * (history is not None and "contact_half_width" in history)
+    maps = (1 + rubs) * (solid and not ball)
+    figure = plt.figure(figsize=(max(2.8 * len(shown), 7.0 if maps else 0), (2.5 + 1.7 * maps) * len(bodies) + 0.6))
+    for part, body in zip(figure.subfigures(len(bodies), 1, squeeze=False)[:, 0], bodies):
+        points = table[table.body == body]
+        upper, lower = part.subfigures(2, 1, height_ratios=[2.5, 1.7 * maps]) if maps else (part, None)
+        panels = dict(zip(shown, upper.subplots(1, len(shown))))
+        own, words, states = _radial(points, ball, len(names)) if ball or solid and len(names) > 1 else _section(points, half)
         if ball:
-            _over_radius(row[0], all_points, ball)
+            _over_radius(panels["profiles"], points, ball)
         else:
-            _profiles(row[0], own, "-" if "Z" not in table else "")
+            _profiles(panels["profiles"], own, words, "" if solid else "-")
         times, places, pressure = _over_time(own, "pressure", instants)
-        picture = row[1].pcolormesh(1e3 * times, 1e3 * places, 1e-6 * pressure.T, shading="nearest", cmap="viridis", vmin=0, rasterized=True)
-        figure.colorbar(picture, ax=row[1], label=PRESSURE)
+        picture = panels["pressure"].pcolormesh(1e3 * times, 1e3 * places, 1e-6 * pressure.T, shading="nearest", cmap="viridis", vmin=0, rasterized=True)
+        upper.colorbar(picture, ax=panels["pressure"], label=PRESSURE)
         if rubs:
-            _slip(row[2], own, instants)
-        for axes in row[1:]:
-            axes.set(ylabel="along the outline [mm]", xlabel="time [ms]")
+            _slip(panels["slip"], own, instants, states)
+        for axes in [panels[name] for name in ("pressure", "slip") if name in panels]:
+            axes.set(ylabel=f"{words} [mm]", xlabel="time [ms]", ylim=(0, None) if words != ALONG else (None, None))
+        if "history" in shown:
+            _history(panels["history"], history, f"_{body}" if len(names) > 1 else "")
         if len(names) > 1:
-            row[1].set_title(names[body - 1])
+            panels["pressure"].set_title(names[body - 1])
+        if maps:
+            _maps(lower, points, rubs, symmetry, len(names) > 1)
     return figure
 
 
-def _instants(table: pd.DataFrame) -> list[tuple[float, pd.DataFrame, tuple]]:
-    """(t, rows, colour) of up to INSTANTS times."""
+def _section(points: pd.DataFrame, half: bool) -> tuple[pd.DataFrame, str, dict[str, str]]:
+    """Along the outline: t, s [m], pressure, state (SLIP: -1, 0, 1); of a body in three dimensions near the plane z = 0."""
+    if "Z" in points:
+        points = points[points.Z.abs() <= max(0.15 * points.Z.abs().max(), points.Z.abs().min())]
+    own = points.assign(state=np.where(points.slides > 0, np.sign(points.slip_velocity), 0.0))
+    own = own.groupby(["t", "s"], as_index=False).first()              # twice only where an outline meets itself
+    if half:
+        own = pd.concat([own, own.assign(s=-own.s, state=-own.state)]).drop_duplicates(["t", "s"])
+    return own, ALONG, SLIP
+
+
+def _radial(points: pd.DataFrame, ball: dict[str, Value] | None, bodies: int) -> tuple[pd.DataFrame, str, dict[str, str]]:
+    """Over the distance from the axis, of a ball, or from the first touch: t, s [m], pressure, state. Of a surface means over rings: the pressure over all of
+    its points that are ever under load; it slides where most of the load does."""
+    if ball:
+        away, words, states = (np.hypot(points.X, points.Z) if "Z" in points else points.X), "distance from the axis", RADIAL
+        slip = (points.slip_velocity * points.X + points.slip_velocity_z * points.Z) / away if "Z" in points else points.slip_velocity
+    else:
+        away, words, states, slip = points.s.abs(), "distance from the first touch", SLIDES, np.ones(len(points))
+    own = points.assign(s=away, state=np.where(points.slides > 0, np.sign(slip), 0.0))
+    if "Z" not in points:
+        return own, words, states
+    all_points = own.drop_duplicates(["X", "Y", "Z"])
+    count = int(np.clip(np.sqrt(len(all_points)), 4, 40))
+    width = 1.0001 * all_points.s.max() / count
+    area = all_points.weight.groupby((all_points.s / width).astype(int)).sum()
+    own = own.assign(ring=(own.s / width).astype(int), load=own.pressure * own.weight)
+    own["turned"], own["sliding"] = own.load * own.state, own.load * (own.slides > 0)
+    sums = own.groupby(["t", "ring"], as_index=False)[["load", "turned", "sliding"]].sum()
+    return pd.DataFrame({"t": sums.t, "s": (sums.ring + 0.5) * width, "pressure": sums.load / sums.ring.map(area),
+                         "state": np.where(sums.sliding > sums.load / 2, np.sign(sums.turned), 0.0)}), words, states
+
+
+def _history(axes: plt.Axes, history: dict[str, np.ndarray], of: str) -> None:
+    """Half-width [mm] and, on the right, largest pressure [MPa] of the contact over time; in the flight neither."""
+    touches = history[f"contact_half_width{of}"] > 0
+    other = axes.twinx()
+    for where, name, scale, colour, label in ((axes, "contact_half_width", 1e3, WIDTH, "half-width [mm]"), (other, "max_pressure", 1e-6, LOAD, "largest pressure [MPa]")):
+        where.plot(1e3 * history["t"], np.where(touches, scale * history[name + of], np.nan), color=colour, linewidth=1)
+        where.set_ylim(0, None)
+        where.set_ylabel(label, color=colour)
+        where.tick_params(axis="y", colors=colour)
+    other.spines["right"].set_visible(True)
+    axes.set(xlabel="time [ms]")
+
+
+def _maps(figure: plt.Figure, points: pd.DataFrame, rubs: bool, symmetry: str, several: bool) -> None:
+    """The points under load at some instants, each a square of its area: coloured by pressure and, below, where they stick and slide. On the plane at
+    their places x, z, of several bodies in the reference along the two main directions of all of them."""
+    axes_of = {"quarter": ("X", "Z"), "half": ("Z",)}.get(symmetry, ())
+    points = points.assign(area=points.weight / 2 ** len(axes_of), state=np.where(points.slides > 0, 1.0 if several else np.sign(points.slip_velocity), 0.0))
+    for axis in axes_of:
+        image = points.assign(**{axis: -points[axis], axis.lower(): -points[axis.lower()]})
+        points = pd.concat([points, image.assign(state=-image.state) if axis == "X" and not several else image])
+    points, labels = _in_plane(points) if several else (points.assign(across=points.x, up=points.z), ("x [mm]", "z [mm]"))
+    shown = _instants(points, MAPS)
+    grid = figure.subplots(1 + rubs, len(shown), squeeze=False, sharex=True, sharey=True)
+    states = SLIDES if several else SLIP
+    low, high = 1e3 * points[["across", "up"]].min().to_numpy(), 1e3 * points[["across", "up"]].max().to_numpy()
+    low, high = low - 0.04 * (high - low), high + 0.04 * (high - low)
+    scale = 72 * min(5.2 / len(shown) / (high - low)[0], 1.1 / (high - low)[1])                # points a mm
+    for row, (column, colours) in zip(grid, (("pressure", dict(cmap="viridis", vmin=0, vmax=1e-6 * points.pressure.max())), ("state", _colours(states)))):
+        for axes, (t, now, _) in zip(row, shown):
+            values = 1e-6 * now.pressure if column == "pressure" else now.state
+            picture = axes.scatter(1e3 * now.across, 1e3 * now.up, c=values, s=np.maximum(1e6 * now.area * scale**2, 1.5), marker="s", linewidths=0, **colours)
+            axes.set(aspect="equal", xlim=(low[0], high[0]), ylim=(low[1], high[1]))
+            axes.tick_params(labelsize=7)
+            if row is grid[0]:
+                axes.set_title(f"{1e3 * t:.3g} ms", fontsize=8)
+        row[0].set_ylabel(labels[1])
+        if column == "pressure":
+            figure.colorbar(picture, ax=list(grid.flat), shrink=0.7, label=PRESSURE)
+        else:
+            row[len(shown) // 2].legend(*_keys(states), **ABOVE)
+    for axes in grid[-1]:
+        axes.set_xlabel(labels[0])
+
+
+def _in_plane(points: pd.DataFrame) -> tuple[pd.DataFrame, tuple[str, str]]:
+    """With `across` and `up` [m], from their centre along the two directions in which their reference places spread most; `up` the one nearer to z."""
+    places = points[["X", "Y", "Z"]].to_numpy()
+    places = places - places.mean(axis=0)
+    two = np.linalg.svd(places, full_matrices=False)[2][:2]
+    two = two[np.argsort(np.abs(two[:, 2]))]
+    two = two * np.sign(two[[0, 1], np.abs(two).argmax(axis=1)])[:, None]
+    return points.assign(across=places @ two[0], up=places @ two[1]), ("along the patch [mm]", "across [mm]")
+
+
+def _instants(table: pd.DataFrame, most: int = INSTANTS) -> list[tuple[float, pd.DataFrame, tuple]]:
+    """(t, rows, colour) of up to `most` times."""
     times = np.unique(table.t)
-    picked = times[np.unique(np.linspace(0, len(times) - 1, INSTANTS + 2).round().astype(int)[1:-1])] if len(times) > INSTANTS else times
+    picked = times[np.unique(np.linspace(0, len(times) - 1, most + 2).round().astype(int)[1:-1])] if len(times) > most else times
     return [(t, table[table.t == t], colour) for t, colour in zip(picked, plt.get_cmap("plasma")(np.linspace(0, 0.85, len(picked))))]
 
 
-def _profiles(axes: plt.Axes, own: pd.DataFrame, line: str) -> None:
-    """Pressure [MPa] along the outline [mm] at up to INSTANTS times."""
+def _profiles(axes: plt.Axes, own: pd.DataFrame, words: str, line: str) -> None:
+    """Pressure [MPa] over s [mm], which is the distance in these words, at up to INSTANTS times."""
     for t, now, colour in _instants(own):
         now = now.sort_values("s")
         axes.plot(1e3 * now.s, 1e-6 * now.pressure, color=colour, linestyle=line, linewidth=1.1, marker=".", markersize=2.5, label=f"{1e3 * t:.3g} ms")
-    axes.set(xlabel="along the outline [mm]", ylabel=PRESSURE, ylim=(0, None))
+    axes.set(xlabel=f"{words} [mm]", ylabel=PRESSURE, ylim=(0, None))
     axes.legend(**ABOVE)
 
 
@@ -107,9 +208,17 @@ def _over_time(own: pd.DataFrame, column: str, instants: np.ndarray) -> tuple[np
     return instants, wide.columns.to_numpy(), wide.to_numpy()
 
 
-def _slip(axes: plt.Axes, own: pd.DataFrame, instants: np.ndarray) -> None:
-    """Where the points under load stick and slide, over outline and time."""
-    state = own.assign(state=np.where(own.slides > 0, np.sign(own.slip_velocity), 0.0))
-    times, places, values = _over_time(state, "state", instants)
-    axes.pcolormesh(1e3 * times, 1e3 * places, values.T, shading="nearest", cmap=ListedColormap(list(SLIP.values())), vmin=-1.5, vmax=1.5, rasterized=True)
-    axes.legend([plt.Rectangle((0, 0), 1, 1, color=colour) for colour in SLIP.values()], list(SLIP), **ABOVE)
+def _slip(axes: plt.Axes, own: pd.DataFrame, instants: np.ndarray, states: dict[str, str]) -> None:
+    """Where the points under load stick and slide, over place and time."""
+    times, places, values = _over_time(own, "state", instants)
+    axes.pcolormesh(1e3 * times, 1e3 * places, values.T, shading="nearest", rasterized=True, **_colours(states))
+    axes.legend(*_keys(states), **ABOVE)
+
+
+def _colours(states: dict[str, str]) -> dict:
+    """Of states -1, 0, 1, or of two 0, 1."""
+    return dict(cmap=ListedColormap(list(states.values())), vmin=1.5 - len(states), vmax=1.5)
+
+
+def _keys(states: dict[str, str]) -> tuple[list, list[str]]:
+    return [plt.Rectangle((0, 0), 1, 1, color=colour) for colour in states.values()], list(states)

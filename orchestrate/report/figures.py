@@ -48,7 +48,7 @@ def draw(folder: Path, warnings: list[str]) -> list[Path]:
         if (folder / "fields/contact.csv").exists():
             table = contacts.read(folder)
             along = contacts.draw(table, bodies.names(scene) if bodies.are_several(scene) else ["body"], is_half(scene), history["t"][~touches],
-                                  scene if scene.get("script") in BODY and is_half(scene) else None)
+                                  scene if scene.get("script") in BODY and is_half(scene) else None, scene.get("symmetry", "full"), history)
             drawn |= {"contact": along} if along else {}
             inside = solid.draw(snapshots, table, scene) if snapshots and "Z" in table else None
             drawn |= {"solid": inside} if inside else {}
