@@ -42,7 +42,8 @@ def test_any_name_will_do(tmp_path, name):
     flags = ("-checkpoint_every", "5", "-fields", "2")
     given = name if name != "-out" else "./-out"
     assert call(*COARSE, *flags, "-out", given, cwd=tmp_path)[0::2] == (0, "")
-    assert RESULTS | {"fields.pvd", "fields/0000.vtu", "fields/0001.vtu", "fields/contact.csv"} == names(tmp_path / name)
+    assert RESULTS | {"fields.pvd", "fields/0000.vtu", "fields/0001.vtu", "fields/contact.csv",
+                      "fields/contact.pvd", "fields/contact-0000.vtp", "fields/contact-0001.vtp"} == names(tmp_path / name)
     mesh.write(mesh.disc(0.05, 0.02, 0.01, True), tmp_path / name / "my.msh")
     assert call(*COARSE, "-mesh", f"{given}/my.msh", "-out", "out", cwd=tmp_path)[0::2] == (0, "")
     code, _, error = call(*COARSE, "-restart", f"{given}/x", "-out", "out", cwd=tmp_path)

@@ -54,7 +54,7 @@ def draw(table: pd.DataFrame, names: list[str], half: bool, free: np.ndarray, ba
         points = table[table.body == body]
         upper, lower = part.subfigures(2, 1, height_ratios=[2.5, 1.7 * maps]) if maps else (part, None)
         panels = dict(zip(shown, upper.subplots(1, len(shown))))
-        own, words, states = _radial(points, ball, len(names)) if ball or solid and len(names) > 1 else _section(points, half)
+        own, words, states = _radial(points, ball) if ball or solid and len(names) > 1 else _section(points, half)
         if ball:
             _over_radius(panels["profiles"], points, ball)
         else:
@@ -86,7 +86,7 @@ def _section(points: pd.DataFrame, half: bool) -> tuple[pd.DataFrame, str, dict[
     return own, ALONG, SLIP
 
 
-def _radial(points: pd.DataFrame, ball: dict[str, Value] | None, bodies: int) -> tuple[pd.DataFrame, str, dict[str, str]]:
+def _radial(points: pd.DataFrame, ball: dict[str, Value] | None) -> tuple[pd.DataFrame, str, dict[str, str]]:
     """Over the distance from the axis, of a ball, or from the first touch: t, s [m], pressure, state. Of a surface means over rings: the pressure over all of
     its points that are ever under load; it slides where most of the load does."""
     if ball:
