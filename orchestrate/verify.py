@@ -1,5 +1,5 @@
 """Exact solutions (verification/): every case over element size, time step or what else its error comes from, judged by tolerances that were
-fixed beforehand. results/verify/verify.csv has all numbers, a figure a case beside it. Some six minutes, most of them for V17;
+fixed beforehand. results/verify/verify.csv has all numbers, a figure a case beside it. Some seven minutes, most of them for V17;
 what the present code left is taken as it is."""
 
 import argparse
