@@ -122,14 +122,15 @@ def _history(axes: plt.Axes, history: dict[str, np.ndarray], of: str) -> None:
 
 
 def _maps(figure: plt.Figure, points: pd.DataFrame, rubs: bool, symmetry: str, several: bool) -> None:
-    """The points under load at some instants, each a square of its area: coloured by pressure and, below, where they stick and slide. On the plane at
-    their places x, z, of several bodies in the reference along the two main directions of all of them."""
+    """The points under load at some instants, each a square of its area: coloured by pressure and, below, where they stick and slide. Of one body on
+    the plane y = 0 at their places x, z, else in the reference along the two main directions of all of them."""
     axes_of = {"quarter": ("X", "Z"), "half": ("Z",)}.get(symmetry, ())
     points = points.assign(area=points.weight / 2 ** len(axes_of), state=np.where(points.slides > 0, 1.0 if several else np.sign(points.slip_velocity), 0.0))
     for axis in axes_of:
         image = points.assign(**{axis: -points[axis], axis.lower(): -points[axis.lower()]})
         points = pd.concat([points, image.assign(state=-image.state) if axis == "X" and not several else image])
-    points, labels = _in_plane(points) if several else (points.assign(across=points.x, up=points.z), ("x [mm]", "z [mm]"))
+    on_the_plane = not several and points.y.abs().max() < 0.1 * np.ptp(points.x)
+    points, labels = (points.assign(across=points.x, up=points.z), ("x [mm]", "z [mm]")) if on_the_plane else _in_plane(points)
     shown = _instants(points, MAPS)
     grid = figure.subplots(1 + rubs, len(shown), squeeze=False, sharex=True, sharey=True)
     states = SLIDES if several else SLIP
