@@ -1,4 +1,4 @@
-"""V19: a cylinder pressed on the plane, then pushed along it by less than friction holds (cattaneo.edp): Cattaneo and Mindlin. It sticks in |x| < c and slips in
+"""The slip annulus: a cylinder pressed on the plane, then pushed along it by less than friction holds (cattaneo.edp): Cattaneo and Mindlin. It sticks in |x| < c and slips in
 the rings beside: c = b sqrt(1 - Q/(mu P)), q = mu p0 [sqrt(1 - x^2/b^2) - (c/b) sqrt(1 - x^2/c^2)]."""
 
 import math
