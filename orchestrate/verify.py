@@ -177,7 +177,7 @@ def draw(case: Case, rows: list[Row], out: Path) -> None:
         draw_errors(grid[0, 0], case, rows)
         if case.beside:
             case.beside(grid[0, 1], out / "runs" / slug(case))
-            grid[0, 0].legend(loc="best", fontsize=7)
+            grid[0, 0].legend(loc="best")
         else:
             figure.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside right center")
         figure.suptitle(f"{case.name}: {case.title}", fontsize=9)

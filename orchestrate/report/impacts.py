@@ -10,6 +10,7 @@ from ..results import read_table
 
 LIGHTEST = 0.01                  # of the largest impulse of a meeting: what is less is the grazing end of an impact
 LEAST_SLIP = 0.05                # of the approach: of less the restitution along the partner is that of vibrations
+LEAST_APPROACH = 0.01            # of the largest of a meeting: of less, as of a body that lies on its partner, there is no restitution
 COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"]
 NEEDED = ["body", "partner", "start", "end", "impulse", "approach", "separation", "restitution", "restitution_tangential"]
 
@@ -39,14 +40,16 @@ def draw(table: pd.DataFrame, names: list[str]) -> plt.Figure | None:
     for colour, ((body, partner), rows) in zip(COLOURS, impacts.groupby(["body", "partner"])):
         other = names[int(partner) - 1] if partner > 0 else f"obstacle {-int(partner)}" if len(names) > 1 else "plane"
         label, t = f"{names[int(body) - 1]} – {other}", 1e3 * rows.start
-        top.plot(t, rows.restitution, "o-", color=colour, markersize=4, linewidth=0.8, label=f"{label}: across")
+        across = rows.restitution.where(rows.approach > LEAST_APPROACH * rows.approach.max())
+        top.plot(t, across, "o-", color=colour, markersize=4, linewidth=0.8, label=f"{label}: across")
         along = rows.restitution_tangential.where(rows.slip_before > LEAST_SLIP * rows.approach)
         if along.notna().any():
             top.plot(t, along, "s--", color=colour, markersize=4, linewidth=0.8, fillstyle="none", label=f"{label}: along")
         below.plot(t, rows.approach, "o-", color=colour, markersize=4, linewidth=0.8)
         if along.notna().any():
             below.plot(t, rows.slip_before, "s--", color=colour, markersize=4, linewidth=0.8, fillstyle="none")
-    top.set(ylabel="restitution", ylim=(min(0.0, top.get_ylim()[0]), 1.05))
-    top.legend(fontsize=7, ncols=2)
+    top.set(ylabel="restitution", ylim=(min(0.0, top.get_ylim()[0]), max(1.05, top.get_ylim()[1])))
+    top.axhline(1, color="#999999", linewidth=0.6)
+    top.legend(ncols=2, loc="lower center", bbox_to_anchor=(0.5, 1))
     below.set(xlabel="start of the contact [ms]", ylabel="speed before [m/s]", ylim=(0, 1.1 * below.get_ylim()[1]))
     return figure

@@ -19,10 +19,10 @@ import numpy as np
 import pandas as pd
 from matplotlib.ticker import LogLocator, NullLocator
 
-from .. import parameters
+from .. import parameters, scene
 from ..failure import BadInput
 from ..report import report
-from ..report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE, as_written
+from ..report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, SMALL, STYLE, as_written, numbers_of_the_paper
 from ..results import read_history
 from ..studies import study
 
@@ -167,15 +167,17 @@ def _lines(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
     x, names = sweep.figure["x"], sweep.figure["y"]
     figure, grid = plt.subplots(len(names), figsize=(6.4, 3.9 if len(names) == 1 else 2.6 * len(names)), sharex=True, squeeze=False)
     for axes, y in zip(grid[:, 0], names):
-        for (words, group), colour, marker in zip(_groups(sweep, rows, "by"), itertools.cycle(COLOURS), itertools.cycle(MARKERS)):
+        for k, ((words, group), colour, marker) in enumerate(zip(_groups(sweep, rows, "by"), itertools.cycle(COLOURS), itertools.cycle(MARKERS))):
             group = group.sort_values(x)
             there = group.exit == 0
             errors = _factor(y) * bars(group[there], y)
             axes.errorbar(group[x][there], _factor(y) * group[y][there], None if np.isnan(errors).all() else errors, color=colour, marker=marker,
                           markersize=3, linewidth=1.1, elinewidth=0.9, capsize=1.5, label=words or None)
             if not there.all():
-                axes.plot(group[x][~there], np.full((~there).sum(), 0.03), marker="x", linestyle="", markersize=4, color=colour,
-                          transform=axes.get_xaxis_transform(), label=f"{words}: the run failed".removeprefix(": "))
+                axes.plot(group[x][~there], np.full((~there).sum(), -0.03 - 0.03 * k), marker="x", linestyle="", markersize=4, color=colour,
+                          transform=axes.get_xaxis_transform(), clip_on=False, label=f"{words}: run failed, no value".removeprefix(": "))
+                axes.tick_params(axis="x", pad=3.5 + 9 * (k + 1))     # its row of marks is below the axis, where no value can be
+        _published(axes, sweep, x, y)
         axes.set_ylabel(label(y, sweep.figure["per"]))
         axes.grid(alpha=0.3)
         if _is_logarithmic(rows[x]):
@@ -187,6 +189,16 @@ def _lines(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
     if grid[0, 0].get_legend_handles_labels()[0]:
         grid[0, 0].legend()
     return figure
+
+
+def _published(axes: plt.Axes, sweep, x: str, y: str) -> None:
+    """The numbers of the paper for y: a star at its x, or a line over all x where it states none."""
+    for at, value, words in numbers_of_the_paper(scene.load(sweep.scene).override(sweep.base | sweep.points[0]).given, y, over=x):
+        words = f"{words}: {_factor(y) * value:.3g}{_unit(y, sweep.figure['per'])}"
+        if at is None:
+            axes.axhline(_factor(y) * value, color=BLACK, linestyle="-.", linewidth=0.9, label=words)
+        else:
+            axes.plot(at, _factor(y) * value, color=BLACK, marker="*", linestyle="", markersize=8, zorder=10, label=words)
 
 
 def _is_logarithmic(values: pd.Series) -> bool:
@@ -275,8 +287,10 @@ def _map(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
         cells = np.where(group.pivot(index=y, columns=x, values="exit") == 0, table, np.nan)   # evenly spaced, whatever the values
         picture = axes.imshow(cells, origin="lower", aspect="auto", cmap="viridis", vmin=low, vmax=high)
         for (row, column), value in np.ndenumerate(cells):
-            axes.text(column, row, "failed" if np.isnan(value) else f"{value:#.3g}", ha="center", va="center", fontsize=7,
-                      color="black" if np.isnan(value) or value > (low + high) / 2 else "white")
+            share = (value - low) / (high - low or 1.0)
+            axes.text(column, row, "failed" if np.isnan(value) else f"{value:#.3g}", ha="center", va="center", fontsize=SMALL,
+                      color="black" if np.isnan(value) or share > 0.5 else "white", zorder=5,       # above the lines of the level
+                      bbox=dict(facecolor="white" if np.isnan(value) else plt.get_cmap("viridis")(share), edgecolor="none", pad=1.2))
         if wanted["level"] is not None:
             level, band = (_factor(colour) * wanted[key] for key in ("level", "band"))
             axes.contour(cells, levels=[level], colors=[ORANGE], linewidths=2)
