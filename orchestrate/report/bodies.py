@@ -11,7 +11,7 @@ from .. import dimension, obstacles, vtu
 from ..obstacles import Obstacle
 from ..parameters import Value
 from ..results import suffixes
-from .figures import (BAND, BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, SHAPES, STRESS, Body, as_written, deformed, draw_body, is_half, least, over_time,
+from .figures import (BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, SHAPES, STRESS, Body, as_written, deformed, draw_body, is_half, least, over_time,
                       per_metre, scale_bar)
 
 ALONE = ("disc-plane", "ball-axisymmetric", "ball-plane")     # scripts of one body on the plane
@@ -182,7 +182,7 @@ def shapes(series: list[tuple[float, Path]], scene: dict[str, Value]) -> plt.Fig
         draw_obstacles(axes, rigid, view, t)
         picture = draw_body(axes, body, largest)
         axes.set_title(f"{1e3 * t:.2f} ms", pad=2)
-    scale_bar(grid[0, 0], (left, right, low, low + 0.12 * (high - low)))
+    scale_bar(grid[-1, 0])
     figure.colorbar(picture, ax=grid, label=STRESS, shrink=0.7, aspect=30)
     return figure
 

@@ -12,6 +12,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import TriMesh
+from matplotlib.transforms import ScaledTranslation
 from matplotlib.tri import LinearTriInterpolator, Triangulation
 
 from .. import dimension, vtu
@@ -120,21 +121,22 @@ def per_metre(scene: dict[str, Value]) -> str:
 
 def over_time(panels: list[plt.Axes], history: dict[str, np.ndarray]) -> None:
     """Limits of the time [ms], which begins at 0 where the run does not begin with a flight; a dotted line at the last touch, where the run goes on
-    after it, with a name in the legend of the first panel."""
-    t, touching = 1e3 * history["t"], np.flatnonzero(history["normal_force"] > 0)
+    after it for longer than between any two touches, with a name in the legend of the first panel."""
+    t, touches = 1e3 * history["t"], history["normal_force"] > 0
+    last = t[touches][-1] if touches.any() else t[-1]
     for axes in panels:
         axes.set_xlim(0 if t[0] < 0.02 * t[-1] else t[0], t[-1])
-        if len(touching) and touching[-1] < len(t) - 1:
-            last = t[touching[-1]]
+        if t[-1] - last > np.diff(t[touches]).max(initial=0.0):
             axes.axvline(last, color=BLACK, linestyle=":", linewidth=0.8, label=f"last touch, {last:.4g} ms" if axes is panels[0] else None)
 
 
-def published(axes: plt.Axes, history: dict[str, np.ndarray], scene: dict[str, Value], colour: str = BLACK) -> None:
+def published(axes: plt.Axes, history: dict[str, np.ndarray], scene: dict[str, Value]) -> None:
     """The paper's contact time of the same impact, from the first touch on, where it states one, as a line with a name."""
     touches = history["normal_force"] > 0
     for _, seconds, words in numbers_of_the_paper(scene, "contact_time") if touches.any() else []:
         begin = (history["t"] - history["dt"])[np.argmax(touches)]
-        axes.axvline(1e3 * (begin + seconds), color=colour, linestyle="-.", linewidth=0.9, label=f"{words}: {1e3 * seconds:.3g} ms")
+        axes.axvline(1e3 * (begin + seconds), color=BLACK, linestyle="-.", linewidth=0.9, label=f"{words}: {1e3 * seconds:.3g} ms")
+        axes.set_xlim(right=max(axes.get_xlim()[1], 1.02e3 * (begin + seconds)))
 
 
 def numbers_of_the_paper(scene: dict[str, Value], key: str, over: str = "") -> list[tuple[Value | None, float, str]]:
@@ -190,7 +192,7 @@ def _energies(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fi
 def least(values: np.ndarray, largest: float) -> str:
     """Behind the name of a line that can hardly be told from 0: how large it gets."""
     most = np.abs(values).max()
-    return f" (up to {most:.1g})" if 0 < most < 0.01 * largest else ""
+    return f" (up to {float(f'{most:.1g}'):g})" if 0 < most < 0.01 * largest else ""
 
 
 def _force(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
@@ -248,7 +250,7 @@ def _enlarge(grid: np.ndarray, history: dict[str, np.ndarray], window: tuple[int
     for axes in grid[:, 0]:
         axes.axvspan(t[first], t[last], color=BAND, alpha=0.6, linewidth=0, zorder=0)
     share.step(t, 100 * history["sliding_fraction"], where="pre", color=PURPLE, linewidth=1.0)
-    share.set(title=f"enlarged (grey on the left): {t[first]:.3g} to {t[last]:.3g} ms", ylabel="load that slides [%]",
+    share.set(title="grey on the left, enlarged", ylabel="load that slides [%]",
               xlim=(t[first], t[last]), ylim=(0, 1.08 * max(1.0, 100 * history["sliding_fraction"][inside].max())))
     zoom.plot(t, friction, color=ORANGE, linewidth=1.0, marker=".", markersize=3)
     zoom.set(ylabel=f"friction force [kN{per}]", ylim=_around(friction[inside], 0.15))
@@ -471,20 +473,21 @@ def _shapes(series: list[tuple[float, Path]], half: bool) -> plt.Figure:
         draw_ground(axes, view)
         picture = draw_body(axes, body, largest)
         axes.set_title(f"{1e3 * t:.2f} ms", pad=2)
-    scale_bar(grid[0, 0], (left, right, floor, 0.0))
+    scale_bar(grid[-1, 0])
     figure.colorbar(picture, ax=grid, label=STRESS, shrink=0.7, aspect=30)
     return figure
 
 
-def scale_bar(axes: plt.Axes, strip: tuple[float, float, float, float]) -> None:
-    """A length of 1, 2 or 5 times a power of ten, some fifth of the width, in the strip (left, right, low, high) [m] of axes without ticks."""
-    left, right, low, high = strip
+def scale_bar(axes: plt.Axes) -> None:
+    """Below axes in m, which have no ticks, a length of 1, 2 or 5 times a power of ten, at most a quarter of the width."""
+    left, right = axes.get_xlim()
     wanted = 0.25 * (right - left)
     size = max(length for digit in (1, 2, 5) if (length := digit * 10.0 ** np.floor(np.log10(wanted))) <= wanted)
-    begin, middle = left + 0.04 * (right - left), (low + high) / 2
-    axes.plot([begin, begin + size], [middle] * 2, color=BLACK, linewidth=2.0, solid_capstyle="butt", zorder=10)
+    below = axes.get_xaxis_transform() + ScaledTranslation(0, -9 / 72, axes.figure.dpi_scale_trans)      # [m] along, nine points down
+    axes.plot([left, left + size], [0, 0], color=BLACK, linewidth=2.0, solid_capstyle="butt", transform=below, clip_on=False)
     factor, unit = (1e6, "μm") if size < 1e-3 else (1e3, "mm") if size < 1 else (1, "m")
-    axes.text(begin + size + 0.02 * (right - left), middle, f"{factor * size:.3g} {unit}", fontsize=SMALL, ha="left", va="center", zorder=10)
+    axes.text(left + 1.15 * size, 0, f"{factor * size:.3g} {unit}", fontsize=SMALL, ha="left", va="center", transform=below)
+    axes.set_xlim(left, right)
 
 
 @dataclass(frozen=True)
