@@ -6,6 +6,7 @@ from textwrap import wrap
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.ticker import NullFormatter
 
 from .. import dimension, obstacles, vtu
 from ..obstacles import Obstacle
@@ -64,7 +65,7 @@ def draw(history: dict[str, np.ndarray], scene: dict[str, Value], snapshots: lis
     """The figures by name; `history` from the first touch on."""
     bodies, per = dict(zip(names(scene), suffixes(history))), per_metre(scene)
     drawn = {"energies": energies(history, bodies, per), "velocity": velocities(history, bodies), "force": forces(history, bodies, per)}
-    if snapshots and len(vtu.read(snapshots[0][1]).triangles):       # none where whole bodies in three dimensions have no plane of symmetry
+    if snapshots and len(vtu.read(snapshots[0][1]).triangles):       # none where no body crosses the plane z = 0
         drawn["shapes"] = shapes(snapshots, scene)
     return drawn
 
@@ -122,6 +123,7 @@ def energies(history: dict[str, np.ndarray], bodies: dict[str, str], per: str = 
     error = np.abs(history["balance"]) / (largest or 1.0)       # not of the total alone: bodies at rest under gravity have none
     balance.semilogy(t, np.where(error > 0, error, np.nan), color=BLACK, linewidth=0.9)
     balance.set_ylabel("|balance| / largest energy")
+    balance.yaxis.set_minor_formatter(NullFormatter())
     return figure
 
 

@@ -12,6 +12,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import TriMesh
+from matplotlib.ticker import NullFormatter
 from matplotlib.transforms import ScaledTranslation
 from matplotlib.tri import LinearTriInterpolator, Triangulation
 
@@ -184,6 +185,7 @@ def _energies(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fi
     bottom.semilogy(t, np.where(error > 0, error, np.nan), color=BLACK, linewidth=0.9)
     bottom.set(xlabel="time [ms]", ylabel="|balance| / $E_0$")
     bottom.margins(y=0.15)
+    bottom.yaxis.set_minor_formatter(NullFormatter())
     over_time([top, bottom], history)
     top.legend(**ABOVE, ncols=3)
     return figure

@@ -129,7 +129,7 @@ def draw(rows: pd.DataFrame, axes: dict[str, tuple[float, ...]], path: Path) -> 
         bar = figure.colorbar(picture, ax=grid, label="contact time [ms]", shrink=0.6)
         bar.ax.axhline(1e3 * PAPER[0], color="#d55e00", linewidth=2)
         figure.suptitle("Share of the normal load that slides [%], a bar each for the first, second and last third of the contact (full height: 100 %);\n"
-                        f"framed: slides first, sticks last, as in the paper, whose contact time is {1e3 * PAPER[0]:g} ms (line in the bar of colours)")
+                        f"framed ({rows['order'].sum()} of {len(rows)}): slides first, sticks last, as in the paper, whose contact time is {1e3 * PAPER[0]:g} ms (line in the bar of colours)")
         figure.savefig(path)
         plt.close(figure)
 

@@ -102,7 +102,8 @@ def _constants(sweep) -> str:
     """What is the same in all runs of a body: law, nu, speed, contact stiffness and, with friction, the slip velocity."""
     used = scene.load(sweep.scene).override(sweep.base | sweep.points[0]).given
     names = ("law", "nu", "speed", "penalty") + ("slip_velocity",) * (used.get("friction_static", 0) > 0)
-    return ", ".join(_value(name, used[name]) for name in names if name in used and name not in sweep.axes)
+    words = ", ".join(_value(name, used[name]) for name in names if name in used and name not in sweep.axes)
+    return words.replace("Pa/m^m", "Pa/m") if used.get("exponent", 1) == 1 else words
 
 
 def findings(sweep, rows: pd.DataFrame, out: Path) -> list[str]:
