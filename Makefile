@@ -69,7 +69,7 @@ movie: $(READY) ## a film of a scene, built in or a file: make movie CASE=disc-o
 	@$(PYTHON) -m orchestrate $@ $(CASE) $(ARGS)
 
 pictures: disc-normal disc-oblique ## the README's pictures, again from the present runs
-	@$(PYTHON) -c "from PIL import Image; [Image.open(f'results/{a}.png').convert('RGB').quantize(96).save(b, optimize=True) for a, b in \
+	@$(PYTHON) -c "from PIL import Image; [Image.open(f'results/{a}.png').convert('RGB').quantize(256).save(b, optimize=True) for a, b in \
 	(('disc-normal/figures/shapes', 'picture.png'), ('disc-oblique/figures/flight', 'picture-oblique.png'))]"
 
 test: $(READY) ## run all tests: the program's, and beside them on the other core the exact cases
