@@ -12,7 +12,7 @@ from .. import dimension, obstacles, vtu
 from ..obstacles import Obstacle
 from ..parameters import Value
 from ..results import suffixes
-from .figures import (BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, SHAPES, STRESS, Body, as_written, deformed, draw_body, is_half, least, over_time,
+from .figures import (BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, SHAPES, STRESS, Body, as_written, deformed, draw_body, is_half, least, most_stress, over_time,
                       per_metre, scale_bar)
 
 ALONE = ("disc-plane", "ball-axisymmetric", "ball-plane")     # scripts of one body on the plane
@@ -179,13 +179,13 @@ def shapes(series: list[tuple[float, Path]], scene: dict[str, Value]) -> plt.Fig
     figure, grid = plt.subplots(rows, columns, figsize=(7.8, rows * (size * (high - low) / (right - left) + 0.25) + 0.5), squeeze=False)
     for axes in grid.flat:
         axes.set_axis_off()
-    largest, rigid = max(body.stress.max() for body in found), obstacles_of(scene)
+    largest, rigid = most_stress(found), obstacles_of(scene)
     for axes, body, (t, _) in zip(grid.flat, found, picked):
         draw_obstacles(axes, rigid, view, t)
         picture = draw_body(axes, body, largest)
         axes.set_title(f"{1e3 * t:.2f} ms", pad=2)
     scale_bar(grid[-1, 0])
-    figure.colorbar(picture, ax=grid, label=STRESS, shrink=0.7, aspect=30)
+    figure.colorbar(picture, ax=grid, label=STRESS, shrink=0.7, aspect=30, extend="max")
     return figure
 
 

@@ -97,13 +97,13 @@ def footer(figure: plt.Figure, warnings: list[str]) -> None:
 
 
 def title(scene: dict[str, Value]) -> str:
-    """Which body, law, nu, speed, the angle where the impact is oblique, and the friction law where there is one; of several bodies each one's."""
+    """Which body, law, nu, speed, the angle where the impact is oblique, linear elements, and the friction law where there is one; of several bodies each one's."""
     from . import bodies
     if bodies.are_several(scene):
         return bodies.title(scene)
     angle = "" if scene.get("angle", 90) == 90 else f" at {scene['angle']:g}°"
     body = BODY.get(scene.get("script"), "")
-    text = f"{body}{LAWS.get(scene['law'], scene['law'])}, ν = {scene['nu']:g}, {scene['speed']:g} m/s{angle}"
+    text = f"{body}{LAWS.get(scene['law'], scene['law'])}, ν = {scene['nu']:g}, {scene['speed']:g} m/s{angle}" + ", linear elements" * (scene.get("degree") == 1)
     if scene.get("friction_static", 0) > 0:
         text += (f"\nfriction {scene['friction_static']:g} static, {scene['friction_dynamic']:g} dynamic, "
                  f"{scene['regularization']}, ε = {scene['slip_velocity']:g} m/s")
@@ -470,14 +470,19 @@ def _shapes(series: list[tuple[float, Path]], half: bool) -> plt.Figure:
                                 squeeze=False)
     for axes in grid.flat:
         axes.set_axis_off()
-    largest = max(body.stress.max() for body in bodies)
+    largest = most_stress(bodies)
     for axes, body, (t, _) in zip(grid.flat, bodies, picked):
         draw_ground(axes, view)
         picture = draw_body(axes, body, largest)
         axes.set_title(f"{1e3 * t:.2f} ms", pad=2)
     scale_bar(grid[-1, 0])
-    figure.colorbar(picture, ax=grid, label=STRESS, shrink=0.7, aspect=30)
+    figure.colorbar(picture, ax=grid, label=STRESS, shrink=0.7, aspect=30, extend="max")
     return figure
+
+
+def most_stress(bodies: list["Body"]) -> float:
+    """The upper end [MPa] of the colours: five in a thousand of all nodes are above it, so that one spot does not darken all the rest."""
+    return float(np.quantile(np.concatenate([body.stress for body in bodies]), 0.995)) or 1.0
 
 
 def scale_bar(axes: plt.Axes) -> None:
