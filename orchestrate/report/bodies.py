@@ -102,8 +102,8 @@ def energies(history: dict[str, np.ndarray], bodies: dict[str, str], per: str = 
         axes.plot(t, elastic, color=colour, linestyle=DOTS, linewidth=1.0, label="elastic")
         together.plot(t, kinetic + elastic, color=colour, linewidth=width(body), label=name)
     if not several:
-        together.plot(t, history["kinetic"], color=BLUE, linestyle="--", linewidth=1.0, label="kinetic")
-        together.plot(t, history["elastic"], color=ORANGE, linestyle=DOTS, linewidth=1.0, label="elastic")
+        together.plot(t, history["kinetic"], color=BLUE, linewidth=2.8, label="kinetic")
+        together.plot(t, history["elastic"], color=ORANGE, linewidth=2.3, label="elastic")
     total, words = history["kinetic"] + history["elastic"] + history["contact"], "total"
     lines = {"contact": (history["contact"], "#56b4e9")}
     for name, column, words_of_it, sign in (("lost to friction", "friction_work", "+ lost", 1), ("external work", "external_work", "− work", -1)):
@@ -111,8 +111,8 @@ def energies(history: dict[str, np.ndarray], bodies: dict[str, str], per: str = 
             lines[name] = history[column], {"friction_work": "#d4a017", "external_work": "#888888"}[column]
             total, words = total + sign * history[column], f"{words} {words_of_it}"
     largest = max(np.abs(values).max() for values in (total, *(values for values, _ in lines.values()), history["kinetic"], history["elastic"]))
-    for name, (values, colour) in lines.items():
-        together.plot(t, values, color=colour, linewidth=1.2, label=name + least(values, largest))
+    for k, (name, (values, colour)) in enumerate(lines.items()):          # thinner and thinner, so that one on another is seen
+        together.plot(t, values, color=colour, linewidth=1.8 - 0.4 * k, label=name + least(values, largest))
     together.plot(t, total, color=BLACK, linestyle="--", linewidth=1.0, label=words)
     for axes in (*own, together):
         axes.axhline(0, color=GREY, linewidth=0.6)

@@ -58,7 +58,8 @@ def draw(folder: Path, warnings: list[str]) -> list[Path]:
             inside = solid.draw(snapshots, table, scene) if snapshots and "Z" in table else None
             drawn |= {"solid": inside} if inside else {}
         if (folder / "contacts.csv").exists():
-            bounces = impacts.draw(impacts.read(folder), bodies.names(scene) if bodies.are_several(scene) else ["body"])
+            bounces = impacts.draw(impacts.read(folder), bodies.names(scene) if bodies.are_several(scene) else ["body"],
+                                   [as_written(one["name"]) for one in scene.get("obstacle", [])] or ["plane"])
             drawn |= {"bounces": bounces} if bounces else {}
         if (folder / "modes.csv").exists():
             rings = vibration.draw(vibration.read(folder), history, per_metre(scene))
@@ -121,12 +122,12 @@ def per_metre(scene: dict[str, Value]) -> str:
 
 
 def over_time(panels: list[plt.Axes], history: dict[str, np.ndarray]) -> None:
-    """Limits of the time [ms], which begins at 0 where the run does not begin with a flight; a dotted line at the last touch, where the run goes on
+    """Limits of the time [ms], which begins at 0 where the run does not begin with a long flight; a dotted line at the last touch, where the run goes on
     after it for longer than between any two touches, with a name in the legend of the first panel."""
     t, touches = 1e3 * history["t"], history["normal_force"] > 0
     last = t[touches][-1] if touches.any() else t[-1]
     for axes in panels:
-        axes.set_xlim(0 if t[0] < 0.02 * t[-1] else t[0], t[-1])
+        axes.set_xlim(0 if t[0] < 0.05 * t[-1] else t[0], t[-1])
         if t[-1] - last > np.diff(t[touches]).max(initial=0.0):
             axes.axvline(last, color=BLACK, linestyle=":", linewidth=0.8, label=f"last touch, {last:.4g} ms" if axes is panels[0] else None)
 
