@@ -12,8 +12,8 @@ from .. import dimension, obstacles, vtu
 from ..obstacles import Obstacle
 from ..parameters import Value
 from ..results import suffixes
-from .figures import (BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, SHAPES, STRESS, Body, as_written, deformed, draw_body, is_half, least, most_stress, over_time,
-                      per_metre, scale_bar)
+from .figures import (BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, SHAPES, STRESS, Body, as_written, deformed, draw_body, is_half, least,
+                      most_stress, over_time, per_metre, scale_bar)
 
 ALONE = ("disc-plane", "ball-axisymmetric", "ball-plane")     # scripts of one body on the plane
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, "#56b4e9", "#e69f00")    # of bodies

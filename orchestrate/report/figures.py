@@ -104,7 +104,9 @@ def title(scene: dict[str, Value]) -> str:
         return bodies.title(scene)
     angle = "" if scene.get("angle", 90) == 90 else f" at {scene['angle']:g}°"
     body = BODY.get(scene.get("script"), "")
-    text = f"{body}{LAWS.get(scene['law'], scene['law'])}, ν = {scene['nu']:g}, {scene['speed']:g} m/s{angle}" + ", linear elements" * (scene.get("degree") == 1)
+    text = f"{body}{LAWS.get(scene['law'], scene['law'])}, ν = {scene['nu']:g}, {scene['speed']:g} m/s{angle}"
+    if scene.get("degree") == 1:
+        text += ", linear elements"
     if scene.get("friction_static", 0) > 0:
         text += (f"\nfriction {scene['friction_static']:g} static, {scene['friction_dynamic']:g} dynamic, "
                  f"{scene['regularization']}, ε = {scene['slip_velocity']:g} m/s")
