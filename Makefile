@@ -5,7 +5,7 @@ READY := .venv/.ready
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws oblique friction-jump contact-time-svk law-comparison contact-time-neohookean calibrate conservation stick-slip verify paper movie test robustness bench bench-quick textbook skipping costs promise scaling materials disc-block-errors pairing-comparison refine refine-oblique clean
+.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws oblique friction-jump contact-time-svk law-comparison contact-time-neohookean calibrate conservation stick-slip verify paper movie pictures test robustness bench bench-quick textbook skipping costs promise scaling materials disc-block-errors pairing-comparison refine refine-oblique clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
@@ -67,6 +67,10 @@ paper: disc-normal disc-oblique disc-rolling disc-block ball-axisymmetric fricti
 movie: CASE := disc-oblique
 movie: $(READY) ## a film of a scene, built in or a file: make movie CASE=disc-oblique
 	@$(PYTHON) -m orchestrate $@ $(CASE) $(ARGS)
+
+pictures: disc-normal disc-oblique ## the README's pictures, again from the present runs
+	@$(PYTHON) -c "from PIL import Image; [Image.open(f'results/{a}.png').convert('RGB').quantize(256).save(b, optimize=True) for a, b in \
+	(('disc-normal/figures/shapes', 'picture.png'), ('disc-oblique/figures/flight', 'picture-oblique.png'))]"
 
 test: $(READY) ## run all tests: the program's, and beside them on the other core the exact cases
 	@log=$$(mktemp); trap 'kill $$beside 2> /dev/null; rm -f $$log' EXIT; $(PYTHON) -m pytest -q verification $(ARGS) > $$log 2>&1 & beside=$$!; \

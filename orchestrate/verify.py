@@ -165,6 +165,7 @@ def overview(frame: pd.DataFrame) -> pd.DataFrame:
 
 # ---- figures
 
+APART = 1.6      # of sizes that have a number each: beyond that factor
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, BLACK, "#56b4e9", "#e69f00")                        # a group of numbers each
 LOOKS = (dict(marker="o", markersize=4), dict(marker="s", markersize=7, fillstyle="none", linestyle="--"),
          dict(marker="^", markersize=7, fillstyle="none", linestyle=":"))                    # and in the group
@@ -177,22 +178,22 @@ def draw(case: Case, rows: list[Row], out: Path) -> None:
         draw_errors(grid[0, 0], case, rows)
         if case.beside:
             case.beside(grid[0, 1], out / "runs" / slug(case))
-            grid[0, 0].legend(loc="best", fontsize=7)
+            grid[0, 0].legend(loc="best")
         else:
             figure.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside right center")
-        figure.suptitle(f"{case.name}: {case.title}", fontsize=9)
+        figure.suptitle(f"{case.name}: {case.title}")
         figure.savefig(out / f"{slug(case)}.png")
         plt.close(figure)
 
 
 def draw_errors(axes: plt.Axes, case: Case, rows: list[Row]) -> None:
-    """The errors over the size, log-log, with the expected orders and the tolerance."""
+    """The errors over the size, log-log, with the expected orders and the tolerance. Lines get thinner, so that one on another is seen."""
     groups: dict[str, int] = {}
-    for name in dict.fromkeys(row.what for row in rows):
+    for k, name in enumerate(dict.fromkeys(row.what for row in rows)):
         group, line = name.partition(":")[0], series(rows, name)
         groups[group] = groups.get(group, -1) + 1
         axes.loglog([row.size for row in line], [max(row.error, SHOWN) for row in line], label=name,
-                    color=COLOURS[list(groups).index(group) % len(COLOURS)], **LOOKS[groups[group] % len(LOOKS)])
+                    color=COLOURS[list(groups).index(group) % len(COLOURS)], linewidth=max(0.8, 2.6 - 0.3 * k), **LOOKS[groups[group] % len(LOOKS)])
     for order in dict.fromkeys(row.order for row in rows if row.order):
         line = max((series(rows, row.what) for row in rows if row.order == order), key=lambda line: line[-1].error)
         sizes = np.array([row.size for row in line])
@@ -203,7 +204,10 @@ def draw_errors(axes: plt.Axes, case: Case, rows: list[Row]) -> None:
     if not case.by_order:
         axes.axhline(case.tolerance, color=BLACK, linestyle="--", linewidth=0.8, label="asked of the finest")
     sizes = sorted({row.size for row in rows})
-    axes.set_xticks(sizes, [f"{size:.4g}" for size in sizes])
+    named = sizes[:1]
+    for size in sizes[1:]:
+        named += [size] if size > APART * named[-1] else []
+    axes.set_xticks(named, [f"{size:.3g}" for size in named])
     axes.xaxis.set_minor_locator(NullLocator())
     axes.margins(y=0.1)
     hidden = any(row.error < SHOWN for row in rows)

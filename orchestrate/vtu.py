@@ -11,13 +11,17 @@ from .failure import Unreadable
 TRIANGLE, QUADRATIC_TRIANGLE, QUADRATIC_TETRAHEDRON = 5, 22, 24   # VTK's cell types
 NODES = {TRIANGLE: 3, QUADRATIC_TRIANGLE: 6, QUADRATIC_TETRAHEDRON: 10}
 SPLIT = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]   # a quadratic triangle (corners 0-2, middles 3-5) as four
+EIGHT = [[0, 4, 6, 7], [4, 1, 5, 8], [6, 5, 2, 9], [7, 8, 9, 3],      # a quadratic tetrahedron as its corners and the four about the diagonal 4-9
+         [4, 9, 5, 6], [4, 9, 6, 7], [4, 9, 7, 8], [4, 9, 8, 5]]
+CUTS = {1: [[[0, 1], [0, 2], [0, 3]]], 2: [[[0, 2], [0, 3], [1, 3]], [[0, 2], [1, 3], [1, 2]]],     # edges of a tetrahedron between its first so many
+        3: [[[0, 3], [1, 3], [2, 3]]]}                                                               # corners and the others, three a triangle
 FACES = [[0, 1, 2, 4, 5, 6], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [0, 2, 3, 6, 9, 7]]   # of a quadratic tetrahedron, as quadratic triangles
 
 
 @dataclass(frozen=True)
 class Snapshot:
     """points (n, 2) reference coordinates in m; triangles (t, 3) straight; fields by name, SI units: (n,), (n, 3) for vectors,
-    (n, 6) for the Cauchy stress (xx yy zz xy yz xz). Of a body in three dimensions all that lies in its plane of symmetry z = 0."""
+    (n, 6) for the Cauchy stress (xx yy zz xy yz xz). Of a body in three dimensions its cut with the plane z = 0 of the reference configuration."""
 
     points: np.ndarray
     triangles: np.ndarray
@@ -34,13 +38,15 @@ class Solid:
 
 
 def read(path: Path) -> Snapshot:
-    """One snapshot; quadratic triangles, and the faces of quadratic tetrahedra in the plane z = 0, are split into four straight ones.
-    Unreadable where it is not such a file."""
+    """One snapshot; quadratic triangles, and the faces of quadratic tetrahedra in the plane z = 0, are split into four straight ones. Where a body in
+    three dimensions has no such faces, it is cut there. Unreadable where it is not such a file."""
     points, kind, cells, fields = _parts(path)
     on_plane = np.ones(len(points), dtype=bool)
     if kind == QUADRATIC_TETRAHEDRON:
-        on_plane = np.abs(points[:, 2]) < 1e-9 * np.ptp(points, axis=0).max()
-        cells = _in_plane(cells, on_plane, points)
+        on_plane, solid = np.abs(points[:, 2]) < 1e-9 * np.ptp(points, axis=0).max(), cells
+        cells = _in_plane(solid, on_plane, points)
+        if not len(cells):
+            return _cut(Solid(points, solid, fields), on_plane)
     triangles = cells if kind == TRIANGLE else cells[:, SPLIT].reshape(-1, 3)
     row = np.cumsum(on_plane) - 1
     return Snapshot(points[on_plane, :2], row[triangles], {name: field[on_plane] for name, field in fields.items()})
@@ -79,6 +85,24 @@ def _in_plane(tetrahedra: np.ndarray, on_plane: np.ndarray, points: np.ndarray) 
     (ax, ay), (bx, by), (cx, cy) = (points[faces[:, k], :2].T for k in range(3))
     clockwise = (bx - ax) * (cy - ay) < (by - ay) * (cx - ax)
     return np.where(clockwise[:, None], faces[:, [0, 2, 1, 5, 4, 3]], faces)
+
+
+def _cut(solid: Solid, on_plane: np.ndarray) -> Snapshot:
+    """The body's cut with the plane z = 0, on which nodes are where marked: every edge that crosses it has a point there, the fields linear along it."""
+    z = np.where(on_plane, 0.0, solid.points[:, 2])
+    parts = solid.tetrahedra[:, EIGHT].reshape(-1, 4)
+    parts = np.take_along_axis(parts, np.argsort(z[parts] <= 0, axis=1, kind="stable"), axis=1)        # first the corners above
+    above = (z[parts] > 0).sum(axis=1)
+    edges = np.concatenate([parts[above == count][:, three].reshape(-1, 2) for count, cuts in CUTS.items() for three in cuts])
+    edges[on_plane[edges[:, 1]], 0] = edges[on_plane[edges[:, 1]], 1]       # through a node itself
+    different, which = np.unique(edges, axis=0, return_inverse=True)
+    (first, second), triangles = different.T, which.reshape(-1, 3)
+    share = np.divide(z[first], z[first] - z[second], out=np.zeros(len(first)), where=first != second)
+    at = lambda field: (field[first].T * (1 - share) + field[second].T * share).T   # noqa: E731
+    (ax, ay), (bx, by), (cx, cy) = (at(solid.points)[triangles[:, k], :2].T for k in range(3))
+    area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+    triangles = np.where((area < 0)[:, None], triangles[:, ::-1], triangles)[area != 0]
+    return Snapshot(at(solid.points)[:, :2], triangles, {name: at(field) for name, field in solid.fields.items()})
 
 
 def series(pvd: Path) -> list[tuple[float, Path]]:

@@ -85,7 +85,7 @@ def test_balance_of_bodies_at_rest():
     """Under gravity from rest kinetic and elastic energy are the work of the weight: their sum less that work is 0, no scale for the balance."""
     t = np.linspace(0, 1e-2, 5)
     rest = np.zeros_like(t)
-    history = dict(t=t, kinetic=1e3 * t, elastic=2e3 * t, contact=rest, friction_work=rest, external_work=3e3 * t, balance=np.full_like(t, 3e-12))
+    history = dict(t=t, kinetic=1e3 * t, elastic=2e3 * t, contact=rest, friction_work=rest, external_work=3e3 * t, balance=np.full_like(t, 3e-12), normal_force=rest)
     figure = bodies.energies(history, {"body": "_1"})
     line = figure.axes[-1].lines[0].get_ydata()
     figures.plt.close(figure)

@@ -10,7 +10,7 @@ import fake_freefem
 from orchestrate import run, scene
 from orchestrate.__main__ import main
 from orchestrate.failure import Failure
-from orchestrate.report import paper, paper_bodies, paper_friction, paper_judging, paper_page, report
+from orchestrate.report import figures, paper, paper_bodies, paper_friction, paper_judging, paper_page, report
 from orchestrate.report.paper_judging import AGREES, DIFFERS, OPEN, PARTLY, STATEMENTS, Finding, maxima
 from orchestrate.parameters import ROOT
 from orchestrate.sweeps import sweep
@@ -272,7 +272,7 @@ def test_page_holds_everything_itself(tmp_path):
     assert "a &lt; b" in text and "2 &amp; 3" in text and text.count("data:image/png;base64,") == 1
     assert not re.search(r'(src|href)="(?!data:|#)', text) and "1 agrees, 0 does not agree" in text
     assert all(word in text for word in ("speed = 7", "code sha256   def", "mesh sha256   0123", "to come"))
-    assert "nu = 0.45" not in text, "a parameter at its default"
+    assert "nu = 0.45" in text and "density" not in text, "nu, which the paper does not state, always; else no parameter at its default"
 
 
 def test_page_leads_to_every_statement_and_back(tmp_path):
@@ -282,10 +282,24 @@ def test_page_leads_to_every_statement_and_back(tmp_path):
     picture.write_bytes(b"picture")
     text = paper_page.page([("Figure 1", "first", Finding(AGREES, "1", [picture])), ("Figure 2", "second", Finding(DIFFERS, "2", [picture]))])
     for k in (0, 1):
-        assert text.count(f'id="s{k}"') == 1 and f'<a href="#s{k}" title="{("first", "second")[k]}">Figure {k + 1}</a>' in text
+        assert text.count(f'id="s{k}"') == text.count(f'id="row{k}"') == text.count(f'href="#row{k}"') == 1
+        assert f'<li><a href="#s{k}">Figure {k + 1}</a>: {("first", "second")[k]}</li>' in text
     assert text.count('href="#top"') == 3 and text.count('id="top"') == 1 and text.count("data:image/png") == 1
-    assert f"<figcaption>{sweep.load('oblique').title} (make oblique)</figcaption>" in text and '<a href="#s0">shown above</a>' in text
+    assert f'<figcaption><b>Figure 1.</b> {sweep.load("oblique").title} (make oblique) (<a href="#s0">Figure 1</a>)</figcaption>' in text
+    assert text.count('id="figure1"') == 1 and text.count('<a href="#figure1">Figure 1</a> above') == 1
+    anchors, links = re.findall(' id="([^"]+)"', text), re.findall(' href="#([^"]+)"', text)
+    assert set(links) <= set(anchors) and len(anchors) == len(set(anchors))
     assert f"by ffimpact {paper_page._version()}" in text and run.code_hash() in text
+
+
+def test_text_of_all_pictures_has_one_size(tmp_path):
+    """Each is as wide on the page as it was drawn, 5 inches twice as wide as 2.5."""
+    for inches in (2.5, 5.0):
+        figure = figures.plt.figure(figsize=(inches, 1), dpi=figures.STYLE["savefig.dpi"])
+        figure.savefig(tmp_path / f"{inches}.png")
+        figures.plt.close(figure)
+    widths = [int(re.search(' width="([0-9]+)"', paper_page._picture(tmp_path / f"{inches}.png"))[1]) for inches in (2.5, 5.0)]
+    assert widths[1] == pytest.approx(2 * widths[0], abs=1) and widths[1] == pytest.approx(5 * paper_page.PIXELS, abs=2)
 
 
 def test_pictures_say_what_they_show():

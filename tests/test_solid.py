@@ -149,3 +149,29 @@ def test_picture_and_film(ball, symmetry):
     red = [((image[..., 0] > 150) & (image[..., 1] < 90)).sum() for image in (start[1], stage.pictures[1].get_array())]
     assert red[0] == 0 < red[1]
     figures.plt.close(stage.figure)
+
+
+def test_whole_ball_is_cut_for_figures_and_films(ball, no_pyvista, tmp_path):
+    """Without a plane of symmetry in the mesh, and without PyVista: the cut is a disc of the ball's radius, one closed outline; its shapes are drawn."""
+    result = ball("full")
+    t, path = vtu.series(result.folder / "fields.pvd")[0]
+    snapshot = vtu.read(path)
+    a, b, c = (snapshot.points[snapshot.triangles[:, k]] for k in range(3))
+    assert 0.5 * np.sum((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]) == pytest.approx(np.pi * RADIUS**2, rel=0.02)
+    outline = figures._pose(t, path, result.history).outline
+    assert len(outline) > 12 and np.hypot(*(outline - (0, RADIUS)).T) == pytest.approx(RADIUS, rel=0.03)
+    assert "shapes" in {drawn.stem for drawn in figures.draw(result.folder, [])}
+    stage = movie.of(result)
+    assert isinstance(stage, movie.PlaneStage)
+    stage.show(stage.times[1])
+    figures.plt.close("all")
+
+
+def test_obstacles_are_in_the_views(ball):
+    """Of a scene of one body the plane y = 0, of a scene of bodies its own obstacles."""
+    result = ball("quarter")
+    views = solid.Views(vtu.series(result.folder / "fields.pvd"), contact.read(result.folder), result.scene)
+    assert [one.kind for one in views.rigid] == ["plane"] and views.rigid[0].gap(np.array([[0.1, 0.02, 0.3]])) == pytest.approx([0.02])
+    among = dict(script="bodies-3d", dimension="3d", symmetry="quarter", obstacle=[dict(kind="sphere", centre=[0, -0.1, 0], radius=0.05)])
+    views = solid.Views(vtu.series(result.folder / "fields.pvd"), contact.read(result.folder), among)
+    assert [one.kind for one in views.rigid] == ["sphere"] and views.at(views.times[1]).t == pytest.approx(views.times[1])

@@ -6,12 +6,14 @@ from textwrap import wrap
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.ticker import NullFormatter
 
 from .. import dimension, obstacles, vtu
 from ..obstacles import Obstacle
 from ..parameters import Value
 from ..results import suffixes
-from .figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, SHAPES, STRESS, Body, as_written, deformed, draw_body, is_half, per_metre
+from .figures import (BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, SHAPES, STRESS, Body, as_written, deformed, draw_body, is_half, least,
+                      most_stress, over_time, per_metre, scale_bar)
 
 ALONE = ("disc-plane", "ball-axisymmetric", "ball-plane")     # scripts of one body on the plane
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, "#56b4e9", "#e69f00")    # of bodies
@@ -20,7 +22,7 @@ WIDEST, MOST_LINES = 120, 4       # of each part of a title: letters in a line, 
 NAMED = 6        # of many bodies the first and the last that titles and legends name
 GRID = 300       # points along the longer side of a picture, at which obstacles are looked for
 DOTS = (0, (1, 1.5))
-ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 1), "handlelength": 1.4, "columnspacing": 1.0, "fontsize": 7}
+ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 1), "handlelength": 1.4, "columnspacing": 1.0}
 
 
 def are_several(scene: dict[str, Value]) -> bool:
@@ -63,7 +65,7 @@ def draw(history: dict[str, np.ndarray], scene: dict[str, Value], snapshots: lis
     """The figures by name; `history` from the first touch on."""
     bodies, per = dict(zip(names(scene), suffixes(history))), per_metre(scene)
     drawn = {"energies": energies(history, bodies, per), "velocity": velocities(history, bodies), "force": forces(history, bodies, per)}
-    if snapshots and len(vtu.read(snapshots[0][1]).triangles):       # none where whole bodies in three dimensions have no plane of symmetry
+    if snapshots and len(vtu.read(snapshots[0][1]).triangles):       # none where no body crosses the plane z = 0
         drawn["shapes"] = shapes(snapshots, scene)
     return drawn
 
@@ -100,25 +102,28 @@ def energies(history: dict[str, np.ndarray], bodies: dict[str, str], per: str = 
         axes.plot(t, elastic, color=colour, linestyle=DOTS, linewidth=1.0, label="elastic")
         together.plot(t, kinetic + elastic, color=colour, linewidth=width(body), label=name)
     if not several:
-        together.plot(t, history["kinetic"], color=BLUE, linestyle="--", linewidth=1.0, label="kinetic")
-        together.plot(t, history["elastic"], color=ORANGE, linestyle=DOTS, linewidth=1.0, label="elastic")
+        together.plot(t, history["kinetic"], color=BLUE, linewidth=2.8, label="kinetic")
+        together.plot(t, history["elastic"], color=ORANGE, linewidth=2.3, label="elastic")
     total, words = history["kinetic"] + history["elastic"] + history["contact"], "total"
-    lines = {"contact": (history["contact"], GREY)}
+    lines = {"contact": (history["contact"], "#56b4e9")}
     for name, column, words_of_it, sign in (("lost to friction", "friction_work", "+ lost", 1), ("external work", "external_work", "− work", -1)):
         if history[column].any():
             lines[name] = history[column], {"friction_work": "#d4a017", "external_work": "#888888"}[column]
             total, words = total + sign * history[column], f"{words} {words_of_it}"
-    for name, (values, colour) in lines.items():
-        together.plot(t, values, color=colour, linewidth=1.0, label=name)
-    together.plot(t, total, color=BLACK, linewidth=1.0, label=words)
+    largest = max(np.abs(values).max() for values in (total, *(values for values, _ in lines.values()), history["kinetic"], history["elastic"]))
+    for k, (name, (values, colour)) in enumerate(lines.items()):          # thinner and thinner, so that one on another is seen
+        together.plot(t, values, color=colour, linewidth=1.8 - 0.4 * k, label=name + least(values, largest))
+    together.plot(t, total, color=BLACK, linestyle="--", linewidth=1.0, label=words)
     for axes in (*own, together):
         axes.axhline(0, color=GREY, linewidth=0.6)
         axes.set_ylabel(unit)
+    over_time([together, *own, balance], history)
+    for axes in (*own, together):
         legend(axes, ncols=2 if axes is together and len(bodies) < 4 else 3)
-    largest = max(np.abs(values).max() for values in (total, *(values for values, _ in lines.values()), history["kinetic"], history["elastic"]))
     error = np.abs(history["balance"]) / (largest or 1.0)       # not of the total alone: bodies at rest under gravity have none
     balance.semilogy(t, np.where(error > 0, error, np.nan), color=BLACK, linewidth=0.9)
     balance.set_ylabel("|balance| / largest energy")
+    balance.yaxis.set_minor_formatter(NullFormatter())
     return figure
 
 
@@ -130,10 +135,11 @@ def velocities(history: dict[str, np.ndarray], bodies: dict[str, str]) -> plt.Fi
     for axes, name in zip(grid, moving):
         axes.axhline(0, color=GREY, linewidth=0.6)
         for body, ((called, of), colour) in enumerate(zip(bodies.items(), COLOURS * len(bodies))):
-            axes.plot(1e3 * history["t"], history[name + of], color=colour, linewidth=width(body) if len(bodies) > 1 else None, label=called)
+            axes.plot(1e3 * history["t"], history[name + of], color=colour, linewidth=width(body) if len(bodies) > 1 else None,
+                      label=called if len(bodies) > 1 else None)
         axes.set_ylabel(components[name])
-    if len(bodies) > 1:
-        legend(grid[0])
+    over_time(grid, history)
+    legend(grid[0])
     return figure
 
 
@@ -152,8 +158,10 @@ def forces(history: dict[str, np.ndarray], bodies: dict[str, str], per: str = "/
     for axes, (words, columns) in zip(grid, lines.items()):
         axes.axhline(0, color=GREY, linewidth=0.6)
         for (name, column), colour in zip(columns.items(), COLOURS * len(columns) if len(columns) > 1 else (BLACK,)):
-            axes.plot(t, 1e-3 * history[column], color=colour, label=name)
+            axes.plot(t, 1e-3 * history[column], color=colour, label=name or None)
         axes.set_ylabel(words)
+    over_time(grid, history)
+    legend(grid[0], ncols=1)
     if len(columns) > 1:               # no forces on bodies where nothing touched
         legend(grid[-1])
     return figure
@@ -171,12 +179,13 @@ def shapes(series: list[tuple[float, Path]], scene: dict[str, Value]) -> plt.Fig
     figure, grid = plt.subplots(rows, columns, figsize=(7.8, rows * (size * (high - low) / (right - left) + 0.25) + 0.5), squeeze=False)
     for axes in grid.flat:
         axes.set_axis_off()
-    largest, rigid = max(body.stress.max() for body in found), obstacles_of(scene)
+    largest, rigid = most_stress(found), obstacles_of(scene)
     for axes, body, (t, _) in zip(grid.flat, found, picked):
         draw_obstacles(axes, rigid, view, t)
         picture = draw_body(axes, body, largest)
         axes.set_title(f"{1e3 * t:.2f} ms", pad=2)
-    figure.colorbar(picture, ax=grid, label=STRESS, shrink=0.7, aspect=30)
+    scale_bar(grid[-1, 0])
+    figure.colorbar(picture, ax=grid, label=STRESS, shrink=0.7, aspect=30, extend="max")
     return figure
 
 

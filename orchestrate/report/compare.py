@@ -16,7 +16,7 @@ from ..results import RunResult, suffixes
 from ..run import run
 from . import report
 from .bodies import names
-from .figures import BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE, per_metre
+from .figures import ABOVE, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE, numbers_of_the_paper, per_metre
 
 
 def main(argv: list[str]) -> int:
@@ -58,14 +58,15 @@ def draw(results: dict[str, RunResult], path: Path) -> None:
     with plt.rc_context(STYLE):
         figure, grid = plt.subplots(2, 2, figsize=(8.2, 5.6), sharex=True)
         (force, drag), (energy, velocity) = grid
-        for (name, result), colour in zip(results.items(), (BLUE, ORANGE, GREEN, PURPLE) * len(results)):
+        for k, ((name, result), colour) in enumerate(zip(results.items(), (BLUE, ORANGE, GREEN, PURPLE) * len(results))):
             h, used = result.history, result.scene
             t, per = 1e3 * h["t"], per_metre(used)
             heavy, start = (_mass(h), result.summary["energy_initial"]) if mixed else (1.0, 1.0)
             force.plot(t, 1e-3 * h["normal_force"] / heavy, color=colour,
                        label=f"{name}: {_material(used)}{result.summary['dofs']} dofs")
+            _contact(force, h, used, colour)
             drag.plot(t, 1e-3 * h["friction_force"] / heavy if rubs else h["max_penetration"] * 1e3, color=colour)
-            energy.plot(t, (h["kinetic"] + h["elastic"] + h["contact"]) / start, color=colour)
+            energy.plot(t, (h["kinetic"] + h["elastic"] + h["contact"]) / start, color=colour, linewidth=max(1.0, 3.4 - 0.8 * k))   # one on another is seen
             energy.plot(t, h["elastic"] / start, color=colour, linestyle="--")
             for of, body in zip(suffixes(h), names(used)):
                 if of and colour == BLUE:                            # once
@@ -79,6 +80,8 @@ def draw(results: dict[str, RunResult], path: Path) -> None:
         force.set(ylabel="normal acceleration [10³ m/s²]" if mixed else f"normal force [kN{per}]", ylim=(0, None))
         drag.set_ylabel(("acceleration by friction [10³ m/s²]" if mixed else f"friction force [kN{per}]") if rubs else "largest penetration [mm]")
         energy.set(ylabel="energy over that at the start" if mixed else f"energy [J{per}]", ylim=(0, None), xlabel="time [ms]")
+        stated = any(each.scene.get("law") == "svk" and numbers_of_the_paper(each.scene, "contact_time") for each in results.values())
+        _key(force, {"last touch": ":", "last touch by the paper": "-."} if stated else {"last touch": ":"})
         _key(energy, {"total": "-", "elastic": "--"})
         velocity.set(ylabel="velocity [m/s]", xlabel="time [ms]")
         _key(velocity, {"$v_x$": "-", "$v_y$": "--", r"$-\omega R$": ":"} if rubs else {"$v_y$": "--"})
@@ -86,6 +89,16 @@ def draw(results: dict[str, RunResult], path: Path) -> None:
         figure.legend(*force.get_legend_handles_labels(), loc="outside upper center", ncols=1)
         figure.savefig(path)
         plt.close(figure)
+
+
+def _contact(axes: plt.Axes, history: dict[str, np.ndarray], used: dict, colour: str) -> None:
+    """The last touch of a run, and when that would be by the contact time that the paper states of that impact with that law."""
+    touching = np.flatnonzero(history["normal_force"] > 0)
+    if len(touching):
+        begin = (history["t"] - history["dt"])[touching[0]]
+        axes.axvline(1e3 * history["t"][touching[-1]], color=colour, linestyle=":", linewidth=0.9)
+        for _, seconds, _ in numbers_of_the_paper(used, "contact_time") if used.get("law") == "svk" else []:   # the law of all of the paper's
+            axes.axvline(1e3 * (begin + seconds), color=colour, linestyle="-.", linewidth=0.9)
 
 
 def _mass(history: dict[str, np.ndarray]) -> float:
@@ -102,4 +115,4 @@ def _material(used: dict) -> str:
 def _key(axes: plt.Axes, lines: dict[str, str]) -> None:
     """What the kinds of line mean, above the panel."""
     handles = [plt.Line2D([], [], color="black", linestyle=line, label=label) for label, line in lines.items()]
-    axes.legend(handles=handles, loc="lower center", bbox_to_anchor=(0.5, 1), ncols=len(lines), handlelength=1.8)
+    axes.legend(handles=handles, **ABOVE | {"handlelength": 2.4}, ncols=len(lines))

@@ -12,6 +12,8 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import TriMesh
+from matplotlib.ticker import NullFormatter
+from matplotlib.transforms import ScaledTranslation
 from matplotlib.tri import LinearTriInterpolator, Triangulation
 
 from .. import dimension, vtu
@@ -20,12 +22,15 @@ from ..results import read_history, read_scene
 
 LAWS = {"svk": "St. Venant–Kirchhoff", "neohookean": "neo-Hookean", "incompressible": "incompressible neo-Hookean"}
 BLUE, ORANGE, GREEN, PURPLE, BLACK, GREY = "#0072b2", "#d55e00", "#009e73", "#aa4499", "#222222", "#999999"
-STYLE = {"font.size": 9, "axes.titlesize": 9, "axes.spines.top": False, "axes.spines.right": False,
+SMALL = 7.5   # text of legends, of numbers in cells and below figures; all other text has the style's size
+STYLE = {"font.size": 9, "axes.titlesize": 9, "legend.fontsize": SMALL, "figure.titlesize": 9, "axes.spines.top": False, "axes.spines.right": False,
          "axes.linewidth": 0.8, "lines.linewidth": 1.4, "legend.frameon": False, "figure.dpi": 100, "savefig.dpi": 150,
          "figure.constrained_layout.use": True, "figure.constrained_layout.w_pad": 0.08}
 BODY = {"ball-plane": "ball: ", "ball-axisymmetric": "ball as a body of revolution: "}
 STRESS = "von Mises stress [MPa]"
 SHAPES = 9   # small multiples at most
+ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 1), "handlelength": 1.6, "columnspacing": 1.4}   # a legend above its panel
+BAND = "#c8c8c8"   # of what other curves run along
 DASHED = (0, (4, 2))
 filterwarnings("ignore", "Glyph .* missing from", UserWarning)    # a letter that the font lacks is an empty box in the title
 
@@ -53,13 +58,14 @@ def draw(folder: Path, warnings: list[str]) -> list[Path]:
             inside = solid.draw(snapshots, table, scene) if snapshots and "Z" in table else None
             drawn |= {"solid": inside} if inside else {}
         if (folder / "contacts.csv").exists():
-            bounces = impacts.draw(impacts.read(folder), bodies.names(scene) if bodies.are_several(scene) else ["body"])
+            bounces = impacts.draw(impacts.read(folder), bodies.names(scene) if bodies.are_several(scene) else ["body"],
+                                   [as_written(one["name"]) for one in scene.get("obstacle", [])] or ["plane"])
             drawn |= {"bounces": bounces} if bounces else {}
         if (folder / "modes.csv").exists():
             rings = vibration.draw(vibration.read(folder), history, per_metre(scene))
             drawn |= {"vibration": rings} if rings else {}
         for name, figure in reversed(drawn.items()):
-            figure.suptitle(title(scene), fontsize=9)
+            figure.suptitle(title(scene))
             footer(figure, warnings)
             figure.savefig(target / f"{name}.png")
             plt.close(figure)
@@ -69,15 +75,15 @@ def draw(folder: Path, warnings: list[str]) -> list[Path]:
 def _on_a_plane(history: dict[str, np.ndarray], contact: dict[str, np.ndarray], scene: dict[str, Value],
                 snapshots: list[tuple[float, Path]]) -> dict[str, plt.Figure]:
     """The figures by name of one body on the plane y = 0; `contact` is the history from the first touch on."""
-    drawn = {"energies": _energies(contact, scene), "velocity": _velocity(contact)}
+    drawn = {"energies": _energies(contact, scene), "velocity": _velocity(contact, scene)}
     if history["friction_force"].any():
-        drawn |= {"force": _friction(history, scene), "rolling": _rolling(history, scene)}
+        drawn |= {"force": _friction(contact, scene), "rolling": _rolling(contact, scene)}
     else:
         drawn["force"] = _force(contact, scene)
     if snapshots:
         half = is_half(scene)
         drawn["shapes"] = _shapes(snapshots, half)
-        if len(snapshots) > 2 and not half:
+        if len(snapshots) > 2 and not half and _goes_along(history, scene):
             drawn["flight"] = _flight(history, scene, snapshots)
     return drawn
 
@@ -85,20 +91,22 @@ def _on_a_plane(history: dict[str, np.ndarray], contact: dict[str, np.ndarray], 
 def footer(figure: plt.Figure, warnings: list[str]) -> None:
     """The warnings of the run, small, below the figure, which grows by their height; without what to do about them."""
     width, height = figure.get_size_inches()
-    lines = [line for sentence in warnings for line in wrap("! " + sentence.rpartition(": ")[0], int(22 * width), subsequent_indent="  ")]
+    lines = [line for sentence in warnings for line in wrap("! " + sentence.rpartition(": ")[0], int(17.5 * width), subsequent_indent="  ")]
     if lines:
-        figure.set_size_inches(width, height + 0.11 * len(lines) + 0.05)
-        figure.supxlabel("\n".join(lines), fontsize=6, color=ORANGE, x=0.01, ha="left")
+        figure.set_size_inches(width, height + 0.14 * len(lines) + 0.05)
+        figure.supxlabel("\n".join(lines), fontsize=SMALL, color=ORANGE, x=0.01, ha="left")
 
 
 def title(scene: dict[str, Value]) -> str:
-    """Which body, law, nu, speed, the angle where the impact is oblique, and the friction law where there is one; of several bodies each one's."""
+    """Which body, law, nu, speed, the angle where the impact is oblique, linear elements, and the friction law where there is one; of several bodies each one's."""
     from . import bodies
     if bodies.are_several(scene):
         return bodies.title(scene)
     angle = "" if scene.get("angle", 90) == 90 else f" at {scene['angle']:g}°"
     body = BODY.get(scene.get("script"), "")
     text = f"{body}{LAWS.get(scene['law'], scene['law'])}, ν = {scene['nu']:g}, {scene['speed']:g} m/s{angle}"
+    if scene.get("degree") == 1:
+        text += ", linear elements"
     if scene.get("friction_static", 0) > 0:
         text += (f"\nfriction {scene['friction_static']:g} static, {scene['friction_dynamic']:g} dynamic, "
                  f"{scene['regularization']}, ε = {scene['slip_velocity']:g} m/s")
@@ -115,15 +123,50 @@ def per_metre(scene: dict[str, Value]) -> str:
     return "/m" if dimension.per_metre(scene.get("script", "")) else ""
 
 
+def over_time(panels: list[plt.Axes], history: dict[str, np.ndarray]) -> None:
+    """Limits of the time [ms], which begins at 0 where the run does not begin with a long flight; a dotted line at the last touch, where the run goes on
+    after it for longer than between any two touches, with a name in the legend of the first panel."""
+    t, touches = 1e3 * history["t"], history["normal_force"] > 0
+    last = t[touches][-1] if touches.any() else t[-1]
+    for axes in panels:
+        axes.set_xlim(0 if t[0] < 0.05 * t[-1] else t[0], t[-1])
+        if t[-1] - last > np.diff(t[touches]).max(initial=0.0):
+            axes.axvline(last, color=BLACK, linestyle=":", linewidth=0.8, label=f"last touch, {last:.4g} ms" if axes is panels[0] else None)
+
+
+def published(axes: plt.Axes, history: dict[str, np.ndarray], scene: dict[str, Value]) -> None:
+    """The paper's contact time of the same impact, from the first touch on, where it states one, as a line with a name."""
+    touches = history["normal_force"] > 0
+    for _, seconds, words in numbers_of_the_paper(scene, "contact_time") if touches.any() else []:
+        begin = (history["t"] - history["dt"])[np.argmax(touches)]
+        axes.axvline(1e3 * (begin + seconds), color=BLACK, linestyle="-.", linewidth=0.9, label=f"{words}: {1e3 * seconds:.3g} ms")
+        axes.set_xlim(right=max(axes.get_xlim()[1], 1.02e3 * (begin + seconds)))
+
+
+def numbers_of_the_paper(scene: dict[str, Value], key: str, over: str = "") -> list[tuple[Value | None, float, str]]:
+    """(value of the parameter `over` there, number, words) of every number `key` (summary.json, SI) that the paper prints of this scene, or of it with
+    another value of `over`, or with another law, which the words then say. None of a body of the user's own mesh."""
+    from .report import published
+    found = []
+    for run in published() if not scene.get("mesh") else []:
+        when = run["when"]
+        if (run["source"].startswith("paper") and key in run["numbers"] and run["script"] == scene.get("script")
+                and all(scene.get(name) == value for name, value in when.items() if name not in ("law", over))):
+            law = "" if over == "law" or when["law"] == scene.get("law") else f", {LAWS[when['law']]}"
+            found.append((when.get(over), run["numbers"][key]["value"], run["source"] + law))
+    return found
+
+
 def _energies(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
     """Energies [J/m] over time, and below them the error of their balance, relative to the energy at the start.
 
-    Figure 6a: where friction takes energy or gravity gives it the total is not constant, the dashed balance is.
+    Figure 6a: where friction takes energy or gravity gives it the total is not constant, the dashed balance is. Lines get thinner, so that one on
+    another is seen, and the total is a band.
     """
     t = 1e3 * history["t"]
     total = history["kinetic"] + history["elastic"] + history["contact"]
     start = total[0] or total.max() or 1.0   # at rest: over the largest energy
-    figure, (top, bottom) = plt.subplots(2, sharex=True, figsize=(5.6, 4.4), height_ratios=[3, 1])
+    figure, (top, bottom) = plt.subplots(2, sharex=True, figsize=(5.6, 4.6), height_ratios=[3, 1])
     lines = {"kinetic": (history["kinetic"], BLUE), "elastic": (history["elastic"], ORANGE),
              "contact": (history["contact"], GREEN)}
     balance, words = total, "total"
@@ -131,74 +174,91 @@ def _energies(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fi
         lines["lost to friction"] = history["friction_work"], PURPLE
         balance, words = balance + history["friction_work"], words + " + lost"
     if history["external_work"].any():
-        lines["work of gravity"] = history["external_work"], GREY
+        lines["work of gravity"] = history["external_work"], "#e69f00"
         balance, words = balance - history["external_work"], words + " − work"
-    for name, (values, colour) in lines.items():
-        top.plot(t, values, color=colour, label=name)
+    largest = max(np.abs(values).max() for values in (total, balance))
     if words != "total":
-        top.plot(t, total, color=BLACK, linewidth=1.0, label="total")
-    top.plot(t, balance, color=BLACK, linestyle="--", label=words)
-    least = min(values.min() for values, _ in lines.values())
-    top.set(ylabel=f"energy [J{per_metre(scene)}]", ylim=(min(0, 1.05 * least), 1.05 * max(total.max(), balance.max())))
-    columns = len(lines) + 1 if len(lines) == 3 else 3
-    top.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncols=columns, handlelength=1.6, columnspacing=1.4)
+        top.plot(t, total, color=BAND, linewidth=4.5, label="total")
+    for k, (name, (values, colour)) in enumerate(lines.items()):
+        top.plot(t, values, color=colour, linewidth=2.6 - 0.4 * k, label=name + least(values, largest))
+    top.plot(t, balance, color=BLACK, linestyle="--", linewidth=1.0, label=words)
+    lowest = min(values.min() for values, _ in lines.values())
+    top.set(ylabel=f"energy [J{per_metre(scene)}]", ylim=(min(0, 1.05 * lowest) - 0.015 * largest, 1.05 * largest))
     error = np.abs(history["balance"]) / start
     bottom.semilogy(t, np.where(error > 0, error, np.nan), color=BLACK, linewidth=0.9)
     bottom.set(xlabel="time [ms]", ylabel="|balance| / $E_0$")
     bottom.margins(y=0.15)
-    top.margins(x=0)
+    bottom.yaxis.set_minor_formatter(NullFormatter())
+    over_time([top, bottom], history)
+    top.legend(**ABOVE, ncols=3)
     return figure
+
+
+def least(values: np.ndarray, largest: float) -> str:
+    """Behind the name of a line that can hardly be told from 0: how large it gets."""
+    most = np.abs(values).max()
+    return f" (up to {float(f'{most:.1g}'):g})" if 0 < most < 0.01 * largest else ""
 
 
 def _force(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
     """Normal force [kN/m] over time."""
-    figure, axes = plt.subplots(figsize=(5.2, 3.2))
+    figure, axes = plt.subplots(figsize=(5.6, 3.4))
     axes.plot(1e3 * history["t"], 1e-3 * history["normal_force"], color=BLUE)
     axes.set(xlabel="time [ms]", ylabel=f"normal force [kN{per_metre(scene)}]", ylim=(0, None))
-    axes.margins(x=0)
+    _end_of_contact([axes], history, scene)
     return figure
 
 
+def _end_of_contact(panels: list[plt.Axes], history: dict[str, np.ndarray], scene: dict[str, Value]) -> None:
+    """The time of panels over the same time, with the last touch and the paper's contact time named above the first."""
+    over_time(panels, history)
+    published(panels[0], history, scene)
+    if panels[0].get_legend_handles_labels()[0]:
+        panels[0].legend(**ABOVE, ncols=2)
+
+
 def _friction(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
-    """Figure 5: normal and friction force [kN/m] over time; beside them, enlarged, where stick and slip alternate most.
+    """Figure 5: normal and friction force [kN/m] over time; beside them, enlarged, where stick and slip alternate most, if they do.
 
     The broken lines are the coefficients times the normal force: a body of which all points slide one way is on the dynamic one.
     """
     t, per = 1e3 * history["t"], per_metre(scene)
     normal, friction = 1e-3 * history["normal_force"], 1e-3 * history["friction_force"]
-    figure, grid = plt.subplots(2, 2, figsize=(7.6, 4.8), sharex="col", width_ratios=[1.7, 1])
-    (force, share), (drag, zoom) = grid
+    window = _liveliest(history)
+    figure, grid = plt.subplots(2, 2 if window else 1, figsize=(8.4 if window else 5.6, 5.2), sharex="col", squeeze=False,
+                                height_ratios=[1, 1.4], width_ratios=[1.6, 1] if window else None)
+    force, drag = grid[:, 0]
     force.plot(t, normal, color=BLUE)
     force.set(ylabel=f"normal force [kN{per}]", ylim=(0, None))
-    for axes in (drag, zoom):
+    signs = [sign for sign in (-1, 1) if (sign * friction).max() > 0.05 * np.abs(friction).max()]
+    for axes in grid[1]:
         axes.axhline(0, color=GREY, linewidth=0.6)
-        for name, line in (("friction_static", ":"), ("friction_dynamic", "--")):
-            for sign in (-1, 1):
+        for name, line in (("friction_static", (0, (1, 1.5))), ("friction_dynamic", (0, (4, 2)))):
+            for sign in signs:
                 axes.plot(t, sign * scene[name] * normal, color=BLACK, linestyle=line, linewidth=0.8,
-                          label=f"{scene[name]:g} of the normal force" if sign > 0 else None)
-    drag.plot(t, friction, color=ORANGE)
-    drag.set(xlabel="time [ms]", ylabel=f"friction force [kN{per}]", xlim=(_first_touch(history), t[-1]), ylim=_around(friction, 0.3))
-    drag.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncols=2)
-    first, last = _liveliest(history)
-    inside = slice(first, last + 1)
-    zoom.plot(t, friction, color=ORANGE, linewidth=1.0, marker=".", markersize=3)
-    zoom.set(xlabel="time [ms]", xlim=(t[first], t[last]), ylim=_around(friction[inside], 0.15))
-    zoom.set_title("enlarged: stick and slip")
-    zoom.spines[:].set_visible(True)
-    share.step(t, 100 * history["sliding_fraction"], where="pre", color=PURPLE, linewidth=1.0)
-    share.set(title="share of the load that slides [%]", ylim=(0, 1.08 * max(1.0, 100 * history["sliding_fraction"][inside].max())))
-    share.tick_params(labelbottom=True)
-    for axes in (zoom, share):
-        axes.yaxis.tick_right()
-        axes.spines.right.set_visible(True)
-        axes.spines.left.set_visible(axes is zoom)
-    drag.indicate_inset_zoom(zoom, edgecolor=BLACK, linewidth=0.7)
+                          label=f"{name.partition('_')[2]} limit, {scene[name]:g} of the normal force" if sign == signs[0] else None)
+        axes.set_xlabel("time [ms]")
+    drag.plot(t, friction, color=ORANGE, linewidth=1.2)
+    drag.set_ylabel(f"friction force [kN{per}]")
+    drag.legend(**ABOVE, ncols=2)
+    _end_of_contact([force, drag], history, scene)
+    if window:
+        _enlarge(grid, history, window, per)
     return figure
 
 
-def _first_touch(history: dict[str, np.ndarray]) -> float:
-    """The time [ms] of the last row before the contact, where a flight may have ended."""
-    return 1e3 * history["t"][max(0, int(np.argmax(history["normal_force"] > 0)) - 1)]
+def _enlarge(grid: np.ndarray, history: dict[str, np.ndarray], window: tuple[int, int], per: str) -> None:
+    """The right panels of figure 5: the share of the load that slides, and the friction force [kN/m], in a window of rows that is marked on the left."""
+    t, friction = 1e3 * history["t"], 1e-3 * history["friction_force"]
+    first, last = window
+    inside, (share, zoom) = slice(first, last + 1), grid[:, 1]
+    for axes in grid[:, 0]:
+        axes.axvspan(t[first], t[last], color=BAND, alpha=0.6, linewidth=0, zorder=0)
+    share.step(t, 100 * history["sliding_fraction"], where="pre", color=PURPLE, linewidth=1.0)
+    share.set(title="grey on the left, enlarged", ylabel="load that slides [%]",
+              xlim=(t[first], t[last]), ylim=(0, 1.08 * max(1.0, 100 * history["sliding_fraction"][inside].max())))
+    zoom.plot(t, friction, color=ORANGE, linewidth=1.0, marker=".", markersize=3)
+    zoom.set(ylabel=f"friction force [kN{per}]", ylim=_around(friction[inside], 0.15))
 
 
 def _around(values: np.ndarray, margin: float) -> tuple[float, float]:
@@ -208,36 +268,34 @@ def _around(values: np.ndarray, margin: float) -> tuple[float, float]:
     return low - space, high + space
 
 
-def _liveliest(history: dict[str, np.ndarray]) -> tuple[int, int]:
-    """First and last row of the twelfth of the contact, or third of its longest interval where that is less, in which
-    the sliding load [N/m] goes up and down most."""
+def _liveliest(history: dict[str, np.ndarray]) -> tuple[int, int] | None:
+    """First and last row of the twelfth of the contact, or third of its longest interval where that is less, in which the share of the load that slides
+    goes up and down most, weighted with the load; None where it does so by less than a twentieth of the largest load."""
     touching = np.flatnonzero(history["normal_force"] > 0)
-    t, sliding = history["t"], history["sliding_fraction"] * history["normal_force"]
+    t, force = history["t"], history["normal_force"]
     intervals = np.split(touching, np.flatnonzero(np.diff(touching) > 1) + 1)
     width = min((t[touching[-1]] - t[touching[0]]) / 12, max(t[each[-1]] - t[each[0]] for each in intervals) / 3)
-    travelled = np.concatenate([[0], np.cumsum(np.abs(np.diff(sliding)))])
+    change = np.diff(history["sliding_fraction"]) * np.minimum(force[1:], force[:-1])
+    up, travelled = (np.concatenate([[0], np.cumsum(each)]) for each in (change, np.abs(change)))
     ends = np.minimum(np.searchsorted(t, t + width), len(t) - 1)
-    lively = travelled[ends] - travelled - np.abs(sliding[ends] - sliding)   # there and back again
-    idle = np.cumsum(history["normal_force"] == 0)
-    lively = np.where(idle[ends] > idle, -1.0, lively)                         # not in the air
+    lively = travelled[ends] - travelled - np.abs(up[ends] - up)   # there and back again
+    idle = np.cumsum(force == 0)
+    lively = np.where(idle[ends] > idle, -1.0, lively)              # not in the air
     first = int(np.argmax(lively))
-    return first, max(int(ends[first]), min(first + 1, len(t) - 1))
+    return (first, int(ends[first])) if lively[first] > 0.05 * force.max() and ends[first] > first else None
 
 
-def _velocity(history: dict[str, np.ndarray]) -> plt.Figure:
+def _velocity(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
     """Velocity of the centre of mass [m/s] over time, a line a component."""
     t = 1e3 * history["t"]
-    figure, axes = plt.subplots(figsize=(5.2, 3.2))
+    figure, axes = plt.subplots(figsize=(5.6, 3.4))
     axes.axhline(0, color=GREY, linewidth=0.6)
     moving = [name for name in ("vx", "vy", "vz") if name in history and history[name].any()]
     for name, colour in zip(moving, (BLUE, ORANGE, GREEN)):
         axes.plot(t, history[name], color=colour, label=f"$v_{name[1]}$")
     axes.set(xlabel="time [ms]", ylabel="velocity of the centre of mass [m/s]")
-    if moving == ["vy"]:
-        axes.set_ylabel("$v_y$ of the centre of mass [m/s]")
-    else:
-        axes.legend()
-    axes.margins(x=0)
+    over_time([axes], history)
+    axes.legend(**ABOVE, ncols=4)
     return figure
 
 
@@ -253,7 +311,6 @@ def _rolling(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fig
     top.plot(t, history["vx"], color=BLUE, label="$v_x$ of the centre")
     top.plot(t, -scene["radius"] * history["spin"], color=ORANGE, label=r"$-\omega R$ of the rim")
     top.set_ylabel("velocity [m/s]")
-    top.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncols=3, handlelength=1.6)
     touches = history["normal_force"] > 0
     back = np.minimum(history["reverse_fraction"], history["sliding_fraction"])
     shares = {"sticks": (1 - history["sliding_fraction"], "#56b4e9"), "slides": (history["sliding_fraction"] - back, PURPLE),
@@ -265,8 +322,11 @@ def _rolling(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fig
         values = np.where(touches, 100 * values, 0)
         bottom.fill_between(t, floor, floor + values, step="pre", color=colour, linewidth=0, label=label)
         floor = floor + values
-    bottom.set(xlabel="time [ms]", ylabel="share of the load [%]", xlim=(_first_touch(history), t[-1]), ylim=(0, 100))
-    bottom.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncols=3, handlelength=1.0, handleheight=1.0)
+    bottom.fill_between(t, 0, np.where(touches, 0, 100), step="pre", color="#ececec", linewidth=0, label="no contact")
+    bottom.set(xlabel="time [ms]", ylabel="share of the load [%]", ylim=(0, 100))
+    bottom.legend(**ABOVE | {"handlelength": 1.0}, ncols=4, handleheight=1.0)
+    over_time([top, bottom], history)
+    top.legend(**ABOVE, ncols=4)
     return figure
 
 
@@ -294,6 +354,12 @@ class Pose:
     centre: np.ndarray
     outline: np.ndarray
     diameter: np.ndarray
+
+
+def _goes_along(history: dict[str, np.ndarray], scene: dict[str, Value]) -> bool:
+    """Whether the body goes along the plane or turns, so that its way shows more than its shapes do."""
+    along = max(np.abs(history["vx"]).max(), scene["radius"] * np.abs(history["spin"]).max())
+    return along > 1e-3 * max(np.abs(history["vy"]).max(), along)
 
 
 def _flight(history: dict[str, np.ndarray], scene: dict[str, Value], series: list[tuple[float, Path]]) -> plt.Figure:
@@ -407,13 +473,31 @@ def _shapes(series: list[tuple[float, Path]], half: bool) -> plt.Figure:
                                 squeeze=False)
     for axes in grid.flat:
         axes.set_axis_off()
-    largest = max(body.stress.max() for body in bodies)
+    largest = most_stress(bodies)
     for axes, body, (t, _) in zip(grid.flat, bodies, picked):
         draw_ground(axes, view)
         picture = draw_body(axes, body, largest)
         axes.set_title(f"{1e3 * t:.2f} ms", pad=2)
-    figure.colorbar(picture, ax=grid, label=STRESS, shrink=0.7, aspect=30)
+    scale_bar(grid[-1, 0])
+    figure.colorbar(picture, ax=grid, label=STRESS, shrink=0.7, aspect=30, extend="max")
     return figure
+
+
+def most_stress(bodies: list["Body"]) -> float:
+    """The upper end [MPa] of the colours: five in a thousand of all nodes are above it, so that one spot does not darken all the rest."""
+    return float(np.quantile(np.concatenate([body.stress for body in bodies]), 0.995)) or 1.0
+
+
+def scale_bar(axes: plt.Axes) -> None:
+    """Below axes in m, which have no ticks, a length of 1, 2 or 5 times a power of ten, at most a quarter of the width."""
+    left, right = axes.get_xlim()
+    wanted = 0.25 * (right - left)
+    size = max(length for digit in (1, 2, 5) if (length := digit * 10.0 ** np.floor(np.log10(wanted))) <= wanted)
+    below = axes.get_xaxis_transform() + ScaledTranslation(0, -9 / 72, axes.figure.dpi_scale_trans)      # [m] along, nine points down
+    axes.plot([left, left + size], [0, 0], color=BLACK, linewidth=2.0, solid_capstyle="butt", transform=below, clip_on=False)
+    factor, unit = (1e6, "μm") if size < 1e-3 else (1e3, "mm") if size < 1 else (1, "m")
+    axes.text(left + 1.15 * size, 0, f"{factor * size:.3g} {unit}", fontsize=SMALL, ha="left", va="center", transform=below)
+    axes.set_xlim(left, right)
 
 
 @dataclass(frozen=True)

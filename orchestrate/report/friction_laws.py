@@ -66,7 +66,7 @@ def draw(laws: pd.DataFrame, values: dict[str, float], path: Path) -> None:
             _curve(b, laws[(laws.panel == "b") & (laws.law == law)], colour, line, label, 1.2)
         b.set(title="b) regularised (13), $\\mu_e = \\mu_d$", ylabel=r"$\phi_\varepsilon(v_T)$", xlim=(-4, 4), ylim=(-1.2, 1.2),
               yticks=[-1, -0.5, 0, 0.5, 1])
-        b.legend(loc="upper left", handlelength=1.6, fontsize=6.5, borderaxespad=0)
+        b.legend(loc="upper left", handlelength=1.6, borderaxespad=0, frameon=True, framealpha=1, edgecolor="none")
         both = laws[laws.panel == "c"]
         _curve(c, both[both.transition == "jump"], BLUE, "-", "jump at $|v_T| = \\varepsilon$, as in the paper", 1.6)
         _curve(c, both[both.transition == "smooth"], ORANGE, "--", "smooth (friction_transition)", 1.4)
@@ -75,7 +75,7 @@ def draw(laws: pd.DataFrame, values: dict[str, float], path: Path) -> None:
         c.set(title="c) static and dynamic coefficient, linear", ylabel=r"$-t_T/t_N = \mu_f\,\phi_\varepsilon$", xlim=(-4, 4),
               ylim=(-1.2 * values["friction_static"], 1.45 * values["friction_static"]))
         c.set_yticks([0, *ticks.values()], ["0", *(f"${name} = {value:+g}$".replace("+", "") for name, value in ticks.items())])
-        c.legend(loc="upper left", handlelength=1.6, fontsize=7, borderaxespad=0)
+        c.legend(loc="upper left", handlelength=1.6, borderaxespad=0, frameon=True, framealpha=1, edgecolor="none")
         figure.savefig(path)
         plt.close(figure)
 

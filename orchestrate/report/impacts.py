@@ -3,13 +3,16 @@
 from pathlib import Path
 
 import matplotlib.pyplot as plt
+import numpy as np
 import pandas as pd
 
 from ..results import read_table
 
 
 LIGHTEST = 0.01                  # of the largest impulse of a meeting: what is less is the grazing end of an impact
-LEAST_SLIP = 0.05                # of the approach: of less the restitution along the partner is that of vibrations
+LEAST_SLIP = 0.05                # of the approach, and of the largest slip of a meeting: of less the restitution along the partner is that of vibrations
+LEAST_APPROACH = 0.01            # of the largest of a meeting: of less, as of a body that lies on its partner, there is no restitution
+HIGHEST = 1.5                    # restitution that is drawn to scale: above it a body that vibrates was pushed off as it hardly approached
 COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"]
 NEEDED = ["body", "partner", "start", "end", "impulse", "approach", "separation", "restitution", "restitution_tangential"]
 
@@ -29,24 +32,29 @@ def several(table: pd.DataFrame) -> pd.DataFrame:
     return impacts[impacts.groupby(["body", "partner"]).impulse.transform("size") > 1]
 
 
-def draw(table: pd.DataFrame, names: list[str]) -> plt.Figure | None:
+def draw(table: pd.DataFrame, names: list[str], rigid: list[str]) -> plt.Figure | None:
     """Restitution, across and along the partner, over the impacts of each meeting, and below them the speeds before each; None where none has several.
-    `names`: of the bodies."""
+    `names`: of the bodies; `rigid`: of the obstacles."""
     impacts = several(table)
     if impacts.empty:
         return None
     figure, (top, below) = plt.subplots(2, 1, figsize=(6.4, 5), sharex=True)
     for colour, ((body, partner), rows) in zip(COLOURS, impacts.groupby(["body", "partner"])):
-        other = names[int(partner) - 1] if partner > 0 else f"obstacle {-int(partner)}" if len(names) > 1 else "plane"
+        other = names[int(partner) - 1] if partner > 0 else rigid[-int(partner) - 1]
         label, t = f"{names[int(body) - 1]} – {other}", 1e3 * rows.start
-        top.plot(t, rows.restitution, "o-", color=colour, markersize=4, linewidth=0.8, label=f"{label}: across")
-        along = rows.restitution_tangential.where(rows.slip_before > LEAST_SLIP * rows.approach)
+        across = rows.restitution.where(rows.approach > LEAST_APPROACH * rows.approach.max())
+        pushed = across > HIGHEST
+        top.plot(t, across.where(~pushed), "o-", color=colour, markersize=4, linewidth=0.8, label=f"{label}: across")
+        if pushed.any():
+            top.plot(t[pushed], np.full(pushed.sum(), HIGHEST), "^", color=colour, markersize=5, label=f"{label}: across, above {HIGHEST:g}")
+        along = rows.restitution_tangential.where(rows.slip_before > LEAST_SLIP * np.maximum(rows.approach, rows.slip_before.max()))
         if along.notna().any():
             top.plot(t, along, "s--", color=colour, markersize=4, linewidth=0.8, fillstyle="none", label=f"{label}: along")
         below.plot(t, rows.approach, "o-", color=colour, markersize=4, linewidth=0.8)
         if along.notna().any():
             below.plot(t, rows.slip_before, "s--", color=colour, markersize=4, linewidth=0.8, fillstyle="none")
-    top.set(ylabel="restitution", ylim=(min(0.0, top.get_ylim()[0]), 1.05))
-    top.legend(fontsize=7, ncols=2)
+    top.set(ylabel="restitution", ylim=(min(0.0, top.get_ylim()[0]), max(1.05, top.get_ylim()[1])))
+    top.axhline(1, color="#999999", linewidth=0.6)
+    top.legend(ncols=2, loc="lower center", bbox_to_anchor=(0.5, 1))
     below.set(xlabel="start of the contact [ms]", ylabel="speed before [m/s]", ylim=(0, 1.1 * below.get_ylim()[1]))
     return figure

@@ -15,12 +15,14 @@ from ..results import read_scene
 from ..run import code_hash
 from ..studies import study
 from ..sweeps import sweep
+from .figures import STYLE
 from .paper_judging import AGREES, DIFFERS, OPEN, PARTLY, Finding
 
 COLOURS = {AGREES: "#009e73", DIFFERS: "#d55e00", PARTLY: "#b8860b", OPEN: "#777777"}
 SHOWN = {"energies": "energies over time", "force": "contact force over time", "rolling": "velocity of the centre and the rim, and the share that slides",
-         "velocity": "velocities over time",
+         "velocity": "velocities over time", "contact": "contact pressure along the outline and over time",
          "flight": "shapes on the flight and in the contact", "shapes": "deformed shapes"}   # what a picture of a run shows
+PIXELS, DPI = 85, STYLE["savefig.dpi"]      # of the page and of a picture to an inch
 BACK = '<a href="#top">Back to the top</a>'
 TITLES = {"friction-laws": "The friction laws (11) to (13), from the functions that the solver runs (make friction-laws)",
           "stick-slip": "Share of the load that slides in each third of the contact, over ε, k and ν (make stick-slip)",
@@ -31,9 +33,10 @@ TITLES = {"friction-laws": "The friction laws (11) to (13), from the functions t
 def page(findings: list[tuple[str, str, Finding]], more: str = "") -> str:
     """The page as HTML, pictures and all; `more` comes behind the statements."""
     counts = ", ".join(f"{sum(found.verdict == verdict for *_, found in findings)} {verdict}" for verdict in COLOURS)
-    contents = " ·\n".join(['<a href="#all">All verdicts</a>', *(f'<a href="#s{k}" title="{escape(text)}">{escape(item)}</a>' for k, (item, text, _) in enumerate(findings))]
-                           + ['<a href="#verification">Verification</a>'] * bool(more))
-    rows = "\n".join(f"<tr><td>{escape(item)}</td><td>{escape(text)}</td><td>{escape(found.ours)}</td>"
+    contents = "\n".join(f"<li>{line}</li>" for line in [
+        '<a href="#all">All verdicts</a>', *(f'<a href="#s{k}">{escape(item)}</a>: {escape(text)}' for k, (item, text, _) in enumerate(findings)),
+        *(['<a href="#verification">Verification</a>: exact solutions'] if more else [])])
+    rows = "\n".join(f'<tr id="row{k}"><td>{escape(item)}</td><td>{escape(text)}</td><td>{escape(found.ours)}</td>'
                      f'<td style="color:{COLOURS[found.verdict]}"><a href="#s{k}">{found.verdict}</a></td></tr>'
                      for k, (item, text, found) in enumerate(findings))
     shown = {}
@@ -54,7 +57,9 @@ Error bars of ours are what refining mesh and step changes. Verdicts follow from
 (orchestrate/report/paper_friction.py, paper_impacts.py, paper_bodies.py): a statement on St. Venant–Kirchhoff is decided by runs with
 that law, “not decided” means that the effect is smaller than the errors. “As the paper may have run it”: on a coarse mesh of linear triangles.</p>
 <p><b>{counts}</b></p>
-<nav>Contents: {contents}</nav>
+<nav><p>Contents</p><ol>
+{contents}
+</ol></nav>
 <h2 id="all">All verdicts</h2>
 <table><tr><th>where</th><th>the paper</th><th>here</th><th>verdict</th></tr>
 {rows}
@@ -67,16 +72,26 @@ that law, “not decided” means that the effect is smaller than the errors. �
 
 
 def _section(k: int, item: str, text: str, found: Finding, shown: dict[Path, int]) -> str:
-    """A statement with its pictures; of one that an earlier statement has, by `shown`, a link to that."""
-    pictures = [f'<p>{escape(caption(path))}: <a href="#s{shown[path]}">shown above</a>.</p>' if path in shown else _picture(path) for path in found.figures]
-    shown |= {path: k for path in found.figures if path not in shown}
+    """A statement with its pictures, numbered through the page; of one that an earlier statement has, by `shown`, a link to it."""
+    pictures = []
+    for path in found.figures:
+        if path in shown:
+            pictures.append(f'<p><a href="#figure{shown[path]}">Figure {shown[path]}</a> above: {escape(caption(path))}.</p>')
+        else:
+            shown[path] = len(shown) + 1
+            pictures.append(_picture(path, shown[path], f"#s{k}", item))
     return (f'<h2 id="s{k}">{escape(item)}: {escape(text)}</h2>\n<p><b style="color:{COLOURS[found.verdict]}">{found.verdict}</b>: {escape(found.ours)}</p>\n'
-            + "\n".join(pictures) + f"\n{_provenance(found.runs)}\n<p>{BACK}</p>")
+            + "\n".join(pictures) + f'\n{_provenance(found.runs)}\n<p><a href="#row{k}">Back to its row in the table</a> · {BACK}</p>')
 
 
-def _picture(path: Path) -> str:
-    words = escape(caption(path))
-    return f'<figure><img alt="{words}" src="data:image/png;base64,{base64.b64encode(path.read_bytes()).decode()}"><figcaption>{words}</figcaption></figure>'
+def _picture(path: Path, number: int = 0, back: str = "", item: str = "") -> str:
+    """A picture with its caption, as wide as it was drawn, so that the text of all has one size; with a number and what it belongs to where they are given."""
+    words, data = escape(caption(path)), path.read_bytes()
+    wide = f' width="{round(PIXELS * int.from_bytes(data[16:20], "big") / DPI)}"' if data[12:16] == b"IHDR" else ""
+    lead, trail = (f"<b>Figure {number}.</b> ", f' (<a href="{back}">{escape(item)}</a>)') if number else ("", "")
+    anchor = f' id="figure{number}"' if number else ""
+    return (f'<figure{anchor}><img alt="{words}"{wide} src="data:image/png;base64,{base64.b64encode(data).decode()}">'
+            f"<figcaption>{lead}{words}{trail}</figcaption></figure>")
 
 
 def caption(path: Path) -> str:
@@ -118,13 +133,13 @@ def _table(frame: pd.DataFrame, formats: dict[str, str]) -> str:
 
 
 def _provenance(folders: list[Path]) -> str:
-    """Parameters that differ from their defaults, common to all runs and by run, and where the runs come from."""
+    """nu, and parameters that differ from their defaults, common to all runs and by run, and where the runs come from."""
     scenes = [read_scene(folder) for folder in folders if (folder / "scene.toml").exists()]
     if not scenes:
         return ""
     standard = parameters.defaults()
     common = {name: value for name, value in scenes[0].items()
-              if all(used.get(name) == value for used in scenes) and (name == "script" or standard.get(name) != value)}
+              if all(used.get(name) == value for used in scenes) and (name in ("script", "nu") or standard.get(name) != value)}
     varied = {name: sorted({used[name] for used in scenes if name in used}, key=lambda value: (isinstance(value, str), value)) for name in scenes[0]
               if any(used.get(name) != scenes[0][name] for used in scenes)}
     records = [json.loads(path.read_text()) for folder in folders

@@ -14,6 +14,7 @@ import pandas as pd
 from matplotlib.cm import ScalarMappable
 
 from .. import vtu
+from ..obstacles import Obstacle
 from ..parameters import Value
 from .contact import PRESSURE
 
@@ -24,6 +25,8 @@ FINE = 4                   # parts of the side of a face
 PIXELS = (700, 620)        # of a view
 COLOURS = {"stress": "viridis", "pressure": "YlOrRd"}
 GROUND = "#d0d0d0"
+PLANE = Obstacle("plane", "plane", (0.0, 0.0, 0.0, 0.0, 1.0, 0.0), np.zeros(3))      # y = 0, of a scene of one body
+GRID = 60                  # points along each side of the box in which an obstacle's surface is looked for
 AXES = {"quarter": (0, 2), "half": (2,)}       # of a symmetric body: along which the computed part has a mirror image
 
 
@@ -142,8 +145,9 @@ class Pressure:
 
 @dataclass(frozen=True)
 class Sight:
-    """What is seen at an instant: vertices (m, 3) [m] and von Mises stress [MPa] of the cut body, vertices and pressure [MPa] of all of it."""
+    """What is seen at an instant t [s]: vertices (m, 3) [m] and von Mises stress [MPa] of the cut body, vertices and pressure [MPa] of all of it."""
 
+    t: float
     cut: np.ndarray
     stress: np.ndarray
     outside: np.ndarray
@@ -164,9 +168,10 @@ class Views:
         points, tetrahedra = solids[0].points, solids[0].tetrahedra
         self.cut, self.outside = skin(points, tetrahedra[~in_front(solids[0], axes)]), skin(points, tetrahedra)
         self.times = np.array([t for t, _ in series])
-        self.ground = scene.get("script") == "ball-plane"      # the plane y = 0
+        from .bodies import obstacles_of
+        self.rigid = [PLANE] if scene.get("script") == "ball-plane" else obstacles_of(scene)
         pressure = Pressure(table, axes, self.outside.at(points))
-        self.sights = [self._sight(solid, pressure.at(t)) for t, solid in zip(self.times, solids)]
+        self.sights = [self._sight(t, solid, pressure.at(t)) for t, solid in zip(self.times, solids)]
         self.stress = float(np.quantile([sight.stress for sight in self.sights], 0.999)) or 1.0    # one spot does not darken all the rest
         self.pressure = max(float(sight.pressure.max()) for sight in self.sights) or 1.0
         self.loaded = [k for k, sight in enumerate(self.sights) if sight.pressure.max() > 0.05 * self.pressure]
@@ -174,9 +179,9 @@ class Views:
         ends = np.array([[sight.outside.min(axis=0), sight.outside.max(axis=0)] for sight in self.sights])
         self.low, self.high = ends[:, 0].min(axis=0), ends[:, 1].max(axis=0)
 
-    def _sight(self, solid: vtu.Solid, pressure: np.ndarray) -> Sight:
+    def _sight(self, t: float, solid: vtu.Solid, pressure: np.ndarray) -> Sight:
         place = solid.points + solid.fields["displacement"]
-        return Sight(self.cut.at(place), 1e-6 * self.cut.at(solid.fields["von_mises"]), self.outside.at(place), 1e-6 * pressure)
+        return Sight(t, self.cut.at(place), 1e-6 * self.cut.at(solid.fields["von_mises"]), self.outside.at(place), 1e-6 * pressure)
 
     def at(self, t: float) -> Sight:
         """What is seen at the time t [s], between two snapshots linear in time."""
@@ -184,12 +189,12 @@ class Views:
         return self.sights[int(np.floor(place))].between(self.sights[int(np.ceil(place))], place % 1)
 
     def render(self, sight: Sight) -> tuple[np.ndarray, np.ndarray]:
-        """Both views as images (height, width, 3): the cut body from the front, all of it from below, through the plane."""
-        return (self._image(sight.cut, self.cut.triangles, sight.stress, self.stress, COLOURS["stress"], self.towards, self.ground),
-                self._image(sight.outside, self.outside.triangles, sight.pressure, self.pressure, COLOURS["pressure"], (0.25, -1.0, 0.55), False))
+        """Both views as images (height, width, 3): the cut body from the front, all of it from below, through the obstacles."""
+        return (self._image(sight.cut, self.cut.triangles, sight.stress, self.stress, COLOURS["stress"], self.towards, sight.t),
+                self._image(sight.outside, self.outside.triangles, sight.pressure, self.pressure, COLOURS["pressure"], (0.25, -1.0, 0.55), None))
 
     def _image(self, vertices: np.ndarray, triangles: np.ndarray, values: np.ndarray, largest: float, colours: str,
-               towards: tuple[float, float, float], ground: bool) -> np.ndarray:
+               towards: tuple[float, float, float], t: float | None) -> np.ndarray:
         import pyvista
         plotter = pyvista.Plotter(off_screen=True, window_size=PIXELS)
         try:
@@ -198,9 +203,12 @@ class Views:
             plotter.add_mesh(surface, scalars="value", cmap=colours, clim=(0, largest), show_scalar_bar=False, smooth_shading=True,
                              split_sharp_edges=True, feature_angle=40, ambient=0.45, diffuse=0.55)
             centre, size = (self.low + self.high) / 2, self.high - self.low
-            if ground:
-                plotter.add_mesh(pyvista.Plane(center=(centre[0], 0, centre[2]), direction=(0, 1, 0), i_size=size[0], j_size=size[2]),
-                                 color=GROUND, lighting=False)
+            for one in self.rigid if t is not None else []:
+                low, span = self.low - 0.08 * size.max(), size + 0.16 * size.max()
+                box = pyvista.ImageData(dimensions=(GRID,) * 3, origin=low, spacing=span / (GRID - 1))
+                gap = one.gap(box.points - one.velocity * t)
+                if gap.min() < 0 < gap.max():
+                    plotter.add_mesh(box.contour([0.0], scalars=gap), color=GROUND, opacity=0.5, lighting=one.kind != "plane", show_scalar_bar=False)
             plotter.camera_position = [centre + 10 * np.linalg.norm(size) * np.array(towards) / np.linalg.norm(towards), centre, (0, 1, 0)]
             plotter.enable_parallel_projection()
             plotter.camera.parallel_scale = 0.38 * np.linalg.norm(size)

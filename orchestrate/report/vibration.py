@@ -39,5 +39,5 @@ def draw(table: pd.DataFrame, history: dict[str, np.ndarray], per: str) -> plt.F
         below.plot(1e-3 * shown.frequency, shown[name], style, color=colour, markersize=3.5, label=name.replace("_", " "))
     below.vlines(1e-3 * table.frequency, 1e-6 * table.energy.max(), table.energy, color="#bbbbbb", linewidth=0.6, zorder=0)
     below.set(ylabel=f"energy of a mode [J{per}]", xlabel="frequency [kHz]", yscale="log")
-    below.legend(fontsize=7)
+    below.legend()
     return figure

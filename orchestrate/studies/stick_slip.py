@@ -15,7 +15,7 @@ from ..failure import Unreadable
 from ..folder import result_folder
 from ..parameters import ROOT
 from ..places import shown
-from ..report.figures import BLACK, LAWS, STYLE
+from ..report.figures import LAWS, SMALL, STYLE
 from ..results import read_history
 from . import study
 
@@ -100,11 +100,11 @@ def report(rows: pd.DataFrame) -> str:
 
 
 def draw(rows: pd.DataFrame, axes: dict[str, tuple[float, ...]], path: Path) -> None:
-    """A panel a law and nu: cells over slip velocity and penalty, coloured by the contact time, with the three shares in
-    per cent; framed where the paper's order is met."""
+    """A panel a law and nu: cells over slip velocity and penalty, coloured by the contact time; in each cell three bars, the share that slides in the
+    first, second and last third of the contact, on a common axis from 0 to 100 %; framed where the paper's order is met."""
     low, high = 1e3 * rows.contact_time.min(), 1e3 * rows.contact_time.max()
     with plt.rc_context(STYLE):
-        figure, grid = plt.subplots(len(axes["nu"]), len(LAW), figsize=(8.6, 1.4 * len(axes["nu"]) + 0.8), squeeze=False,
+        figure, grid = plt.subplots(len(axes["nu"]), len(LAW), figsize=(8.6, 1.9 * len(axes["nu"]) + 1.2), squeeze=False,
                                     sharex=True, sharey=True)
         for column, law in enumerate(LAW):
             for panel, nu in zip(grid[:, column], axes["nu"]):
@@ -114,11 +114,9 @@ def draw(rows: pd.DataFrame, axes: dict[str, tuple[float, ...]], path: Path) -> 
                 for i, k in enumerate(axes["penalty"]):
                     for j, e in enumerate(axes["slip_velocity"]):
                         row = here.loc[(k, e)]
-                        text = "failed" if row.exit else " ".join(f"{100 * row[name]:.0f}" for name in THIRDS)
-                        panel.text(j, i, text, ha="center", va="center", fontsize=7,
-                                   color="white" if 1e3 * row.contact_time < (low + high) / 2 else "black")
+                        _bars(panel, j, i, row)
                         if row["order"]:
-                            panel.add_patch(Rectangle((j - 0.48, i - 0.46), 0.96, 0.92, fill=False, color="#d55e00", linewidth=2))
+                            panel.add_patch(Rectangle((j - 0.48, i - 0.47), 0.96, 0.94, fill=False, color="#d55e00", linewidth=2))
                 panel.set_title(f"{LAWS[law]}{', coarse P1 mesh' if law == 'svk' else ''}, ν = {nu:g}")
                 panel.set_xticks(range(len(axes["slip_velocity"])), [f"{e:g}" for e in axes["slip_velocity"]])
                 panel.set_yticks(range(len(axes["penalty"])), [f"$10^{{{np.log10(k):.0f}}}$" for k in axes["penalty"]])
@@ -128,8 +126,21 @@ def draw(rows: pd.DataFrame, axes: dict[str, tuple[float, ...]], path: Path) -> 
             panel.set_xlabel("slip velocity ε [m/s]")
         for panel in grid[:, 0]:
             panel.set_ylabel("k [Pa/m]")
-        figure.colorbar(picture, ax=grid, label="contact time [ms]", shrink=0.6)
-        figure.suptitle("Share of the normal load that slides in each third of the contact [%]; framed: slides first, sticks last",
-                        fontsize=9, color=BLACK)
+        bar = figure.colorbar(picture, ax=grid, label="contact time [ms]", shrink=0.6)
+        bar.ax.axhline(1e3 * PAPER[0], color="#d55e00", linewidth=2)
+        figure.suptitle("Share of the normal load that slides [%], a bar each for the first, second and last third of the contact (full height: 100 %);\n"
+                        f"framed ({rows['order'].sum()} of {len(rows)}): slides first, sticks last, as in the paper, whose contact time is {1e3 * PAPER[0]:g} ms (line in the bar of colours)")
         figure.savefig(path)
         plt.close(figure)
+
+
+def _bars(panel: plt.Axes, column: int, row: int, run: pd.Series) -> None:
+    """The shares of a run in its cell, each a white bar with its number [%] above it, from the lower edge (0 %) up to 0.6 of the cell (100 %)."""
+    if run.exit:
+        panel.text(column, row, "failed", ha="center", va="center", fontsize=SMALL)
+        return
+    for place, name in zip((-0.28, 0, 0.28), THIRDS):
+        panel.add_patch(Rectangle((column + place - 0.11, row - 0.42), 0.22, 0.6, facecolor="none", edgecolor="white", linewidth=0.5))
+        panel.add_patch(Rectangle((column + place - 0.11, row - 0.42), 0.22, 0.6 * run[name], facecolor="white", edgecolor="none"))
+        panel.text(column + place, row + 0.31, f"{100 * run[name]:.0f}", ha="center", va="center", fontsize=SMALL, color="black",
+                   bbox=dict(facecolor="white", alpha=0.75, edgecolor="none", pad=0.6))

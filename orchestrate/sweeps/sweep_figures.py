@@ -19,15 +19,16 @@ import numpy as np
 import pandas as pd
 from matplotlib.ticker import LogLocator, NullLocator
 
-from .. import parameters
+from .. import parameters, scene
 from ..failure import BadInput
 from ..report import report
-from ..report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE, as_written
+from ..report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, SMALL, STYLE, as_written, numbers_of_the_paper
 from ..results import read_history
 from ..studies import study
 
 KINDS = {"lines": ("x", "y", "by"), "map": ("x", "y", "colour", "by", "level", "band"), "histories": ("y", "panel", "by")}
 WORDS = {"nu": "ν", "penalty": "k"}
+SPAN = 1e3       # of the values over an axis from which it is logarithmic
 COLOURS, MARKERS = (BLUE, ORANGE, GREEN, PURPLE, GREY), "osd^v"
 
 
@@ -91,10 +92,18 @@ def draw(sweep, rows: pd.DataFrame, out: Path) -> None:
         return
     with plt.rc_context(STYLE):
         figure = {"lines": _lines, "map": _map, "histories": _histories}[sweep.figure["kind"]](sweep, rows, out)
-        figure.suptitle(as_written(sweep.title), fontsize=9, color=BLACK)
+        figure.suptitle("\n".join(filter(None, [as_written(sweep.title), _constants(sweep)])))
         with study.complete(out / "sweep.png") as part:
             figure.savefig(part)
         plt.close(figure)
+
+
+def _constants(sweep) -> str:
+    """What is the same in all runs of a body: law, nu, speed, contact stiffness and, with friction, the slip velocity."""
+    used = scene.load(sweep.scene).override(sweep.base | sweep.points[0]).given
+    names = ("law", "nu", "speed", "penalty") + ("slip_velocity",) * (used.get("friction_static", 0) > 0)
+    words = ", ".join(_value(name, used[name]) for name in names if name in used and name not in sweep.axes)
+    return words.replace("Pa/m^m", "Pa/m") if used.get("exponent", 1) == 1 else words
 
 
 def findings(sweep, rows: pd.DataFrame, out: Path) -> list[str]:
@@ -167,26 +176,46 @@ def _lines(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
     x, names = sweep.figure["x"], sweep.figure["y"]
     figure, grid = plt.subplots(len(names), figsize=(6.4, 3.9 if len(names) == 1 else 2.6 * len(names)), sharex=True, squeeze=False)
     for axes, y in zip(grid[:, 0], names):
-        for (words, group), colour, marker in zip(_groups(sweep, rows, "by"), itertools.cycle(COLOURS), itertools.cycle(MARKERS)):
+        for k, ((words, group), colour, marker) in enumerate(zip(_groups(sweep, rows, "by"), itertools.cycle(COLOURS), itertools.cycle(MARKERS))):
             group = group.sort_values(x)
             there = group.exit == 0
             errors = _factor(y) * bars(group[there], y)
             axes.errorbar(group[x][there], _factor(y) * group[y][there], None if np.isnan(errors).all() else errors, color=colour, marker=marker,
                           markersize=3, linewidth=1.1, elinewidth=0.9, capsize=1.5, label=words or None)
             if not there.all():
-                axes.plot(group[x][~there], np.full((~there).sum(), 0.03), marker="x", linestyle="", markersize=4, color=colour,
-                          transform=axes.get_xaxis_transform(), label=f"{words}: the run failed".removeprefix(": "))
+                axes.plot(group[x][~there], np.full((~there).sum(), -0.03 - 0.03 * k), marker="x", linestyle="", markersize=4, color=colour,
+                          transform=axes.get_xaxis_transform(), clip_on=False, label=f"{words}: {_why(group.exit[~there])}".removeprefix(": "))
+                axes.tick_params(axis="x", pad=3.5 + 9 * (k + 1))     # its row of marks is below the axis, where no value can be
+        _published(axes, sweep, x, y)
         axes.set_ylabel(label(y, sweep.figure["per"]))
         axes.grid(alpha=0.3)
+        if (rows[y] > 0).all() and rows[y].max() > SPAN * rows[y].min():
+            axes.set_yscale("log")
         if _is_logarithmic(rows[x]):
             axes.set_xscale("log")
             axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
             axes.xaxis.set_major_formatter("{x:g}")
             axes.xaxis.set_minor_locator(NullLocator())
     grid[-1, 0].set_xlabel(label(x))
-    if grid[0, 0].get_legend_handles_labels()[0]:
-        grid[0, 0].legend()
+    handles = sorted(zip(*grid[0, 0].get_legend_handles_labels()), key=lambda each: isinstance(each[0], plt.Line2D))      # the curves first
+    if handles:
+        grid[0, 0].legend(*zip(*handles))
     return figure
+
+
+def _why(codes: pd.Series) -> str:
+    """Why runs have no value, by their exit codes."""
+    return "broke down (det F ≤ 0), no value" if (codes == 12).all() else "failed, no value"
+
+
+def _published(axes: plt.Axes, sweep, x: str, y: str) -> None:
+    """The numbers of the paper for y, whose contact time is that while the force is not zero: a star at its x, or a line over all x where it states none."""
+    for at, value, words in numbers_of_the_paper(scene.load(sweep.scene).override(sweep.base | sweep.points[0]).given, y.removeprefix("thresholded_"), over=x):
+        words = f"{words}: {_factor(y) * value:.3g}{_unit(y, sweep.figure['per'])}"
+        if at is None:
+            axes.axhline(_factor(y) * value, color=BLACK, linestyle="-.", linewidth=0.9, label=words)
+        else:
+            axes.plot(at, _factor(y) * value, color=BLACK, marker="*", linestyle="", markersize=8, zorder=10, label=words)
 
 
 def _is_logarithmic(values: pd.Series) -> bool:
@@ -275,20 +304,30 @@ def _map(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
         cells = np.where(group.pivot(index=y, columns=x, values="exit") == 0, table, np.nan)   # evenly spaced, whatever the values
         picture = axes.imshow(cells, origin="lower", aspect="auto", cmap="viridis", vmin=low, vmax=high)
         for (row, column), value in np.ndenumerate(cells):
-            axes.text(column, row, "failed" if np.isnan(value) else f"{value:#.3g}", ha="center", va="center", fontsize=7,
-                      color="black" if np.isnan(value) or value > (low + high) / 2 else "white")
+            share = (value - low) / (high - low or 1.0)
+            axes.text(column, row, "failed" if np.isnan(value) else f"{value:#.3g}", ha="center", va="center", fontsize=SMALL,
+                      color="black" if np.isnan(value) or share > 0.5 else "white", zorder=5,       # above the lines of the level
+                      bbox=dict(facecolor="white" if np.isnan(value) else plt.get_cmap("viridis")(share), edgecolor="none", pad=1.2))
         if wanted["level"] is not None:
             level, band = (_factor(colour) * wanted[key] for key in ("level", "band"))
             axes.contour(cells, levels=[level], colors=[ORANGE], linewidths=2)
             if band:
                 axes.contour(cells, levels=[level - band, level + band], colors=[ORANGE], linewidths=1, linestyles="--")
         axes.set_xticks(range(len(table.columns)), [f"{value:g}" for value in table.columns])
-        axes.set_yticks(range(len(table.index)), [f"{value:.2g}" for value in table.index])
+        axes.set_yticks(range(len(table.index)), [_tick(value) for value in table.index])
         axes.set(title=words, xlabel=label(x))
         axes.spines[:].set_visible(False)
     grid[0, 0].set_ylabel(label(y))
     figure.colorbar(picture, ax=grid, label=label(colour, wanted["per"]))
     return figure
+
+
+def _tick(value: float) -> str:
+    """A number beside an axis, large and small ones as powers of ten."""
+    if value == 0 or 1e-3 <= abs(value) < 1e5:
+        return f"{value:.2g}"
+    factor, _, power = f"{value:.1e}".partition("e")
+    return f"$10^{{{int(power)}}}$" if factor == "1.0" else f"${factor}\\cdot 10^{{{int(power)}}}$"
 
 
 def level_set(figure: dict, group: pd.DataFrame) -> dict[float, list[tuple[float, float]]]:
