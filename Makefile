@@ -5,7 +5,7 @@ READY := .venv/.ready
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws oblique friction-jump contact-time-svk law-comparison contact-time-neohookean calibrate conservation stick-slip verify paper movie test robustness bench bench-quick textbook skipping costs promise scaling materials disc-block-errors pairing-comparison refine refine-oblique clean
+.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws oblique friction-jump contact-time-svk law-comparison contact-time-neohookean calibrate conservation stick-slip oblique-angles verify paper movie test robustness bench bench-quick textbook skipping costs promise scaling materials disc-block-errors pairing-comparison refine refine-oblique clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
@@ -54,6 +54,10 @@ calibrate: ## for which nu and k the paper's 0.0048 s at 8 m/s is met
 conservation: ## the energy's drift over the step, with BDF2 and energy-momentum
 
 stick-slip: $(READY) ## search for the paper's order of sliding and sticking over epsilon, k and nu
+	@$(PYTHON) -m orchestrate $@ $(ARGS)
+
+oblique-angles: override ARGS += --page docs/oblique-angles.md
+oblique-angles: $(READY) ## disc and ball over the angle of incidence, beside rigid and elastic theory; not a part of paper
 	@$(PYTHON) -m orchestrate $@ $(ARGS)
 
 verify: $(READY) ## exact solutions with convergence: bar, rod, Hertz, rigid bodies, friction, manufactured motions

@@ -60,9 +60,9 @@ def springs(psi: ArrayLike, nu: float) -> np.ndarray:
     return 1 - slip / start
 
 
-def slides_throughout(psi: float, nu: float) -> bool:
-    """Whether the theory has a ball slide all the time: beyond 4 chi - 1, chi = (1 - nu)(1 + R^2/k^2)/(2 - nu)."""
-    return psi > 4 * (1 - nu) * (1 + INERTIA) / (2 - nu) - 1
+def slides_throughout(psi: ArrayLike, nu: float, inertia: ArrayLike = INERTIA) -> ArrayLike:
+    """Whether the theory has a ball slide all the time: beyond 4 chi - 1, chi = (1 - nu)(1 + R^2/k^2)/(2 - nu); `inertia`: R^2/k^2."""
+    return psi > 4 * (1 - nu) * (1 + inertia) / (2 - nu) - 1
 
 
 def lost_slip(folder: Path, psi: float, normal: float, **more) -> tuple[float, dict]:
