@@ -5,7 +5,7 @@ READY := .venv/.ready
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws oblique friction-jump contact-time-svk law-comparison contact-time-neohookean calibrate conservation stick-slip oblique-angles verify paper movie test robustness bench bench-quick textbook skipping costs promise scaling materials disc-block-errors pairing-comparison refine refine-oblique clean
+.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws oblique friction-jump contact-time-svk law-comparison contact-time-neohookean calibrate conservation stick-slip verify paper movie test robustness bench bench-quick textbook skipping costs promise scaling materials disc-block-errors pairing-comparison oblique-angles refine refine-oblique clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
@@ -56,10 +56,6 @@ conservation: ## the energy's drift over the step, with BDF2 and energy-momentum
 stick-slip: $(READY) ## search for the paper's order of sliding and sticking over epsilon, k and nu
 	@$(PYTHON) -m orchestrate $@ $(ARGS)
 
-oblique-angles: override ARGS += --page docs/oblique-angles.md
-oblique-angles: $(READY) ## disc and ball over the angle of incidence, beside rigid and elastic theory; not a part of paper
-	@$(PYTHON) -m orchestrate $@ $(ARGS)
-
 verify: $(READY) ## exact solutions with convergence: bar, rod, Hertz, rigid bodies, friction, manufactured motions
 	@$(PYTHON) -m orchestrate $@ $(ARGS)
 
@@ -86,8 +82,8 @@ robustness: $(READY) ## malformed input, kills, hard runs drawn at random, and e
 
 disc-block-errors: override ARGS += --page docs/disc-block.md
 pairing-comparison: override ARGS += --page docs/pairing.md
-promise scaling materials: override ARGS += --page docs/$@.md
-bench textbook skipping costs promise scaling materials disc-block-errors pairing-comparison refine: $(READY)
+promise scaling materials oblique-angles: override ARGS += --page docs/$@.md
+bench textbook skipping costs promise scaling materials disc-block-errors pairing-comparison oblique-angles refine: $(READY)
 	@$(PYTHON) -m orchestrate $@ $(ARGS)
 bench: ## run time against error: meshes, steps, integrators, and other programs where installed
 bench-quick: $(READY) ## the same for one case, coarse
@@ -100,6 +96,7 @@ scaling: ## one impact in many units and materials has one dimensionless answer
 materials: ## twelve materials at three speeds, against a stiffer contact on a finer mesh
 disc-block-errors: ## the disc on the free block (section 3.2) over law, nu, stiffness and mesh, with error bars; NGSolve beside it
 pairing-comparison: ## closest point against pairs of points (14), (15): rebound, energy and time over epsilon and k
+oblique-angles: ## disc and ball over the angle of incidence, beside rigid and elastic theory (ARGS="--friction 0.2 --angles 20,40,60")
 refine: ## refine mesh and step, report the observed convergence
 refine-oblique: $(READY) ## the same for the oblique disc, with the slip velocity down to 0.01 m/s
 	@$(PYTHON) -m orchestrate refine disc-oblique $(ARGS)

@@ -204,11 +204,11 @@ def findings(body: str, kind: str, group: pd.DataFrame) -> list[str]:
     """What the finished runs of a body and kind say."""
     slides = slides_throughout(group.psi_1, NU, INERTIA[body])
     found = [f"e {group.e.min():.3f} to {group.e.max():.3f}"]
-    for name in ("rigid", "elastic"):
-        for where, part in (("psi_1 > 4 chi - 1", group[slides]), ("below", group[~slides])):
-            off = part[f"off {name} [%]"].dropna()
-            if len(off):
-                found.append(f"{where} off {name} by {off.min():+.1f} to {off.max():+.1f} %")
+    for where, part in (("beyond psi_1 = 4 chi - 1", group[slides]), ("below", group[~slides])):
+        name = "rigid" if kind == "stiff" or part.elastic.isna().all() else "elastic"
+        if len(part):
+            off = part[f"off {name} [%]"]
+            found.append(f"{where} off {name} theory by {off.min():+.1f} to {off.max():+.1f} %")
     recoil = group.psi_2.min()
     return found + [f"psi_2 down to {recoil:.2f}"]
 
