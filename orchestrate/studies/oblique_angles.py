@@ -40,8 +40,8 @@ ANGLES, FRICTION = (20.0, 30.0, 40.0, 50.0, 60.0, 75.0), 0.3
 LEAST, MOST, MANY = 5.0, 85.0, 40                         # degrees; how many angles
 LIMIT = 900.0                                             # seconds a run may take
 ASKED = 0.05                                              # largest deviation of the slip that is lost and regained backwards, as in V17,
-FINITE = 1.5                                              # and for an elastic ball that sticks so many times the contact's radius over the ball's more:
-                                                          # V17 measures 1.2 to 1.8 of it for what a ball is no half-space
+FINITE = 1.5                                              # and for an elastic ball that sticks so many times the contact's radius over the ball's more, as a ball is
+                                                          # no half-space: at 0.125 V17 measures 0.8 (psi_1 = 1.2) to 1.8 (0.6, finer elements) times that
 MEASURED = ("e", "along", "psi_2")
 FORMATS = {"body": "", "kind": "", "angle": "g", "psi_1": ".3f", "e": ".4f", "along": ".4f", "psi_2": ".3f", "psi_2_error": ".3f", "rigid": ".3f",
            "off rigid [%]": "+.1f", "elastic": ".3f", "off elastic [%]": "+.1f", "asked [%]": ".1f", "verdict": ""}
