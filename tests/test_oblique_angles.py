@@ -60,7 +60,7 @@ def test_what_theory_says_agrees():
     assert angles.holds(table) and table[table.verdict == ""][["body", "kind", "angle"]].values.tolist() == [
         ["disc", "paper", SLIDES], ["disc", "paper", STICKS], ["disc", "slow", STICKS], ["ball", "paper", SLIDES], ["ball", "paper", STICKS]]
     said = angles.report(table)
-    assert "7 of 7 that a theory is asked of agree" in said and "The requirement holds" in said
+    assert "7 of 7 that a theory is asked of agree," in said and "The requirement holds" in said
     assert table.loc[table.kind == "stiff", "asked [%]"].eq(5).all()
     sticks = table[(table.kind == "slow") & (table.body == "ball") & (table.angle == STICKS)]["asked [%]"].item()
     assert 5 < sticks < 30, "a ball that sticks is granted a share of the contact's radius over its own"
@@ -111,6 +111,6 @@ def test_real_impacts_of_a_stiff_disc(tmp_path, capsys):
     table = pd.read_csv(tmp_path / "out/oblique-angles.csv")
     assert table.angle.tolist() == [20, 60] and table.verdict.tolist() == ["agrees"] * 2 and table.psi_2[0] > 4 and abs(table.psi_2[1]) < 0.05
     assert (table.psi_2_error < 0.05).all() and (tmp_path / "out/oblique-angles.png").stat().st_size > 5000
-    assert "2 of 2 that a theory is asked of agree" in out and "make oblique-angles" in (tmp_path / "page.md").read_text()
+    assert "2 of 2 that a theory is asked of agree," in out and "make oblique-angles" in (tmp_path / "page.md").read_text()
     made = {path: path.stat().st_mtime_ns for path in (tmp_path / "out").rglob("summary.json")}
     assert len(made) == 4 and main(call) == 0 and made == {path: path.stat().st_mtime_ns for path in (tmp_path / "out").rglob("summary.json")}

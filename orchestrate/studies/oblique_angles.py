@@ -50,7 +50,8 @@ FORMATS = {"body": "", "kind": "", "angle": "g", "psi_1": ".3f", "e": ".4f", "al
 def main(argv: list[str]) -> int:
     """Runs what is not there yet, prints the table, writes oblique-angles.csv and .png; 0 if all that theory holds for agrees with it."""
     parser = argparse.ArgumentParser(prog="python -m orchestrate oblique-angles", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--angles", metavar="A,B,...", default=",".join(f"{angle:g}" for angle in ANGLES), help="of incidence, degrees from the plane (default: %(default)s)")
+    usual = ",".join(f"{angle:g}" for angle in ANGLES)
+    parser.add_argument("--angles", metavar="A,B,...", default=usual, help="of incidence, degrees from the plane (default: %(default)s)")
     parser.add_argument("--friction", metavar="MU", default=f"{FRICTION:g}", help="static and dynamic coefficient (default: %(default)s)")
     parser.add_argument("--bodies", metavar="BODY,...", default=",".join(INERTIA), help="of %(default)s")
     parser.add_argument("--kinds", metavar="KIND,...", default=",".join(KINDS), help="of %(default)s")
@@ -106,7 +107,8 @@ def impacts(body: str, kind: str, friction: float, angles: list[float], out: Pat
     coarse = study.study(coarser, place / "coarser", base, LIMIT, name)
     rows = []
     for angle, (_, run), (_, other) in zip(angles, fine.iterrows(), coarse.iterrows()):
-        row = {"body": body, "kind": kind, "friction": friction, "angle": angle, "speed": base["speed"], "psi_1": number(1 / math.tan(math.radians(angle)), friction)}
+        row = {"body": body, "kind": kind, "friction": friction, "angle": angle, "speed": base["speed"],
+               "psi_1": number(1 / math.tan(math.radians(angle)), friction)}
         found, beside = (measured(each, row) if each.exit == 0 else dict.fromkeys(MEASURED, math.nan) for each in (run, other))
         row |= found | {f"{name}_error": abs(found[name] - beside[name]) for name in MEASURED}
         rows.append(row | {"exit": run.exit, "message": run.message, "warnings": run.warnings,
@@ -183,20 +185,21 @@ def holds(table: pd.DataFrame) -> bool:
 
 def report(table: pd.DataFrame) -> str:
     """The table, what it says, and the verdict."""
-    lines = [f"One coefficient of friction, static = dynamic = {table.friction.iloc[0]:g}; nu = {NU:g}, neo-Hookean. {'; '.join(f'{kind}: {WORDS[kind]}' for kind in table.kind.unique())}. angle [degrees] from the",
-             "plane; e: restitution; along: speed of the centre along the plane over that before; psi_2 with its error bar; rigid: Coulomb, with the measured e; elastic: sliding throughout",
-             "beyond psi_1 = 4 chi - 1, below that, of balls, Maw, Barber and Fawcett; off: of the slip that is lost and regained backwards, psi_1 - psi_2, from that theory.", "", study.table(table, FORMATS), ""]
-    lines += [f"failed, exit {row.exit}: {row.body}, {row.kind}, {row.angle:g} degrees: {row.message}" for row in table[table.verdict == "failed"].itertuples()]
-    for (body, kind), group in table[table.verdict != "failed"].groupby(["body", "kind"], sort=False):
-        lines.append(f"- {body}, {kind}: " + "; ".join(findings(body, kind, group)) + ".")
+    kinds = "; ".join(f"{kind}: {WORDS[kind]}" for kind in table.kind.unique())
+    lines = [f"One coefficient of friction, static = dynamic = {table.friction.iloc[0]:g}; nu = {NU:g}, neo-Hookean. {kinds}. angle [degrees] from the",
+             "plane; e: restitution; along: speed of the centre along the plane over that before; psi_2 with its error bar; rigid: Coulomb, with the measured e;",
+             "elastic: sliding throughout beyond psi_1 = 4 chi - 1, below that, of balls, Maw, Barber and Fawcett; off: of the slip that is lost and regained",
+             "backwards, psi_1 - psi_2, from that theory.", "", study.table(table, FORMATS), ""]
+    failed = table.verdict == "failed"
+    lines += [f"failed, exit {row.exit}: {row.body}, {row.kind}, {row.angle:g} degrees: {row.message}" for row in table[failed].itertuples()]
+    lines += [f"- {body}, {kind}: {'; '.join(findings(body, kind, group))}." for (body, kind), group in table[~failed].groupby(["body", "kind"], sort=False)]
     if found := study.warned(table.warnings):
         lines.append(f"- Warnings: {found}.")
     if "disc" in set(table.body):
-        lines.append("- No theory is at hand of an elastic disc that sticks: springs side by side stand for axisymmetric contacts alone, and the approach of a half-plane hangs on the point it is "
-                     "measured from. One that slides throughout (psi_1 > 4 chi - 1) loses what friction of one direction takes, as the ball does.")
-    asked = table["asked [%]"].notna()
-    lines += ["", f"{(table.verdict == 'agrees').sum()} of {asked.sum()} that a theory is asked of agree: {100 * ASKED:g} % of the slip that is lost, as in V17, and for slow balls that stick {FINITE:g} times "
-                  f"the contact's radius over the ball's more. The requirement {'holds' if holds(table) else 'FAILS'}."]
+        lines.append("- No theory is at hand of an elastic disc that sticks: springs side by side stand for axisymmetric contacts alone, and the approach of a\n"
+                     "  half-plane hangs on the point it is measured from. One that slides throughout loses what friction of one direction takes, as the ball does.")
+    lines += ["", f"{(table.verdict == 'agrees').sum()} of {table['asked [%]'].notna().sum()} that a theory is asked of agree, to {100 * ASKED:g} % of the slip that is lost, as in V17; slow balls that stick are granted",
+              f"{FINITE:g} times the contact's radius over the ball's on top, as a ball is no half-space. The requirement {'holds' if holds(table) else 'FAILS'}."]
     return "\n".join(lines)
 
 
