@@ -82,8 +82,8 @@ robustness: $(READY) ## malformed input, kills, hard runs drawn at random, and e
 
 disc-block-errors: override ARGS += --page docs/disc-block.md
 pairing-comparison: override ARGS += --page docs/pairing.md
-promise scaling materials oblique-angles: override ARGS += --page docs/$@.md
-bench textbook skipping costs promise scaling materials disc-block-errors pairing-comparison oblique-angles refine: $(READY)
+promise scaling materials: override ARGS += --page docs/$@.md
+bench textbook skipping costs promise scaling materials disc-block-errors pairing-comparison refine: $(READY)
 	@$(PYTHON) -m orchestrate $@ $(ARGS)
 bench: ## run time against error: meshes, steps, integrators, and other programs where installed
 bench-quick: $(READY) ## the same for one case, coarse
@@ -96,7 +96,8 @@ scaling: ## one impact in many units and materials has one dimensionless answer
 materials: ## twelve materials at three speeds, against a stiffer contact on a finer mesh
 disc-block-errors: ## the disc on the free block (section 3.2) over law, nu, stiffness and mesh, with error bars; NGSolve beside it
 pairing-comparison: ## closest point against pairs of points (14), (15): rebound, energy and time over epsilon and k
-oblique-angles: ## disc and ball over the angle of incidence, beside rigid and elastic theory (ARGS="--friction 0.2 --angles 20,40,60")
+oblique-angles: $(READY) ## disc and ball over the angle of incidence, beside rigid and elastic theory (ARGS="--friction 0.2 --angles 20,40,60")
+	@$(PYTHON) -m orchestrate $@ $(or $(ARGS),--page docs/$@.md)
 refine: ## refine mesh and step, report the observed convergence
 refine-oblique: $(READY) ## the same for the oblique disc, with the slip velocity down to 0.01 m/s
 	@$(PYTHON) -m orchestrate refine disc-oblique $(ARGS)

@@ -198,7 +198,8 @@ def report(table: pd.DataFrame) -> str:
     if "disc" in set(table.body):
         lines.append("- No theory is at hand of an elastic disc that sticks: springs side by side stand for axisymmetric contacts alone, and the approach of a\n"
                      "  half-plane hangs on the point it is measured from. One that slides throughout loses what friction of one direction takes, as the ball does.")
-    lines += ["", f"{(table.verdict == 'agrees').sum()} of {table['asked [%]'].notna().sum()} that a theory is asked of agree, to {100 * ASKED:g} % of the slip that is lost, as in V17; slow balls that stick are granted",
+    agree, asked = (table.verdict == "agrees").sum(), table["asked [%]"].notna().sum()
+    lines += ["", f"{agree} of {asked} that a theory is asked of agree, to {100 * ASKED:g} % of the slip that is lost, as in V17; slow balls that stick are granted",
               f"{FINITE:g} times the contact's radius over the ball's on top, as a ball is no half-space. The requirement {'holds' if holds(table) else 'FAILS'}."]
     return "\n".join(lines)
 
