@@ -80,8 +80,10 @@ def run_all(out: Path, cores: int = study.CORES) -> pd.DataFrame:
     program, frames, found = freefem.find(), [], {}
     for old in (out / "summary.json", *out.glob("*.png")):
         old.unlink(missing_ok=True)
-    folders = [fresh(case, out) for case in CASES]
-    acts = {(c, p): partial(perform, part, folders[c]) for c, case in enumerate(CASES) for p, part in enumerate(case.parts)}
+    shutil.rmtree(out / "runs", ignore_errors=True)
+    for case in CASES:
+        (out / "runs" / slug(case)).mkdir(parents=True)
+    acts = {(c, p): partial(perform, part, out / "runs" / slug(case)) for c, case in enumerate(CASES) for p, part in enumerate(case.parts)}
     with tqdm(total=len(acts), disable=None, leave=False) as line:
         for key, outcome in study.side_by_side(acts, cores):
             found[key] = ([], str(outcome)) if isinstance(outcome, Failure) else outcome
@@ -98,14 +100,6 @@ def run_all(out: Path, cores: int = study.CORES) -> pd.DataFrame:
         passed, provenance = bool(judged(frame)["pass"].all()), {"code": code_hash(), "freefem": program.version}
         part.write_text(json.dumps({"passed": passed, "provenance": provenance}, indent=1))
     return frame
-
-
-def fresh(case: Case, out: Path) -> Path:
-    """The folder of the case, made, with nothing in it of an earlier run."""
-    folder = out / "runs" / slug(case)
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
-    return folder
 
 
 def perform(part: Callable[[Path], Iterator[Row]], folder: Path) -> tuple[list[Row], str]:
