@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .bodies import Body
+from .failure import BadInput
 from .multibody import Multibody, gap_between
 from .obstacles import Obstacle
 from .outlines import Outline
@@ -21,7 +22,7 @@ MET = 1e-3                   # of the smaller thickness: a gap that counts as cl
 class Meeting:
     """Body `first` and `second` (body k, or -1 - k for obstacle k) when they first touch, or, where they do not, at the start: both
     as they are then; the parts along and across the normal, positive, of their relative velocity [m/s] and of the constant force
-    between them [m/s2]; the radius that stands for the pair [m]."""
+    between them [m/s2]; the radius that stands for the pair [m]; whether as rigid bodies they never meet."""
 
     first: int
     second: int
@@ -31,6 +32,7 @@ class Meeting:
     pressing: float
     pulling: float
     radius: float
+    never: bool = False
 
     def gaps(self, body: int, points: np.ndarray) -> np.ndarray:
         """Gaps (n,) from the other one of the points of `body`, as it is at the meeting."""
@@ -58,15 +60,27 @@ def _meeting(scene: Multibody, first: int, second: int) -> Meeting:
         gap = _gap(*_at(body, other, t, pull))
         met = gap <= MET * radius
         speed, rate = np.linalg.norm(start + pull * t) + turning, np.linalg.norm(pull)
-        if met or speed + rate == 0 or gap > FAR * radius:
+        never = not met and (speed + rate == 0 or gap > FAR * radius)
+        if met or never:
             break
         t += 2 * gap / (speed + math.sqrt(speed**2 + 2 * rate * gap))       # speed t + rate t^2 / 2 = gap
     t = t if met else 0.0
     outlines, velocity = _at(body, other, t, pull), start + pull * t
     normal = outlines[0].normal_from(outlines[1])
     if not met:                                                # what lets them meet later may turn them in any direction
-        return Meeting(first, second, outlines, float(np.linalg.norm(velocity)), 0.0, float(np.linalg.norm(pull)), 0.0, float(radius))
+        return Meeting(first, second, outlines, float(np.linalg.norm(velocity)), 0.0, float(np.linalg.norm(pull)), 0.0, float(radius), never)
     return Meeting(first, second, outlines, *_parts(velocity, normal), *_parts(pull, normal), float(radius))
+
+
+def refuse_nothing(scene: Multibody, met: list[Meeting]) -> None:
+    """BadInput where nothing can ever move, or nothing touch before an end that is left open."""
+    moving = [*(one.velocity for one in [*scene.bodies, *scene.obstacles]), *(np.atleast_1d(body.spin) for body in scene.bodies)]
+    forces = [scene.values.get(name, 0.0) for name in ("gravity", "body_force_x", "body_force_y")]
+    if not any(np.any(one) for one in moving) and not any(forces):
+        raise BadInput("velocity: 0 of every body, without spin, gravity or body force: nothing would ever move (accepted: one of them)")
+    if scene.values["end_time"] == 0 and all(one.never for one in met):
+        raise BadInput("end_time: 0 is the end of the contact, but nothing ever touches: the bodies miss each other and every obstacle "
+                       "(accepted: an end_time > 0, or velocities and positions that lead them together)")
 
 
 def _parts(vector: np.ndarray, normal: np.ndarray) -> tuple[float, float]:

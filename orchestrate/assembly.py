@@ -57,10 +57,10 @@ class Assembly:
         (folder / "scene.dat").write_text(self.data)
 
 
-def assemble(scene: Multibody, rule: Rule | None = None) -> Assembly:
+def assemble(scene: Multibody, rule: Rule | None = None, met: list[Meeting] | None = None) -> Assembly:
     """Meshes the bodies of a scene and writes down the rest. What the scene leaves open is settled by `rule` (left out: describe), which is
-    asked for a disc, or a ball, of the pair's radius that hits a plane."""
-    ask = Asker(scene, meetings(scene), rule or partial(describe, script=scene.dimension.like))
+    asked for a disc, or a ball, of the pair's radius that hits a plane. `met`: the scene's meetings, where they are known already."""
+    ask = Asker(scene, meetings(scene) if met is None else met, rule or partial(describe, script=scene.dimension.like))
     values = scene.values | contact_values(scene.bodies, scene.contact, ask, "contact")
     pairs = [pair_values(pair, ask, values) for pair in scene.pairs]
     sizes = [None if body.mesh else _sizes(k, ask) for k, body in enumerate(scene.bodies)]

@@ -45,6 +45,7 @@ def _find(variables: tuple[tuple[str, str], ...]) -> FreeFem:
     if not command:
         raise NotInstalled(f"{wanted} not found; {HOW}")
     environment |= {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}   # one process a core
+    environment = _blas_kernels() | environment
     version = _probe(command, environment)
     if not version and "FF_LOADPATH" not in environment:
         environment["FF_LOADPATH"] = DEBIAN_PLUGINS
@@ -54,6 +55,19 @@ def _find(variables: tuple[tuple[str, str], ...]) -> FreeFem:
     if tuple(map(int, version.split(".")[:2])) < OLDEST:
         raise NotInstalled(f"{command} is version {version}, needed is {OLDEST[0]}.{OLDEST[1]} or newer; {HOW}")
     return FreeFem(command, version, environment)
+
+
+def _blas_kernels() -> dict[str, str]:
+    """OpenBLAS takes its oldest kernels (SSE3) for a processor newer than itself: those for AVX2 where there is that. They made steps with
+    14,000 unknowns in three dimensions a sixth faster; answers differ by round-off."""
+    try:
+        flags = re.search(r"^flags\s*:(.*)", Path("/proc/cpuinfo").read_text(), re.MULTILINE)
+        blas = ctypes.CDLL("libopenblas.so.0")
+        blas.openblas_get_corename.restype = ctypes.c_char_p
+        unknown = blas.openblas_get_corename() == b"Prescott"
+    except (OSError, AttributeError):
+        return {}
+    return {"OPENBLAS_CORETYPE": "Haswell"} if unknown and flags and {"avx2", "fma"} <= set(flags[1].split()) else {}
 
 
 def _probe(command: str, environment: dict[str, str]) -> str | None:

@@ -128,10 +128,12 @@ class Multibody:
     def prepare(self, where: Path, foreign: bytes | None = None) -> tuple[dict[str, Value | Path], str]:
         """The flags of a run in the folder `where`, and the text of its scene.toml. Puts into the folder what the flags name: the
         mesh of all bodies, and what bodies.edp reads of them."""
-        from . import assembly
+        from . import approach, assembly
         if len(self.bodies) == 1 and not self.obstacles:
             raise BadInput("obstacle: is missing, and a second body too (accepted: one table [[obstacle]] or more, or several [[body]])")
-        built = assembly.assemble(self)
+        met = approach.meetings(self)
+        approach.refuse_nothing(self, met)
+        built = assembly.assemble(self, met=met)
         built.write(where)
         return built.values | {"mesh": where / self.mesh_name, "bodies": where / "scene.dat"}, to_toml(built.used)
 

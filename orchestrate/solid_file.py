@@ -113,6 +113,9 @@ def _labelled(model, points: np.ndarray, cells: np.ndarray) -> SolidMesh:
     volumes = cell_volumes(points, cells)
     if not (volumes > 1e-12 * np.ptp(points, axis=0).max()**3 / len(cells)).all():
         raise BadInput(f"a tetrahedron is flat: its volume is {np.nanmin(volumes):.3g} m3, or it has a corner that is no number")
+    count = len(np.unique(_pieces(len(points), cells)[cells[:, 0]]))
+    if count > 1:
+        raise BadInput(f"its tetrahedra are {count} pieces that hang together nowhere (accepted: one, a [[body]] table and a file a piece)")
     faces = boundary(cells)
     named = _contact_triangles(model)
     if named is None:
@@ -145,17 +148,22 @@ def _contact_triangles(model) -> np.ndarray | None:
 
 def _is_outer(points: np.ndarray, faces: np.ndarray) -> np.ndarray:
     """Which boundary faces (f,) are around a body rather than around a cavity: pieces of surface that hang together, with a volume above 0."""
-    piece = np.arange(len(points))
-    while True:
-        least = piece[faces].min(axis=1)
-        before = piece.copy()
-        np.minimum.at(piece, faces.ravel(), np.repeat(least, 3))
-        piece = piece[piece]
-        if (piece == before).all():
-            break
+    piece = _pieces(len(points), faces)
     a, b, c = points[faces].transpose(1, 0, 2) - points.mean(axis=0)
     volume = np.bincount(piece[faces[:, 0]], weights=(a * np.cross(b, c)).sum(axis=1), minlength=len(points))
     return volume[piece[faces[:, 0]]] > 0
+
+
+def _pieces(points: int, elements: np.ndarray) -> np.ndarray:
+    """The piece (points,) that each point belongs to, by the lowest number of a point in it: elements (n, corners) hang together by common points."""
+    piece = np.arange(points)
+    while True:
+        least = piece[elements].min(axis=1)
+        before = piece.copy()
+        np.minimum.at(piece, elements.ravel(), np.repeat(least, elements.shape[1]))
+        piece = piece[piece]
+        if (piece == before).all():
+            return piece
 
 
 if __name__ == "__main__":

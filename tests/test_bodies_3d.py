@@ -178,6 +178,7 @@ def files(tmp_path_factory):
     (folder / "named.geo").write_text('SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 0.2, 0.06, 0.2};\n'
                                       'Physical Surface("contact") = Surface In BoundingBox {-0.01, -0.01, -0.01, 0.21, 0.01, 0.21};\nPhysical Volume("body") = {1};\n')
     (folder / "other.geo").write_text('SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 0.2, 0.06, 0.2}; Physical Surface("top") = {4};\n')
+    (folder / "twins.geo").write_text('SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 0.2, 0.06, 0.2}; Sphere(2) = {1, 0, 0, 0.1};\n')
     (folder / "flat.geo").write_text('SetFactory("OpenCASCADE"); Rectangle(1) = {0, 0, 0, 1, 1};\n')
     (folder / "text.msh").write_text("no mesh")
     (folder / "script.msh").write_text(f'SystemCall "touch {folder}/made";\n')
@@ -222,6 +223,7 @@ def test_named_surfaces_may_touch(files):
     ("text.msh", "body.1.file: 'text.msh': it does not begin with $MeshFormat (accepted: gmsh's .msh)"),
     ("script.msh", "body.1.file: 'script.msh': it does not begin with $MeshFormat"), ("leaves.geo", "body.1.file: 'leaves.geo': gmsh broke down over it (exit code 0)"),
     ("", "body.1.file: is missing (accepted: .msh, .mesh, .geo, .step, .stp)"), ("flat.geo", "body.1.file: 'flat.geo': it has no volume"),
+    ("twins.geo", "body.1.file: 'twins.geo': its tetrahedra are 2 pieces that hang together nowhere (accepted: one"),
     ("other.geo", "body.1.file: 'other.geo': none of its physical surfaces (top) has the name 'contact'")])
 def test_files_that_cannot_be_used_are_named(files, name, words):
     """The entry, the file as given, and what is wrong with it, in one line."""

@@ -250,6 +250,25 @@ def test_one_body_and_nothing_else(inputs, tmp_path):
     assert done.returncode == 10 and "nothing could ever touch" in done.stderr and done.stderr.count("\n") == 1, done.stderr
 
 
+@pytest.mark.parametrize("dimension, shape, zeros", [("plane-strain", "disc", 0), ("axisymmetric", "ball", 0), ("3d", "ball", 1)])
+def test_bodies_that_never_meet(tmp_path, dimension, shape, zeros):
+    """Refused before anything is meshed: bodies at rest; bodies that fly apart while the end is left open, and only then."""
+    def prepare(up: float, **more) -> None:
+        def body(name: str, y: float, v: float) -> dict:
+            return dict(name=name, shape=shape, radius=0.02, position=[0, y] + zeros * [0], velocity=[0, v] + zeros * [0])
+        given = dict(dimension=dimension, law="neohookean", young=1e6, nu=0.3, density=1000, accuracy=0.4, body=[body("above", 0.05, up), body("below", 0, 0)])
+        multibody.read(given | more, tmp_path, "two").prepare(tmp_path)
+
+    with pytest.raises(BadInput, match="^velocity: 0 of every body"):
+        prepare(0)
+    for more in ({}, {"gravity": 9.81}):                  # both fall alike
+        with pytest.raises(BadInput, match="^end_time: 0 is the end of the contact, but nothing ever touches"):
+            prepare(1, **more)
+    assert not list(tmp_path.iterdir())
+    prepare(1, end_time=0.01)
+    prepare(-1)
+
+
 @pytest.fixture(scope="module")
 def inputs(tmp_path_factory):
     """mesh.msh and scene.dat of two discs that touch."""

@@ -64,6 +64,14 @@ def test_bad_meshes(tmp_path, case):
     refused(tmp_path, words)
 
 
+def test_the_last_line_needs_no_end(tmp_path):
+    """A mesh whose last word is the last of the file is read: what is refused is the wrong scene behind it."""
+    mesh, data = (write(TWO, tmp_path)[name] for name in ("mesh", "bodies"))
+    mesh.write_text(mesh.read_text().rstrip())
+    data.write_text(data.read_text().replace("1722.0 0.0 0.0 0.0", "1722.0 0.0 0.5 0.0", 1))
+    refused(tmp_path, "mesh: region 0, body0, has its centre at y = ")
+
+
 @pytest.mark.parametrize("case", SCENES)
 def test_bad_scenes(tmp_path, case):
     (old, new), words = SCENES[case]
