@@ -188,8 +188,8 @@ def report(table: pd.DataFrame) -> str:
     kinds = "; ".join(f"{kind}: {WORDS[kind]}" for kind in table.kind.unique())
     lines = [f"One coefficient of friction, static = dynamic = {table.friction.iloc[0]:g}; nu = {NU:g}, neo-Hookean. {kinds}. angle [degrees] from the",
              "plane; e: restitution; along: speed of the centre along the plane over that before; psi_2 with its error bar; rigid: Coulomb, with the measured e;",
-             "elastic: sliding throughout beyond psi_1 = 4 chi - 1, below that, of balls, Maw, Barber and Fawcett; off: of the slip that is lost and regained",
-             "backwards, psi_1 - psi_2, from that theory.", "", study.table(table, FORMATS), ""]
+             "elastic: sliding throughout beyond psi_1 = 4 chi - 1, chi = (1 - nu)(1 + R^2/k^2)/(2 - nu), below that, of balls, Maw, Barber and Fawcett; off: of the",
+             "slip that is lost and regained backwards, psi_1 - psi_2, from that theory. psi_1 = 2 (1 - nu) v_s/(mu (2 - nu) v_n), v_s of the point that touches.", "", study.table(table, FORMATS), ""]
     failed = table.verdict == "failed"
     lines += [f"failed, exit {row.exit}: {row.body}, {row.kind}, {row.angle:g} degrees: {row.message}" for row in table[failed].itertuples()]
     lines += [f"- {body}, {kind}: {'; '.join(findings(body, kind, group))}." for (body, kind), group in table[~failed].groupby(["body", "kind"], sort=False)]
