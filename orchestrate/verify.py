@@ -1,6 +1,6 @@
 """Exact solutions (verification/): every case over element size, time step or what else its error comes from, judged by tolerances that were
-fixed beforehand. results/verify/verify.csv has all numbers, a figure a case beside it. Some seven minutes, most of them for V17;
-what the present code left is taken as it is."""
+fixed beforehand. results/verify/verify.csv has all numbers, a figure a case beside it. One case a core at a time (the three-dimensional one, V17, takes
+the longest, in parts); what the present code left is taken as it is."""
 
 import argparse
 import hashlib
@@ -8,6 +8,8 @@ import json
 import math
 import shutil
 import sys
+from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -20,7 +22,7 @@ from verification.case import Case, Row
 from verification.cases import CASES
 
 from . import freefem, run
-from .failure import Failure
+from .failure import BadInput, Failure
 from .folder import result_folder
 from .parameters import ROOT
 from .places import shown
@@ -37,11 +39,14 @@ def main(argv: list[str]) -> int:
     """Runs the cases, prints the table, writes verify.csv and the figures; 0 only if all pass."""
     parser = argparse.ArgumentParser(prog="python -m orchestrate verify", description=__doc__)
     parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/verify", help="the result folder")
+    parser.add_argument("--cores", metavar="N", type=int, default=study.CORES, help="this many cases at a time (default: %(default)s)")
     parser.add_argument("--force", action="store_true", help="run again what the same code has left")
     options = parser.parse_args(argv)
+    if options.cores < 1:
+        raise BadInput(f"--cores: {options.cores} (accepted: from 1)")
     out = result_folder(options.out)
     reused = there(out) and not options.force
-    frame = pd.read_csv(out / "verify.csv", keep_default_na=False, na_values=[""]) if reused else run_all(out)
+    frame = pd.read_csv(out / "verify.csv", keep_default_na=False, na_values=[""]) if reused else run_all(out, options.cores)
     passed = bool(judged(frame)["pass"].all())
     print(study.table(overview(frame), FORMATS))
     for failed in judged(frame).query("not `pass`").itertuples():
@@ -69,13 +74,23 @@ def code_hash() -> str:
     return digest.hexdigest()
 
 
-def run_all(out: Path) -> pd.DataFrame:
-    """Runs every case; all numbers, also in verify.csv, with the figures beside it. summary.json last."""
-    program, frames = freefem.find(), []
+def run_all(out: Path, cores: int = study.CORES) -> pd.DataFrame:
+    """Runs every case, `cores` of them or of their parts at a time; all numbers in the order of CASES, also in verify.csv, with the figures
+    beside it. summary.json last."""
+    program, frames, found = freefem.find(), [], {}
     for old in (out / "summary.json", *out.glob("*.png")):
         old.unlink(missing_ok=True)
-    for case in tqdm(CASES, disable=None, leave=False):
-        rows, message = perform(case, out)
+    shutil.rmtree(out / "runs", ignore_errors=True)
+    for case in CASES:
+        (out / "runs" / slug(case)).mkdir(parents=True)
+    acts = {(c, p): partial(perform, part, out / "runs" / slug(case)) for c, case in enumerate(CASES) for p, part in enumerate(case.parts)}
+    with tqdm(total=len(acts), disable=None, leave=False) as line:
+        for key, outcome in study.side_by_side(acts, cores):
+            found[key] = ([], str(outcome)) if isinstance(outcome, Failure) else outcome
+            line.update()
+    for c, case in enumerate(CASES):
+        outcomes = [found[c, p] for p in range(len(case.parts))]
+        rows, message = [row for some, _ in outcomes for row in some], next((said for _, said in outcomes if said), "")
         frames.append(judge(case, rows, message))
         if not message:
             draw(case, rows, out)
@@ -87,13 +102,11 @@ def run_all(out: Path) -> pd.DataFrame:
     return frame
 
 
-def perform(case: Case, out: Path) -> tuple[list[Row], str]:
-    """The numbers of a case, as far as it came, and why it did not come to its end."""
-    folder, rows = out / "runs" / slug(case), []
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
+def perform(part: Callable[[Path], Iterator[Row]], folder: Path) -> tuple[list[Row], str]:
+    """The numbers of a part of a case, as far as it came, and why it did not come to its end."""
+    rows = []
     try:
-        for row in case.rows(folder):
+        for row in part(folder):
             rows.append(row)
     except Failure as failure:
         return rows, f"{failure}"

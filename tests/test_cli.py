@@ -186,7 +186,7 @@ def test_a_full_disk_is_one_line(tmp_path, monkeypatch, capsys):
 
 
 @pytest.mark.parametrize("command", ["promise", "scaling", "materials", "bench", "costs", "skipping", "stress", "stress-map", "textbook", "verify", "refine",
-                                     "stick-slip", "disc-block-errors"])
+                                     "stick-slip", "oblique-angles", "disc-block-errors"])
 def test_a_loop_of_links_is_no_folder(tmp_path, command):
     """A result folder behind a loop of links is exit code 14 in one line, for every study."""
     (tmp_path / "loop").symlink_to(tmp_path / "pool")

@@ -2,6 +2,9 @@
 
 import json
 import math
+import os
+import signal
+import time
 
 import pandas as pd
 import pytest
@@ -106,10 +109,42 @@ def test_a_run_that_was_cut_short_leaves_no_verdict(cases, tmp_path):
     cases(case([], rows=lambda folder: 1 / 0))
     assert main(["verify", "--out", str(tmp_path)]) == 0, "what the same code has left is taken as it is"
     def stopped(folder):
-        raise KeyboardInterrupt
+        os.kill(os.getppid(), signal.SIGINT)   # Ctrl-C, while the case runs
+        time.sleep(60)
         yield
     cases(case([], rows=stopped))
     assert main(["verify", "--force", "--out", str(tmp_path)]) == 130 and not (tmp_path / "summary.json").exists()
+
+
+def test_parts_run_side_by_side_in_one_order(cases, tmp_path):
+    """Two parts of a case run at the same time, in one folder; whichever ends first, verify.csv is that of one after the other."""
+    def part(name, other, value):
+        def rows(folder):
+            (folder / name).touch()
+            while not (folder / other).exists() and value > 0:   # the first ends only when the second has run
+                time.sleep(0.01)
+            yield from (Row(name, size, value + size, value) for size in (0.2, 0.1))
+        return rows
+    written = []
+    for cores, wait in ((2, "b"), (1, "a")):
+        cases(case([], name="V5", rows=(part("a", wait, 100), part("b", "b", 101))), case(FINE, name="V6"))
+        assert main(["verify", "--force", "--cores", f"{cores}", "--out", str(tmp_path)]) == 0
+        written.append((tmp_path / "verify.csv").read_bytes())
+    assert written[0] == written[1] and written[0].index(b",a,") < written[0].index(b",b,") < written[0].index(b"V6")
+
+
+def test_a_case_that_crashes_fails(cases, tmp_path, capfd):
+    """A process that is lost costs its case alone, which fails."""
+    cases(case([], name="V5", rows=lambda folder: os._exit(9)), case(FINE))
+    assert main(["verify", "--out", str(tmp_path)]) == 1
+    out = capfd.readouterr().out
+    assert "FAILED  V5, its process ended with exit code 9" in out and " pass |" in out
+
+
+def test_no_cores_are_refused(tmp_path, capsys):
+    """In one line, with exit code 10, before anything is run."""
+    assert main(["verify", "--cores", "0", "--out", str(tmp_path / "out")]) == 10
+    assert capsys.readouterr().err == "ffimpact: --cores: 0 (accepted: from 1)\n" and not (tmp_path / "out").exists()
 
 
 def test_tolerances_are_the_documented_ones():

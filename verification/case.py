@@ -37,7 +37,12 @@ class Case:
     title: str
     axis: str                                    # label of the size
     tolerance: float
-    rows: Callable[[Path], Iterator[Row]]        # runs the case; a folder for its files
+    rows: Callable[[Path], Iterator[Row]] | tuple[Callable[[Path], Iterator[Row]], ...]   # runs the case, or its parts at the same time; a folder for their files
     by_order: bool = False
     beside: Callable[[plt.Axes, Path], None] | None = None   # draws a second panel from those files
     note: str = ""                               # what the reader of the figure should know
+
+    @property
+    def parts(self) -> tuple[Callable[[Path], Iterator[Row]], ...]:
+        """What can run at the same time; their rows, one after another, are those of the case."""
+        return self.rows if isinstance(self.rows, tuple) else (self.rows,)

@@ -15,7 +15,7 @@ from .hertz import ellipse, impacts, pressed
 from .impact import bars, rigids
 from .manufactured import in_space, in_time
 from .measure import disc
-from .oblique_ball import curve, rebounds
+from .oblique_ball import REBOUNDS, curve
 from .rigid_disc import oblique
 from .rod import rods
 from .sliding_block import block
@@ -68,7 +68,7 @@ CASES = (
          note="Gravity and height a thousandth of those of Doyen, Ern and Piperno, for the linear theory. Contact: a force above 1 % of the largest."),
     Case("V16", "two blocks with unlike meshes pressed together: the same pressure everywhere", "element size / width", 0.01, blocks,
          note="Penalty 10 E/width. Where both bodies take both roles the pressure at a contact point deviates with penalty × element size / E."),
-    Case("V17", "ball, obliquely: rigid, sliding throughout and rolling; elastic, Maw, Barber and Fawcett", "radius of the contact / radius", 0.05, rebounds,
+    Case("V17", "ball, obliquely: rigid, sliding throughout and rolling; elastic, Maw, Barber and Fawcett", "radius of the contact / radius", 0.05, REBOUNDS,
          beside=curve, note="In three dimensions. Rigid: with the measured restitution. Elastic: ν = 0.45, share of the slip at the contact that is lost and regained "
                             "backwards, 1 + β. Theory is of half-spaces: what a ball differs from them falls with the contact's radius, and counts most where it sticks "
                             "(small ψ₁). Elements are half the contact's radius; on finer ones it is larger, at ψ₁ = 0.6 by half or more (docs/ball-3d.md)."),

@@ -1,12 +1,19 @@
-"""V17: a ball hits the plane obliquely, in three dimensions: the rigid limit, and the elastic ball of Maw, Barber and Fawcett (1976)."""
+"""V17: a ball hits the plane obliquely, in three dimensions: the rigid limit, and the elastic ball of Maw, Barber and Fawcett (1976).
+
+What the elastic ball is judged by is no proof of 5 % where it mostly sticks. At psi_1 = 0.6 the slip that is lost, 1 + beta, is 3.7 % above theory with the
+elements used here, half the contact's radius, but 6.9 % with elements of a third of it: two errors partly cancel. Either way it falls with the
+contact's radius (a ball is no half-space), about as its power 0.6 to 0.8: 15.9, 7.3, 3.7 % at 0.2, 0.02, 0.002 m/s, 22, 12.2, 6.9 % on the finer elements.
+At psi_1 = 1.2 it is 10.2, 5.1, 5.1, 2.0 % at 0.2, 0.02, 0.01, 0.002 m/s: how the elements lie on so small a contact is worth some per cent.
+"""
 
 import math
 from collections.abc import Iterator
-from functools import cache
+from functools import partial
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
+from numpy.typing import ArrayLike
 
 from orchestrate.report.figures import BLACK, BLUE, GREY, ORANGE
 
@@ -18,24 +25,25 @@ from .rigid_disc import STIFF, leaves
 INERTIA = 2.5               # R^2/k^2 of a ball, k its radius of gyration
 RADIUS = STIFF["radius"]
 # nearly rigid, on the penalty alone: it sinks in by 1.3 % of its radius, some forty times as deep as the pressure dents it
-RIGID = STIFF | dict(script="ball-plane", penalty=3e10, law="neohookean", fields=0)
+RIGID = STIFF | dict(penalty=3e10, law="neohookean", fields=0)
 # elastic, nu near 1/2, where a rigid plane acts as one of the same material
 NU, FRICTION, YOUNG, DENSITY = 0.45, 0.1, 7e6, 1722
+MASS = 4 / 3 * math.pi * RADIUS**3 * DENSITY
 ELASTIC = dict(script="ball-plane", law="neohookean", nu=NU, young=YOUNG, density=DENSITY, radius=RADIUS, accuracy=0.1, fields=0)
-SPEEDS = {0.6: (0.2, 0.002), 1.2: (0.2, 0.002), 2.0: (0.2, 0.02), 3.0: (0.2, 0.02), 5.0: (0.2, 0.02)}     # v_n [m/s] for each psi
+# v_n [m/s] for each psi: as small (and dear) as the tolerance needs; that the error falls with the contact is asked where it is largest. More: docs/ball-3d.md
+SPEEDS = {0.6: (0.2, 0.002), 1.2: (0.002,), 2.0: (0.02,), 3.0: (0.2,), 5.0: (0.2,)}
 
 
 def rigid(folder: Path, angle: float, friction: float, **more) -> tuple[dict, float, float, float]:
     """The summary of an impact at 1 m/s and this angle [degrees] to the plane, the speeds along and across it before, mu (1 + e) v_n/v_t."""
-    found = disc(folder, **RIGID | dict(angle=angle, friction_static=friction) | more).summary
+    found = disc(folder, "ball-plane", **RIGID | dict(angle=angle, friction_static=friction) | more).summary
     along, across = math.cos(math.radians(angle)), math.sin(math.radians(angle))
     return found, along, across, friction * (across + found["rebound_vy"]) / along
 
 
-@cache
-def springs(psi: float, nu: float) -> float:
+def springs(psi: ArrayLike, nu: float) -> np.ndarray:
     """Share 1 + beta of the slip v_s that an elastic ball loses and regains in the other direction, beta = -v_s'/v_s, over
-    psi = 2 (1 - nu) v_s/(mu (2 - nu) v_n).
+    psi = 2 (1 - nu) v_s/(mu (2 - nu) v_n) > 0, a number or an array of any shape.
 
     Theory of Maw, Barber and Fawcett: Hertz in the normal direction, partial slip of Cattaneo and Mindlin along the plane. Both are those of a
     row of independent springs under a parabola x^2/R (Popov, Hess 2015), of stiffness E* dx along the normal and, G*/E* = 2 (1 - nu)/(2 - nu), G* dx along the
@@ -43,25 +51,25 @@ def springs(psi: float, nu: float) -> float:
     """
     normal, friction, count, steps = 1e-3, 0.1, 400, 6000
     ratio = 2 * (1 - nu) / (2 - nu)
-    slip = start = psi * friction * normal / ratio
-    speed, depth = normal, 0.0
+    start = np.asarray(psi, dtype=float) * friction * normal / ratio
+    slip, speed, depth = start, normal, 0.0
     deepest = (15 / 16 * normal**2) ** 0.4
     dt = 1.2 * 2.87 * normal**-0.2 / steps
     x = 1.05 * math.sqrt(deepest) * (np.arange(count) + 0.5) / count
-    width, stretched = 2 * (x[1] - x[0]), np.zeros(count)        # both halves of the row
+    width, stretched = 2 * (x[1] - x[0]), np.zeros((*start.shape, count))        # both halves of the row
     while depth >= 0:
         depth += dt * speed
         pressed = np.maximum(depth - x**2, 0)
         limit = friction * pressed / ratio
-        stretched = np.clip(stretched + dt * slip, -limit, limit)
+        stretched = np.clip(stretched + dt * slip[..., None], -limit, limit)
         speed -= dt * width * pressed.sum()
-        slip -= dt * width * ratio * stretched.sum() * (1 + INERTIA)
+        slip = slip - dt * width * ratio * stretched.sum(axis=-1) * (1 + INERTIA)
     return 1 - slip / start
 
 
-def slides_throughout(psi: float, nu: float) -> bool:
-    """Whether the theory has a ball slide all the time: beyond 4 chi - 1, chi = (1 - nu)(1 + R^2/k^2)/(2 - nu)."""
-    return psi > 4 * (1 - nu) * (1 + INERTIA) / (2 - nu) - 1
+def slides_throughout(psi: ArrayLike, nu: float, inertia: ArrayLike = INERTIA) -> ArrayLike:
+    """Whether the theory has a ball slide all the time: beyond 4 chi - 1, chi = (1 - nu)(1 + R^2/k^2)/(2 - nu); `inertia`: R^2/k^2."""
+    return psi > 4 * (1 - nu) * (1 + inertia) / (2 - nu) - 1
 
 
 def lost_slip(folder: Path, psi: float, normal: float, **more) -> tuple[float, dict]:
@@ -72,29 +80,33 @@ def lost_slip(folder: Path, psi: float, normal: float, **more) -> tuple[float, d
     return 1 - (found["rebound_vx"] + RADIUS * found["rebound_spin"]) / start, found
 
 
-def rebounds(folder: Path) -> Iterator[Row]:
-    """Over the largest radius of the contact beside the ball's; of the rigid one that of the circle in which the plane cuts it."""
-    mass = 4 / 3 * math.pi * RADIUS**3 * DENSITY
-    for psi, speeds in SPEEDS.items():
-        for normal in speeds:
-            *_, radius = hertz.impact(mass, RADIUS, YOUNG / (1 - NU**2), normal)
-            lost, theory = lost_slip(folder / "run", psi, normal)[0], springs(psi, NU)
-            with (folder / "elastic.csv").open("a") as table:
-                table.write(f"{psi},{normal},{lost}\n")
-            yield Row(f"ψ₁ = {psi:g}: slip", radius / RADIUS, lost, theory)
-    depth = (3 * mass / (2 * math.pi * RADIUS * RIGID["penalty"])) ** (1 / 3)
-    for angle in (20, 60):
-        found, along, _, lost = rigid(folder / "run", angle, 0.2)
-        (centre, rim), words, size = leaves(lost, INERTIA), f"rigid, {angle}°", math.sqrt(2 * depth / RADIUS)
-        yield Row(f"{words}: speed", size, found["rebound_vx"] / along, centre)
-        yield Row(f"{words}: spin", size, -found["rebound_spin"] * RADIUS / along, rim)
+def elastic(folder: Path, psi: float) -> Iterator[Row]:
+    """Over the largest radius of the contact beside the ball's."""
+    for normal in SPEEDS[psi]:
+        *_, radius = hertz.impact(MASS, RADIUS, YOUNG / (1 - NU**2), normal)
+        lost = lost_slip(folder / f"{psi:g}", psi, normal)[0]
+        with (folder / f"elastic-{psi:g}.csv").open("a") as table:
+            table.write(f"{psi},{normal},{lost}\n")
+        yield Row(f"ψ₁ = {psi:g}: slip", radius / RADIUS, lost, float(springs(psi, NU)))
+
+
+def stiff(folder: Path, angle: float) -> Iterator[Row]:
+    """Over the largest radius of the circle in which the plane cuts the ball, beside the ball's."""
+    depth = (3 * MASS / (2 * math.pi * RADIUS * RIGID["penalty"])) ** (1 / 3)
+    found, along, _, lost = rigid(folder / f"rigid-{angle:g}", angle, 0.2)
+    (centre, rim), words, size = leaves(lost, INERTIA), f"rigid, {angle}°", math.sqrt(2 * depth / RADIUS)
+    yield Row(f"{words}: speed", size, found["rebound_vx"] / along, centre)
+    yield Row(f"{words}: spin", size, -found["rebound_spin"] * RADIUS / along, rim)
+
+
+REBOUNDS = (*(partial(elastic, psi=psi) for psi in SPEEDS), *(partial(stiff, angle=angle) for angle in (20, 60)))   # they can run at the same time
 
 
 def curve(axes: plt.Axes, folder: Path) -> None:
     """beta over psi_1: theory, and the runs."""
     psi = np.linspace(0.1, 6, 40)
-    axes.plot(psi, [springs(one, NU) - 1 for one in psi], color=BLACK, linewidth=1, label="theory")
-    runs = np.loadtxt(folder / "elastic.csv", delimiter=",", ndmin=2)
+    axes.plot(psi, springs(psi, NU) - 1, color=BLACK, linewidth=1, label="theory")
+    runs = np.concatenate([np.loadtxt(path, delimiter=",", ndmin=2) for path in sorted(folder.glob("elastic-*.csv"))])
     for normal, colour in zip(sorted(set(runs[:, 1]), reverse=True), (GREY, ORANGE, BLUE)):
         of = runs[runs[:, 1] == normal]
         axes.plot(of[:, 0], of[:, 2] - 1, "o", color=colour, markersize=4.5, label=f"{normal:g} m/s")

@@ -6,10 +6,12 @@ import os
 import signal
 import time
 from collections import Counter, deque
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Hashable, Iterable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
+from typing import Any, TypeVar
 
 import pandas as pd
 from tqdm import tqdm
@@ -25,6 +27,7 @@ STOPS = (signal.SIGTERM, signal.SIGHUP, signal.SIGINT)
 tqdm.monitor_interval = 0   # no thread beside us: we fork
 LONGEST = 200               # characters of a folder's name
 BULK, CONTACT = 8e-3, 2.5e-3   # m: the sizes of mesh factor 1 of the studies on the disc of radius 0.05 m
+Key = TypeVar("Key", bound=Hashable)
 Point = dict[str, Value]    # the parameters that tell this run from the others of the study
 
 
@@ -62,32 +65,40 @@ def place(folder: Path, point: Point) -> Path:
 
 
 def _outcomes(tasks: dict[Path, scene.Scene], limit: float, cores: int, estimate: bool) -> Iterator[tuple[Path, dict]]:
-    """(folder, outcome) as they are ready, a process each; leaving this in any way ends them and their FreeFem++."""
+    """(folder, outcome) as they are ready."""
+    acts = {where: partial(_limited, limit, where, wanted, estimate) for where, wanted in tasks.items()}
+    for where, outcome in side_by_side(acts, cores):
+        yield where, _row(1, str(outcome), False, {}) if isinstance(outcome, Failure) else outcome
+
+
+def side_by_side(acts: dict[Key, Callable], cores: int = CORES) -> Iterator[tuple[Key, Any]]:
+    """(key, what its act returns) as they are ready, `cores` at a time, a process each; a Failure where the process was lost. An act that
+    returns None is asked again later. Leaving this in any way ends them and their FreeFem++."""
     context = multiprocessing.get_context("fork")
-    waiting, running = deque(tasks), {}
+    waiting, running = deque(acts), {}
     try:
         while waiting or running:
             while waiting and len(running) < cores:
-                where = waiting.popleft()
+                key = waiting.popleft()
                 receiver, sender = context.Pipe(duplex=False)
-                process = context.Process(target=_work, args=(sender, os.getpid(), limit, where, tasks[where], estimate))
+                process = context.Process(target=_work, args=(sender, os.getpid(), acts[key]))
                 signal.pthread_sigmask(signal.SIG_BLOCK, STOPS)      # a handler inside the fork would be lost
                 process.start()
                 signal.pthread_sigmask(signal.SIG_UNBLOCK, STOPS)
                 sender.close()
-                running[receiver] = where, process
+                running[receiver] = key, process
             for receiver in wait(running):
-                where, process = running.pop(receiver)
+                key, process = running.pop(receiver)
                 try:
                     outcome = receiver.recv()
                 except EOFError:
                     process.join()
-                    outcome = _row(1, f"its process ended with exit code {process.exitcode}", False, {})
-                if outcome:
-                    yield where, outcome
-                else:               # another study is at it: see later what came of it
-                    waiting.append(where)
+                    outcome = Failure(f"its process ended with exit code {process.exitcode}")
+                if outcome is None:   # another study is at it: see later what came of it
+                    waiting.append(key)
                     time.sleep(0.3)
+                else:
+                    yield key, outcome
     finally:
         for _, process in running.values():
             process.terminate()
@@ -95,17 +106,22 @@ def _outcomes(tasks: dict[Path, scene.Scene], limit: float, cores: int, estimate
             process.join()
 
 
-def _work(sender: Connection, parent: int, limit: float, folder: Path, wanted: scene.Scene, estimate: bool) -> None:
-    """One point in a process of its own."""
-    def too_long(number):
-        raise TooLong(f"no end after {limit:g} s: killed")
+def _work(sender: Connection, parent: int, act: Callable) -> None:
+    """One act in a process of its own."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)         # Ctrl-C is for the parent, who then ends us
     stopping.on(signal.SIGTERM, stopping.leave)          # run() tidies up on the way out
-    stopping.on(signal.SIGALRM, too_long)                # likewise
     signal.pthread_sigmask(signal.SIG_UNBLOCK, STOPS)
     freefem.die_with_parent(parent, signal.SIGTERM)
+    sender.send(act())
+
+
+def _limited(limit: float, folder: Path, wanted: scene.Scene, estimate: bool) -> dict | None:
+    """_outcome() of a run that may take `limit` seconds."""
+    def too_long(number):
+        raise TooLong(f"no end after {limit:g} s: killed")
+    stopping.on(signal.SIGALRM, too_long)                # run() tidies up on the way out
     signal.setitimer(signal.ITIMER_REAL, limit)
-    sender.send(_outcome(folder, wanted, estimate))
+    return _outcome(folder, wanted, estimate)
 
 
 def there(folder: Path, wanted: scene.Scene, estimate: bool = False) -> dict | None:
