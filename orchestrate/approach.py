@@ -54,7 +54,7 @@ def _meeting(scene: Multibody, first: int, second: int) -> Meeting:
         pull[:2] = scene.values.get("body_force_x", 0.0), scene.values["body_force_y"] - scene.values["gravity"]
     start = body.velocity - other.velocity
     radius = min([body.outline.half_thickness, *([other.outline.half_thickness] if second >= 0 else [])])
-    turning = sum(np.linalg.norm(one.spin) * one.outline.reach for one in (body, other) if isinstance(one, Body))
+    turning = sum(one.outline.fastest(one.angle, one.spin) * one.outline.reach for one in (body, other) if isinstance(one, Body))
     t, met = 0.0, False
     for _ in range(STEPS):
         gap = _gap(*_at(body, other, t, pull))

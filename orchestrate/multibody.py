@@ -37,7 +37,7 @@ from .tables import Table, listed, to_toml
 
 SCENES = scene.SCENES
 RUN = ("gravity", "body_force_x", "body_force_y", "degree", "integrator", "dt", "accuracy", "accuracy_of", "tolerance", "breakdown",
-       "chatter", "end_time", "fields", "checkpoint_every", "without")
+       "chatter", "end_time", "fields", "modes", "checkpoint_every", "without")
 OWN = ("penalty", "friction_static", "friction_dynamic")                                  # a pair may have its own
 CONTACT = (*OWN, "exponent", "slip_velocity", "regularization", "friction_transition", "pairing", "pairing_range")
 TOUCHING = 1e-9              # of a body's thickness: an overlap up to it is round-off
@@ -149,7 +149,7 @@ class Multibody:
                 found |= {f"body.{k}.mesh_size": bulk, f"body.{k}.contact_mesh_size": min(bulk, factor * given["contact_mesh_size"])}
         if used["dt"] > 0:
             found["dt"] = factor * used["dt"]
-        return found | {"accuracy": min(LARGEST, factor**2 * used["accuracy"]), "fields": 0}
+        return found | {"accuracy": min(LARGEST, factor**2 * used["accuracy"]), "fields": 0, "modes": 0}
 
 
 def built_in() -> list[str]:

@@ -141,6 +141,10 @@ class Outline:
         """The angle [rad] with what a spin [rad/s] adds in the time t."""
         return angle + spin * t
 
+    def fastest(self, angle: float, spin: float) -> float:
+        """No spin [rad/s] is larger that it comes to."""
+        return abs(spin)
+
     def carried(self, moved: "Outline", points: np.ndarray) -> np.ndarray:
         """Points of this outline carried along to where it is moved, rigidly."""
         a, b = self.loops[0].corners[:2]

@@ -20,11 +20,12 @@ from typing import Protocol
 
 import numpy as np
 
-from . import solid_file
+from . import solid_file, tumbling
 from .failure import BadInput
 from .outlines import normal_of
 from .solid_mesh import MOST_CELLS, Sizes, SolidMesh, expected_cells, mesh_shape
 from .tables import LONGEST, SHORTEST, Table
+from .tumbling import rotation
 
 SHAPES = {"ball": ("radius",), "box": ("width", "height", "depth"), "cylinder": ("radius", "height"), "mesh": ("file",)}
 MOTION = ("angle", "turn", "spin")
@@ -40,6 +41,7 @@ class Shape(Protocol):
     volume: float             # [m3]
     area: float               # [m2]
     reach: float              # distance of its farthest point from the centre [m]
+    moments: np.ndarray       # (3, 3), of inertia over the density, about the centre [m5]
 
     def gap(self, points: np.ndarray) -> np.ndarray:
         """Signed distances (n,) of points (n, 3), negative inside."""
@@ -71,6 +73,10 @@ class Ball:
     def reach(self) -> float:
         return self.radius
 
+    @property
+    def moments(self) -> np.ndarray:
+        return 2 / 5 * self.volume * self.radius**2 * np.eye(3)
+
     def gap(self, points: np.ndarray) -> np.ndarray:
         return np.linalg.norm(points, axis=1) - self.radius
 
@@ -101,6 +107,11 @@ class Box:
     @property
     def reach(self) -> float:
         return float(np.linalg.norm(self.extent) / 2)
+
+    @property
+    def moments(self) -> np.ndarray:
+        square = self.extent**2
+        return self.volume / 12 * np.diag(square.sum() - square)
 
     def gap(self, points: np.ndarray) -> np.ndarray:
         beyond = abs(points) - self.extent / 2
@@ -140,6 +151,11 @@ class Cylinder:
     @property
     def reach(self) -> float:
         return math.hypot(self.radius, self.height / 2)
+
+    @property
+    def moments(self) -> np.ndarray:
+        across = (3 * self.radius**2 + self.height**2) / 12
+        return self.volume * np.diag([across, self.radius**2 / 2, across])
 
     def gap(self, points: np.ndarray) -> np.ndarray:
         beyond = np.column_stack([np.hypot(points[:, 0], points[:, 2]) - self.radius, abs(points[:, 1]) - self.height / 2])
@@ -184,6 +200,15 @@ class Surface:
     @property
     def reach(self) -> float:
         return float(np.linalg.norm(self.corners, axis=1).max())
+
+    @cached_property
+    def moments(self) -> np.ndarray:
+        """The integral of x x^T over the tetrahedra between the centre and each triangle is 1/120 of six times its volume times (s s^T + a a^T + b b^T +
+        c c^T), s = a + b + c."""
+        a, b, c = self.triangles.transpose(1, 0, 2)
+        six = (a * np.cross(b, c)).sum(axis=1)
+        square = sum(np.einsum("t,ti,tj->ij", six, one, one) for one in (a + b + c, a, b, c)) / 120
+        return np.trace(square) * np.eye(3) - square
 
     def gap(self, points: np.ndarray) -> np.ndarray:
         """The distance from the nearest triangle; inside, where they are seen under a full solid angle."""
@@ -276,8 +301,12 @@ class Solid:
         return replace(self, centre=self.centre + centre, rotation=rotation @ self.rotation)
 
     def turned(self, turn: np.ndarray, spin: np.ndarray, t: float) -> np.ndarray:
-        """The matrix of a turn [rad] and what a spin [rad/s] adds in the time t."""
-        return rotation(spin * t) @ rotation(turn)
+        """The matrix at time t of a body that begins with a turn [rad] and a spin [rad/s]."""
+        return tumbling.turned(self.shape.moments, rotation(turn), spin, t)
+
+    def fastest(self, turn: np.ndarray, spin: np.ndarray) -> float:
+        """No spin [rad/s] is larger that a turned body comes to which begins with this one."""
+        return tumbling.fastest(self.shape.moments, rotation(turn), spin)
 
     def carried(self, moved: "Solid", points: np.ndarray) -> np.ndarray:
         """Points of this solid carried along to where it is moved."""
@@ -315,17 +344,6 @@ class Solid:
         if getattr(other, "radius", None):
             return -normal_of(self, other.centre)
         return normal_of(other, self.points[other.gap(self.points).argmin()])
-
-
-def rotation(turn: np.ndarray) -> np.ndarray:
-    """The matrix of a rotation vector [rad] (Rodrigues), exact at right angles about an axis of coordinates."""
-    angle = float(np.linalg.norm(turn))
-    if angle == 0:
-        return np.eye(3)
-    x, y, z = turn / angle
-    K = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    found = np.eye(3) + math.sin(angle) * K + (1 - math.cos(angle)) * K @ K
-    return np.where(abs(found - found.round()) < 1e-15, found.round(), found)
 
 
 # ---- meshes

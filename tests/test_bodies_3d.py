@@ -6,7 +6,7 @@ import time
 import numpy as np
 import pytest
 
-from orchestrate import approach, assembly, mesh, mirror, multibody, parameters, run, solid_file, solid_mesh, solids
+from orchestrate import approach, assembly, mesh, mirror, multibody, parameters, run, solid_file, solid_mesh, solids, tumbling
 from orchestrate.failure import BadInput
 from orchestrate.report import bodies, figures, report
 from orchestrate.scene import load
@@ -76,8 +76,36 @@ def test_places_turns_and_motions():
     assert np.array_equal(solids.rotation(np.radians([0, 0, 90])), [[0, -1, 0], [1, 0, 0], [0, 0, 1]])
     turned, = read(BLOCK | {"angle": 30, "spin": [1, 2, 3]}).bodies
     assert turned.angle == pytest.approx([0, 0, math.pi / 6]) and turned.spin.tolist() == [1, 2, 3]
-    later = turned.at(0.1, np.zeros(3)).rotation
-    assert later == pytest.approx(solids.rotation(np.array([0.1, 0.2, 0.3])) @ solids.rotation(np.radians([0, 0, 30])))
+
+
+def test_free_bodies_tumble():
+    """Euler's equations in the body's axes, J w' = J w x w, in small steps of another method; a ball, and a box about a principal axis, go on turning as they
+    began. No spin is above the bound."""
+    extent, spin, start, t = np.array([0.05, 0.1, 0.2]), np.array([12.0, 5, -8]), tumbling.rotation(np.array([0.3, -0.2, 0.5])), 0.6
+    box, w, R, n, fastest = solids.Box(extent), start.T @ spin, start, 60000, 0.0
+    J = np.diag(box.moments)
+    for _ in range(n):
+        middle = w + t / n / 2 * np.cross(J * w, w) / J
+        w = w + t / n * np.cross(J * middle, middle) / J
+        R = R @ tumbling.rotation(middle * t / n)
+        fastest = max(fastest, np.linalg.norm(w))
+    assert tumbling.turned(box.moments, start, spin, t) == pytest.approx(R, abs=1e-6)
+    assert abs(R - tumbling.rotation(spin * t) @ start).max() > 0.1
+    assert fastest <= tumbling.fastest(box.moments, start, spin)
+    for moments, about in ((solids.Ball(0.1).moments, spin), (box.moments, 7 * start[:, 0])):
+        assert tumbling.turned(moments, start, about, t) == pytest.approx(tumbling.rotation(about * t) @ start, abs=1e-12)
+
+
+def test_moments_of_inertia():
+    """Those of a box by the formula and by its triangles; a ball and a cylinder by points that fill them."""
+    sides = np.array([0.05, 0.1, 0.2])
+    made = solid_mesh.mesh_shape("box", sides, np.eye(3), (), mesh.Sizes(0.1, 0.1, np.empty((0, 3)), 0.0), 0.025)
+    assert solids.Surface(made.points[made.faces]).moments == pytest.approx(solids.Box(sides).moments, rel=1e-9, abs=1e-15)
+    x = np.random.default_rng(1).uniform(-1, 1, (400000, 3))
+    for shape in (solids.Ball(1.0), solids.Cylinder(0.7, 1.6)):
+        inside = x[shape.gap(x) < 0]
+        square = inside.T @ inside * 8 / len(x)
+        assert shape.moments == pytest.approx(np.trace(square) * np.eye(3) - square, abs=0.01 * shape.moments.max())
 
 
 def test_balls_meet_where_geometry_says():

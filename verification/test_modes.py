@@ -9,7 +9,7 @@ import pytest
 from orchestrate import run, scene
 from orchestrate.failure import Unreadable
 from orchestrate.report import vibration
-from verification import modes
+from verification import measure as runs, modes, solids
 
 NU = 0.3
 SLOW = {"law": "neohookean", "nu": NU, "speed": 0.2, "fields": 0}
@@ -67,3 +67,15 @@ def test_spectrum_of_a_force(tmp_path):
     (found.folder / "modes.csv").write_text("mode\n1\n")
     with pytest.raises(Unreadable, match="modes.csv lacks the columns frequency"):
         vibration.read(found.folder)
+
+
+def test_no_energies_of_modes_of_a_body_that_turns_aside(tmp_path):
+    """In three dimensions the axes that turn with a body turn about z: spin about x leaves frequencies alone, and a warning; about z energies."""
+    for spin, known in (((0, 0, 5), True), ((5, 0, 0), False)):
+        scene = solids.Scene([solids.ball((0, 0, 0), 0.05, 1, shift=(0, 0.06, 0), velocity=(0, -2, 0), spin=spin)], [("plane", (0, -1, 0, 0, 1, 0), (0, 0, 0))])
+        folder = tmp_path / str(known)
+        folder.mkdir()
+        summary = runs.solid_bodies(folder, scene, modes=4, end_time=1e-5).summary
+        table = pd.read_csv(folder / "run/modes.csv")
+        assert (table.frequency > 0).all() and len(table) == 4 and table.energy.notna().all() == known
+        assert any(said.startswith("modes:") for said in summary["warnings"]) != known

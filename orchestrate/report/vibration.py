@@ -27,8 +27,8 @@ def spectrum(t: np.ndarray, dt: np.ndarray, force: np.ndarray, frequencies: np.n
 
 
 def draw(table: pd.DataFrame, history: dict[str, np.ndarray], per: str) -> plt.Figure | None:
-    """Energy by mode over frequency, and above it the force's spectrum up to the last mode; None where there are no modes. `per`: "/m" in plane strain."""
-    if table.empty:
+    """Energy by mode over frequency, and above it the force's spectrum up to the last mode; None where there are no modes, or no energies. `per`: "/m" in plane strain."""
+    if table.energy.isna().all():
         return None
     figure, (top, below) = plt.subplots(2, 1, figsize=(6.4, 5), sharex=True)
     frequencies = np.linspace(0, 1.05 * table.frequency.max(), 600)
