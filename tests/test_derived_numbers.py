@@ -1,0 +1,56 @@
+"""Restitution, angles and slip of bodies that spin, and which of a run's numbers have no meaning and are not written."""
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from orchestrate import gmsh_file, mesh, run, scene
+from orchestrate.parameters import ROOT
+
+COARSE = {"law": "neohookean", "accuracy": 0.1, "fields": 0}
+RADIUS = 0.05
+
+
+def go(out, name: str, values: dict = {}, mesh_file=None) -> tuple[pd.Series, run.RunResult]:
+    found = run.run(scene.load(name), values if mesh_file is None else COARSE | values, out, mesh_file=mesh_file, estimate=False)
+    return pd.read_csv(found.folder / "contacts.csv").iloc[0], found
+
+
+@pytest.mark.parametrize("name, speed, spin", [("disc-normal", 1, 100), ("ball", 3, 400)])
+def test_spin_has_no_part_in_restitution(tmp_path, name, speed, spin):
+    """A round body without friction: approach and all three restitutions are the centre's, whatever its spin; the slip is that of the rim."""
+    row, found = go(tmp_path / "out", name, COARSE | {"speed": speed, "spin": spin, "height": 0.01})
+    e = found.summary["rebound_vy"] / speed
+    assert row.approach == pytest.approx(speed, rel=1e-9) and row.separation == pytest.approx(e * speed, rel=1e-6)
+    assert [row.restitution, row.restitution_poisson, row.restitution_energetic] == pytest.approx([e, e, e], rel=1e-5)
+    assert found.summary["restitution"] == pytest.approx(row.restitution, rel=1e-9)
+    assert row.slip_before == pytest.approx(spin * RADIUS, rel=1e-3)
+
+
+def test_spin_of_two_discs(tmp_path):
+    """Two discs that meet off their centres and spin: the approach is that of their centres along the line between them at the touch."""
+    text = (ROOT / "orchestrate/scenes/two-discs.toml").read_text().replace("friction_static = 0.3", "friction_static = 0")
+    path = tmp_path / "spinning.toml"
+    path.write_text("accuracy = 0.1\n" + text.replace("velocity = [3, 0]", "velocity = [3, 0]\nspin = 200").replace("velocity = [-3, 0]", "velocity = [-3, 0]\nspin = 150"))
+    row, found = go(tmp_path / "out", str(path), {"fields": 0})
+    assert row.approach == pytest.approx(6 * math.sqrt(0.1**2 - 0.02**2) / 0.1, rel=2e-3)
+    assert row.slip_before == pytest.approx(abs(6 * 0.2 - 350 * RADIUS), rel=5e-3)
+
+
+def test_circle_about_another_point(tmp_path):
+    """A disc with a hole beside its centre, which has turned on its way down: the point of touch is below the circle's centre, which goes round the
+    centre of mass."""
+    hole, beside = 0.02, 0.025
+    with mesh.gmsh_session() as gmsh:
+        gmsh.option.setNumber("Mesh.MeshSizeMax", 0.008)
+        occ = gmsh.model.occ
+        occ.cut([(2, occ.addDisk(0, 0, 0, RADIUS, RADIUS))], [(2, occ.addDisk(0, beside, 0, hole, hole))])
+        occ.synchronize()
+        gmsh.model.mesh.generate(2)
+        mesh.write(gmsh_file.taken(gmsh.model), tmp_path / "m.msh")
+    row, _ = go(tmp_path / "out", "disc-normal", {"speed": 1, "spin": 100, "height": 0.01, "accuracy": 0.2}, tmp_path / "m.msh")
+    turned, lever = 100 * row.start, beside * hole**2 / (RADIUS**2 - hole**2)
+    assert 0.5 < turned < 1.5
+    assert row.approach == pytest.approx(1 + 100 * lever * math.sin(turned), rel=2e-3)
