@@ -1,12 +1,14 @@
 """Restitution, angles and slip of bodies that spin, and which of a run's numbers have no meaning and are not written."""
 
+import json
 import math
+import subprocess
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from orchestrate import gmsh_file, mesh, run, scene
+from orchestrate import freefem, gmsh_file, mesh, run, scene
 from orchestrate.parameters import ROOT
 
 COARSE = {"law": "neohookean", "accuracy": 0.1, "fields": 0}
@@ -54,3 +56,14 @@ def test_circle_about_another_point(tmp_path):
     turned, lever = 100 * row.start, beside * hole**2 / (RADIUS**2 - hole**2)
     assert 0.5 < turned < 1.5
     assert row.approach == pytest.approx(1 + 100 * lever * math.sin(turned), rel=2e-3)
+
+
+@pytest.mark.parametrize("spin", [50, 60])
+def test_angles_of_a_body_that_comes_along_the_normal(tmp_path, spin):
+    """Its centre has no way along the plane before, but for round-off of either sign: the angle after is to the side that it leaves to."""
+    program = freefem.find()
+    flags = f"-law neohookean -speed 4 -spin {spin} -friction_static 0.3 -accuracy 0.1 -fields 0 -out out".split()
+    subprocess.run([program.command, "-nw", "-ne", "-v", "0", ROOT / "edp/disc-plane.edp", *flags], cwd=tmp_path, env=program.environment, check=True, capture_output=True)
+    row, s = pd.read_csv(tmp_path / "out/contacts.csv").iloc[0], json.loads((tmp_path / "out/summary.json").read_text())
+    assert abs(s["rebound_vx"]) > 1
+    assert s["angle_out"] == pytest.approx(math.degrees(math.atan2(s["rebound_vy"], abs(s["rebound_vx"]))), rel=1e-6) == pytest.approx(row.angle_out)
