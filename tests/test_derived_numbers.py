@@ -3,6 +3,7 @@
 import json
 import math
 import subprocess
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -67,3 +68,14 @@ def test_angles_of_a_body_that_comes_along_the_normal(tmp_path, spin):
     row, s = pd.read_csv(tmp_path / "out/contacts.csv").iloc[0], json.loads((tmp_path / "out/summary.json").read_text())
     assert abs(s["rebound_vx"]) > 1
     assert s["angle_out"] == pytest.approx(math.degrees(math.atan2(s["rebound_vy"], abs(s["rebound_vx"]))), rel=1e-6) == pytest.approx(row.angle_out)
+
+
+def test_reverse_slip_is_the_same_elsewhere(tmp_path):
+    """A disc that is five metres lower in its file, and lifted onto the plane, slides back for as long as at home."""
+    here = mesh.disc(RADIUS, 0.016, 0.006, False)
+    times = []
+    for name, below in (("here", 0), ("lower", 5)):
+        mesh.write(replace(here, points=here.points - [0, below]), tmp_path / f"{name}.msh")
+        found = go(tmp_path / name, "disc-normal", {"speed": 5, "angle": 50, "spin": 60, "friction_static": 0.5}, tmp_path / f"{name}.msh")[1]
+        times.append((found.summary["reverse_slip_time"], found.summary["sliding_time"]))
+    assert 0 < times[0][0] < 0.9 * times[0][1] and times[1] == pytest.approx(times[0], rel=1e-3)
