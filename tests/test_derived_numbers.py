@@ -79,3 +79,34 @@ def test_reverse_slip_is_the_same_elsewhere(tmp_path):
         found = go(tmp_path / name, "disc-normal", {"speed": 5, "angle": 50, "spin": 60, "friction_static": 0.5}, tmp_path / f"{name}.msh")[1]
         times.append((found.summary["reverse_slip_time"], found.summary["sliding_time"]))
     assert 0 < times[0][0] < 0.9 * times[0][1] and times[1] == pytest.approx(times[0], rel=1e-3)
+
+
+def test_a_spin_about_x_strains_too(tmp_path):
+    """The flight to the touch is of an unstressed body: what its spin would strain it by is said, about whichever axis."""
+    path = tmp_path / "ball.toml"
+    path.write_text('''title = "A ball that spins about x"
+dimension = "3d"
+law = "neohookean"
+young = 7e6
+nu = 0.45
+density = 1722
+accuracy = 0.2
+degree = 1
+mesh_size = 0.03
+contact_mesh_size = 0.02
+dt = 5e-5
+end_time = 0.0107
+[[body]]
+shape = "ball"
+radius = 0.05
+position = [0, 0.06, 0]
+velocity = [0, -1, 0]
+spin = [700, 0, 0]
+[[obstacle]]
+name = "floor"
+kind = "plane"
+point = [0, 0, 0]
+normal = [0, 1, 0]
+''')
+    found = go(tmp_path / "out", str(path), {"fields": 0})[1]
+    assert any(warning.startswith("flight: ") and "by 30 %" in warning for warning in found.summary["warnings"])
