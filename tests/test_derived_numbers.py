@@ -5,7 +5,6 @@ import math
 import subprocess
 from dataclasses import replace
 
-import numpy as np
 import pandas as pd
 import pytest
 
@@ -40,6 +39,13 @@ def test_spin_of_two_discs(tmp_path):
     row, found = go(tmp_path / "out", str(path), {"fields": 0})
     assert row.approach == pytest.approx(6 * math.sqrt(0.1**2 - 0.02**2) / 0.1, rel=2e-3)
     assert row.slip_before == pytest.approx(abs(6 * 0.2 - 350 * RADIUS), rel=5e-3)
+
+
+def test_no_reverse_slip_of_many_bodies(tmp_path):
+    """In a scene of bodies no direction is the first one: what slides back is not measured, and no number stands for it."""
+    _, found = go(tmp_path / "out", "two-discs", {"accuracy": 0.3, "fields": 0})
+    assert found.summary["sliding_time"] > 0 and found.summary["reverse_slip_time"] is None
+    assert "sliding_fraction" in found.history and "reverse_fraction" not in found.history
 
 
 def test_circle_about_another_point(tmp_path):
