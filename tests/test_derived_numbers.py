@@ -1,0 +1,118 @@
+"""Restitution, angles and slip of bodies that spin, and which of a run's numbers have no meaning and are not written."""
+
+import json
+import math
+import subprocess
+from dataclasses import replace
+
+import pandas as pd
+import pytest
+
+from orchestrate import freefem, gmsh_file, mesh, run, scene
+from orchestrate.parameters import ROOT
+
+COARSE = {"law": "neohookean", "accuracy": 0.1, "fields": 0}
+RADIUS = 0.05
+
+
+def go(out, name: str, values: dict = {}, mesh_file=None) -> tuple[pd.Series, run.RunResult]:
+    found = run.run(scene.load(name), values if mesh_file is None else COARSE | values, out, mesh_file=mesh_file, estimate=False)
+    return pd.read_csv(found.folder / "contacts.csv").iloc[0], found
+
+
+@pytest.mark.parametrize("name, speed, spin", [("disc-normal", 1, 100), ("ball", 3, 400)])
+def test_spin_has_no_part_in_restitution(tmp_path, name, speed, spin):
+    """A round body without friction: approach and all three restitutions are the centre's, whatever its spin; the slip is that of the rim."""
+    row, found = go(tmp_path / "out", name, COARSE | {"speed": speed, "spin": spin, "height": 0.01})
+    e = found.summary["rebound_vy"] / speed
+    assert row.approach == pytest.approx(speed, rel=1e-9) and row.separation == pytest.approx(e * speed, rel=1e-6)
+    assert [row.restitution, row.restitution_poisson, row.restitution_energetic] == pytest.approx([e, e, e], rel=1e-5)
+    assert found.summary["restitution"] == pytest.approx(row.restitution, rel=1e-9)
+    assert row.slip_before == pytest.approx(spin * RADIUS, rel=1e-3)
+
+
+def test_spin_of_two_discs(tmp_path):
+    """Two discs that meet off their centres and spin: the approach is that of their centres along the line between them at the touch."""
+    text = (ROOT / "orchestrate/scenes/two-discs.toml").read_text().replace("friction_static = 0.3", "friction_static = 0")
+    path = tmp_path / "spinning.toml"
+    path.write_text("accuracy = 0.1\n" + text.replace("velocity = [3, 0]", "velocity = [3, 0]\nspin = 200").replace("velocity = [-3, 0]", "velocity = [-3, 0]\nspin = 150"))
+    row, found = go(tmp_path / "out", str(path), {"fields": 0})
+    assert row.approach == pytest.approx(6 * math.sqrt(0.1**2 - 0.02**2) / 0.1, rel=2e-3)
+    assert row.slip_before == pytest.approx(abs(6 * 0.2 - 350 * RADIUS), rel=5e-3)
+
+
+def test_no_reverse_slip_of_many_bodies(tmp_path):
+    """In a scene of bodies no direction is the first one: what slides back is not measured, and no number stands for it."""
+    _, found = go(tmp_path / "out", "two-discs", {"accuracy": 0.3, "fields": 0})
+    assert found.summary["sliding_time"] > 0 and found.summary["reverse_slip_time"] is None
+    assert "sliding_fraction" in found.history and "reverse_fraction" not in found.history
+
+
+def test_circle_about_another_point(tmp_path):
+    """A disc with a hole beside its centre, which has turned on its way down: the point of touch is below the circle's centre, which goes round the
+    centre of mass."""
+    hole, beside = 0.02, 0.025
+    with mesh.gmsh_session() as gmsh:
+        gmsh.option.setNumber("Mesh.MeshSizeMax", 0.008)
+        occ = gmsh.model.occ
+        occ.cut([(2, occ.addDisk(0, 0, 0, RADIUS, RADIUS))], [(2, occ.addDisk(0, beside, 0, hole, hole))])
+        occ.synchronize()
+        gmsh.model.mesh.generate(2)
+        mesh.write(gmsh_file.taken(gmsh.model), tmp_path / "m.msh")
+    row, _ = go(tmp_path / "out", "disc-normal", {"speed": 1, "spin": 100, "height": 0.01, "accuracy": 0.2}, tmp_path / "m.msh")
+    turned, lever = 100 * row.start, beside * hole**2 / (RADIUS**2 - hole**2)
+    assert 0.5 < turned < 1.5
+    assert row.approach == pytest.approx(1 + 100 * lever * math.sin(turned), rel=2e-3)
+
+
+@pytest.mark.parametrize("spin", [50, 60])
+def test_angles_of_a_body_that_comes_along_the_normal(tmp_path, spin):
+    """Its centre has no way along the plane before, but for round-off of either sign: the angle after is to the side that it leaves to."""
+    program = freefem.find()
+    flags = f"-law neohookean -speed 4 -spin {spin} -friction_static 0.3 -accuracy 0.1 -fields 0 -out out".split()
+    subprocess.run([program.command, "-nw", "-ne", "-v", "0", ROOT / "edp/disc-plane.edp", *flags], cwd=tmp_path, env=program.environment, check=True, capture_output=True)
+    row, s = pd.read_csv(tmp_path / "out/contacts.csv").iloc[0], json.loads((tmp_path / "out/summary.json").read_text())
+    assert abs(s["rebound_vx"]) > 1
+    assert s["angle_out"] == pytest.approx(math.degrees(math.atan2(s["rebound_vy"], abs(s["rebound_vx"]))), rel=1e-6) == pytest.approx(row.angle_out)
+
+
+def test_reverse_slip_is_the_same_elsewhere(tmp_path):
+    """A disc that is five metres lower in its file, and lifted onto the plane, slides back for as long as at home."""
+    here = mesh.disc(RADIUS, 0.016, 0.006, False)
+    times = []
+    for name, below in (("here", 0), ("lower", 5)):
+        mesh.write(replace(here, points=here.points - [0, below]), tmp_path / f"{name}.msh")
+        found = go(tmp_path / name, "disc-normal", {"speed": 5, "angle": 50, "spin": 60, "friction_static": 0.5}, tmp_path / f"{name}.msh")[1]
+        times.append((found.summary["reverse_slip_time"], found.summary["sliding_time"]))
+    assert 0 < times[0][0] < 0.9 * times[0][1] and times[1] == pytest.approx(times[0], rel=1e-3)
+
+
+def test_a_spin_about_x_strains_too(tmp_path):
+    """The flight to the touch is of an unstressed body: what its spin would strain it by is said, about whichever axis."""
+    path = tmp_path / "ball.toml"
+    path.write_text('''title = "A ball that spins about x"
+dimension = "3d"
+law = "neohookean"
+young = 7e6
+nu = 0.45
+density = 1722
+accuracy = 0.2
+degree = 1
+mesh_size = 0.03
+contact_mesh_size = 0.02
+dt = 5e-5
+end_time = 0.0107
+[[body]]
+shape = "ball"
+radius = 0.05
+position = [0, 0.06, 0]
+velocity = [0, -1, 0]
+spin = [700, 0, 0]
+[[obstacle]]
+name = "floor"
+kind = "plane"
+point = [0, 0, 0]
+normal = [0, 1, 0]
+''')
+    found = go(tmp_path / "out", str(path), {"fields": 0})[1]
+    assert any(warning.startswith("flight: ") and "by 30 %" in warning for warning in found.summary["warnings"])
