@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from ..sweeps import sweep, sweep_figures
-from .paper_judging import (AGREES, CONSTANT, DIFFERS, PARTLY, Finding, History, Results, both_times, finished, of_both, states, total, when)
+from .paper_judging import AGREES, CONSTANT, DIFFERS, PARTLY, Finding, History, Results, both_times, finished, of_both, states, total, when
 
 BLOCK = {"svk": "disc-block", "neohookean": "disc-block-neohookean"}
 MOMENTUM = 1e-8             # of the disc's momentum: below, that of both bodies is kept
@@ -127,11 +127,11 @@ def conserves(results: Results) -> Finding:
 def ball_time(results: Results) -> Finding:
     """Over a map of (ν, k) on coarse meshes, as the paper states none of these: agrees where some (ν, k) meets it, to half a unit of its last digit, on every
     mesh with ellipticity kept; partly where one meets it on some mesh only, or with ellipticity lost; else not. Runs with det F ≤ 0 are no answers."""
-    rows = finished(results, MAP)
+    rows, meshes, time = finished(results, MAP), results.table(MAP).mesh_size.unique(), sweep.load(MAP).figure["level"]
     whole = rows[rows.breakdown_time.isna()]
     met, sound = _meeting(whole), _meeting(whole[whole.ellipticity_lost_time.isna()])
-    independent = [nu for nu in rows.nu.unique() if _together([sound.get((h, nu), []) for h in rows.mesh_size.unique()])]
-    nearest = whole.loc[(whole.contact_time - 6.03e-3).abs().idxmin()] if len(whole) else None
+    independent = [nu for nu in rows.nu.unique() if _together([sound.get((h, nu), []) for h in meshes])]
+    nearest = whole.loc[(whole.contact_time - time).abs().idxmin()] if len(whole) else None
     same = "" if nearest is None else f"; nearest ν = {nearest.nu:g}, k = {nearest.penalty:.2g}: " + ", ".join(
         f"{1e3 * row.contact_time:.3f} ms on {1e3 * row.mesh_size:g} mm ({when(row.ellipticity_lost_time, 'ellipticity lost')}, {when(row.breakdown_time, 'det F ≤ 0')})"
         for row in rows[(rows.nu == nearest.nu) & (rows.penalty == nearest.penalty)].itertuples())
