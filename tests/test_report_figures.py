@@ -36,11 +36,11 @@ def closed():
 
 @pytest.mark.parametrize("draw", [figures._force, figures._velocity, figures._energies])
 def test_time_begins_at_zero_and_the_last_touch_is_marked(draw):
-    """A run from the touch on has a tick at t = 0; the last touch is a line with its time, in the legend."""
+    """A run from the touch on has a tick at t = 0; the end of the last step in contact is a line with its time, in the legend."""
     figure = draw(history(), SCENE)
     axes = figure.axes[0]
     assert axes.get_xlim()[0] == 0 and 0 in axes.get_xticks()
-    assert "last touch, 3.95 ms" in labels(axes)
+    assert "last step in contact, to 3.95 ms" in labels(axes)
 
 
 def test_a_body_that_goes_on_bouncing_has_no_last_touch():

@@ -81,7 +81,7 @@ def draw(results: dict[str, RunResult], path: Path) -> None:
         drag.set_ylabel(("acceleration by friction [10³ m/s²]" if mixed else f"friction force [kN{per}]") if rubs else "largest penetration [mm]")
         energy.set(ylabel="energy over that at the start" if mixed else f"energy [J{per}]", ylim=(0, None), xlabel="time [ms]")
         stated = any(each.scene.get("law") == "svk" and numbers_of_the_paper(each.scene, "contact_time") for each in results.values())
-        _key(force, {"last touch": ":", "last touch by the paper": "-."} if stated else {"last touch": ":"})
+        _key(force, {"last step in contact": ":", "last touch by the paper": "-."} if stated else {"last step in contact": ":"})
         _key(energy, {"total": "-", "elastic": "--"})
         velocity.set(ylabel="velocity [m/s]", xlabel="time [ms]")
         _key(velocity, {"$v_x$": "-", "$v_y$": "--", r"$-\omega R$": ":"} if rubs else {"$v_y$": "--"})
@@ -92,7 +92,7 @@ def draw(results: dict[str, RunResult], path: Path) -> None:
 
 
 def _contact(axes: plt.Axes, history: dict[str, np.ndarray], used: dict, colour: str) -> None:
-    """The last touch of a run, and when that would be by the contact time that the paper states of that impact with that law."""
+    """The end of the last step in contact, and when the last touch would be by the contact time that the paper states of that impact with that law."""
     touching = np.flatnonzero(history["normal_force"] > 0)
     if len(touching):
         begin = (history["t"] - history["dt"])[touching[0]]

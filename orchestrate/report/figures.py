@@ -124,14 +124,14 @@ def per_metre(scene: dict[str, Value]) -> str:
 
 
 def over_time(panels: list[plt.Axes], history: dict[str, np.ndarray]) -> None:
-    """Limits of the time [ms], which begins at 0 where the run does not begin with a long flight; a dotted line at the last touch, where the run goes on
+    """Limits of the time [ms], which begins at 0 where the run does not begin with a long flight; a dotted line at the end of the last step in contact, where the run goes on
     after it for longer than between any two touches, with a name in the legend of the first panel."""
     t, touches = 1e3 * history["t"], history["normal_force"] > 0
     last = t[touches][-1] if touches.any() else t[-1]
     for axes in panels:
         axes.set_xlim(0 if t[0] < 0.05 * t[-1] else t[0], t[-1])
         if t[-1] - last > np.diff(t[touches]).max(initial=0.0):
-            axes.axvline(last, color=BLACK, linestyle=":", linewidth=0.8, label=f"last touch, {last:.4g} ms" if axes is panels[0] else None)
+            axes.axvline(last, color=BLACK, linestyle=":", linewidth=0.8, label=f"last step in contact, to {last:.4g} ms" if axes is panels[0] else None)
 
 
 def published(axes: plt.Axes, history: dict[str, np.ndarray], scene: dict[str, Value]) -> None:
@@ -210,7 +210,7 @@ def _force(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figur
 
 
 def _end_of_contact(panels: list[plt.Axes], history: dict[str, np.ndarray], scene: dict[str, Value]) -> None:
-    """The time of panels over the same time, with the last touch and the paper's contact time named above the first."""
+    """The time of panels over the same time, with the last step in contact and the paper's contact time named above the first."""
     over_time(panels, history)
     published(panels[0], history, scene)
     if panels[0].get_legend_handles_labels()[0]:
