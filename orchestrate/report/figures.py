@@ -53,11 +53,11 @@ def draw(folder: Path, warnings: list[str]) -> list[Path]:
         else:
             drawn = _on_a_plane(history, contact, scene, snapshots)
         if (folder / "fields/contact.csv").exists():
-            table = contacts.read(folder)
+            table = contacts.read(folder, beside=True)
             along = contacts.draw(table, bodies.names(scene) if bodies.are_several(scene) else ["body"], is_half(scene), history["t"][~touches],
                                   scene if scene.get("script") in BODY and is_half(scene) else None, scene.get("symmetry", "full"), history)
             drawn |= {"contact": along} if along else {}
-            inside = solid.draw(snapshots, table, scene) if snapshots and "Z" in table else None
+            inside = solid.draw(snapshots, table[table.pressure > 0], scene) if snapshots and "Z" in table else None
             drawn |= {"solid": inside} if inside else {}
         if (folder / "contacts.csv").exists():
             bounces = impacts.draw(impacts.read(folder), bodies.names(scene) if bodies.are_several(scene) else ["body"],
