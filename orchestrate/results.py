@@ -60,7 +60,7 @@ def read_table(path: Path, columns: Iterable[str]) -> pd.DataFrame:
 def read_scene(folder: Path) -> dict[str, Value]:
     """scene.toml: every parameter as used."""
     try:
-        return tomllib.loads((folder / "scene.toml").read_text())
+        return tomllib.loads((folder / "scene.toml").read_text("utf-8"))
     except (OSError, ValueError) as error:
         raise Unreadable(f"{folder / 'scene.toml'} cannot be read: {why(error)}") from None
 

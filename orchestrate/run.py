@@ -101,7 +101,7 @@ def _solve(program: freefem.FreeFem, scene: Scene | Multibody, foreign: bytes | 
     flags = [text for name, value in given.items() for text in (f"-{name}", str(value))]
     exit_code, said = freefem.run(program, scene.script, flags, where / "log.txt", show, lock)
     if scene_toml and (where / "scene.toml").exists():
-        (where / "scene.toml").write_text(scene_toml)
+        (where / "scene.toml").write_text(scene_toml, "utf-8")
     _check(where, exit_code, said)
 
 
@@ -159,7 +159,7 @@ def _keep_failed(stage: Path, failure: Failure, scene: Scene | Multibody, proven
     """failure.json: the one the script wrote, or what is known; never a summary.json."""
     (stage / "summary.json").unlink(missing_ok=True)
     if not (stage / "scene.toml").exists():
-        (stage / "scene.toml").write_text(to_toml(scene.given))
+        (stage / "scene.toml").write_text(to_toml(scene.given), "utf-8")
     record = {"status": FAILURES.get(failure.code, "crashed"), "message": str(failure)} | read_json(stage / "failure.json")
     write_json(stage / "failure.json", record | {"exit_code": failure.code, "provenance": provenance})
 

@@ -110,7 +110,7 @@ def read_toml(path: Path, missing: str) -> tuple[str, dict]:
     try:
         if path.exists() and not path.is_file() and not path.is_dir():   # reading a pipe or a device might never end
             raise BadInput(f"{path}: is no file")
-        text = path.read_text()
+        text = path.read_text("utf-8")
         return text, tomllib.loads(text)
     except (FileNotFoundError, IsADirectoryError, NotADirectoryError):
         raise BadInput(missing) from None

@@ -2,6 +2,7 @@
 
 import difflib
 import json
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -97,19 +98,33 @@ def listed(given: dict, key: str) -> list[dict]:
 
 
 def to_toml(table: dict, path: str = "") -> str:
-    """The text of a TOML file of tables, lists of tables and values, numbers with all their digits."""
-    values = {key: value for key, value in table.items() if not _tables(value)}
-    text = "".join(f"{key} = {json.dumps(value, ensure_ascii=False)}\n" for key, value in values.items())
+    """The text of a TOML file of tables, lists of tables and values, numbers with all their digits: read again it is the same table."""
+    text = "".join(f"{_key(key)} = {_written(value)}\n" for key, value in table.items() if not _tables(value))
     for key, value in table.items():
         for one in _tables(value):
-            head = f"[{_at(path, key)}]" if isinstance(value, dict) else f"[[{_at(path, key)}]]"
-            text += f"\n{head}\n{to_toml(one, _at(path, key))}"
+            name = _at(path, _key(key))
+            text += f"\n{f'[{name}]' if isinstance(value, dict) else f'[[{name}]]'}\n{to_toml(one, name)}"
     return text
+
+
+def _key(key: str) -> str:
+    return key if re.fullmatch("[A-Za-z0-9_-]+", key) else _written(key)
+
+
+def _written(value) -> str:
+    """A value as TOML writes it: text as JSON does, but DEL; times and dates as Python does."""
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(_written, value))}]"
+    if isinstance(value, dict):
+        return f"{{{', '.join(f'{_key(key)} = {_written(one)}' for key, one in value.items())}}}"
+    return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def _tables(value) -> list[dict]:
     """The tables that a value is or lists."""
-    return [value] if isinstance(value, dict) else value if isinstance(value, list) and value and isinstance(value[0], dict) else []
+    return [value] if isinstance(value, dict) else value if isinstance(value, list) and value and all(isinstance(one, dict) for one in value) else []
 
 
 def _at(path: str, key: str) -> str:
