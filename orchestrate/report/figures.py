@@ -18,7 +18,7 @@ from matplotlib.tri import LinearTriInterpolator, Triangulation
 
 from .. import dimension, vtu
 from ..parameters import Value
-from ..results import read_history, read_scene
+from ..results import Contents, check_files, read_history, read_scene
 
 LAWS = {"svk": "St. Venant–Kirchhoff", "neohookean": "neo-Hookean", "incompressible": "incompressible neo-Hookean"}
 BLUE, ORANGE, GREEN, PURPLE, BLACK, GREY = "#0072b2", "#d55e00", "#009e73", "#aa4499", "#222222", "#999999"
@@ -39,12 +39,13 @@ def draw(folder: Path, warnings: list[str]) -> list[Path]:
     """Draws all figures of the run in `folder` into folder/figures, with its warnings below; the files. Unreadable where the
     folder is broken. energies.png is the last: where it is, all are."""
     from . import bodies, contact as contacts, impacts, solid, vibration
+    check_files(folder)
     history, scene = read_history(folder), read_scene(folder)
     snapshots = vtu.series(folder / "fields.pvd")
     target = folder / "figures"
     target.mkdir(exist_ok=True)
     touches = history["normal_force"] > 0
-    contact = {name: column[max(0, int(np.argmax(touches)) - 1):] for name, column in history.items()}   # without the flight
+    contact = Contents({name: column[max(0, int(np.argmax(touches)) - 1):] for name, column in history.items()}, history.path)   # without the flight
     with plt.rc_context(STYLE):
         if bodies.are_several(scene):
             drawn = bodies.draw(contact, scene, snapshots)
