@@ -115,8 +115,9 @@ def read_history(folder: Path) -> dict[str, np.ndarray]:
     """The columns of history.csv by name, each (steps,)."""
     path = folder / "history.csv"
     table = read_table(path)
-    if table.empty:
-        raise Unreadable(f"{path} cannot be read: it has no rows; {AGAIN}")
+    with reading(path):
+        if len(table) <= (steps := read_json(folder / "summary.json").get("steps", 0)):   # one more, of the start
+            raise ValueError(f"it has {len(table)} rows of {steps + 1}")
     return Contents({name: table[name].to_numpy(float) for name in table}, path)
 
 
