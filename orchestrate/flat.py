@@ -8,7 +8,7 @@ import numpy as np
 
 from . import gmsh_file, mesh, parameters
 from .describe import describe
-from .failure import BadInput
+from .failure import BadInput, brief
 from .outlines import Loop, Outline, crossing_sides, ellipse_loop, polygon_loop, self_crossing
 from .tables import LONGEST, SHORTEST, Table
 
@@ -34,7 +34,7 @@ def motion(table: Table) -> dict:
 
 def _velocity(table: Table) -> np.ndarray:
     if "velocity" in table and ("speed" in table or "direction" in table):
-        raise BadInput(f"{table.path}.velocity: '{table.given['velocity']}' stands beside speed or direction (accepted: velocity, or speed with direction)")
+        raise BadInput(f"{table.path}.velocity: '{brief(table.given['velocity'])}' stands beside speed or direction (accepted: velocity, or speed with direction)")
     if ("speed" in table) != ("direction" in table):
         missing = "direction" if "speed" in table else "speed"
         raise BadInput(f"{table.path}.{missing}: is missing (accepted: speed [m/s] with direction [deg], counter-clockwise from x)")
@@ -101,7 +101,7 @@ def mesh_file(table: Table, folder: Path, script: str) -> mesh.Mesh:
     """The mesh of a body's file, checked as any mesh file of edp/<script>.edp is: a whole body in the plane, or half a meridian plane."""
     name, file = table.text("file", ""), None
     if "\0" in name or not _may_be_read(folder / name):
-        raise BadInput(f"{table.path}.file: {name!r} is no file (accepted: FreeFEM's or gmsh's .msh)")
+        raise BadInput(f"{table.path}.file: {brief(repr(name))} is no file (accepted: FreeFEM's or gmsh's .msh)")
     try:
         text = mesh.load(folder / name)
         with tempfile.NamedTemporaryFile(suffix=".msh") as file:
@@ -109,7 +109,7 @@ def mesh_file(table: Table, folder: Path, script: str) -> mesh.Mesh:
             file.flush()
             found = mesh.read(Path(file.name))
             if script == "disc-plane" and (found.labels == mesh.AXIS).any():
-                raise BadInput(f"mesh: '{name}' has edges with the label {mesh.AXIS} of a symmetry axis (accepted: whole bodies, "
+                raise BadInput(f"mesh: '{brief(name)}' has edges with the label {mesh.AXIS} of a symmetry axis (accepted: whole bodies, "
                                f"labels {mesh.FREE}: may touch, 3 and more: never touch)")
             size = float(np.ptp(found.points, axis=0).max()) if len(found.points) else 0.0
             describe({"mesh": file.name, "radius": size / 2 if SHORTEST < size < LONGEST else 1.0}, script)

@@ -22,7 +22,7 @@ from .folder import checkpoints, clear, failed_beside, finished_in, replace, res
 from .multibody import Multibody
 from .parameters import ROOT, Value
 from .places import shown
-from .results import RunResult, read_answers, read_history, read_json, read_scene, read_summary, write_json
+from .results import RunResult, check_files, files_of, read_answers, read_history, read_json, read_scene, read_summary, write_json
 from .scene import Scene
 from .tables import to_toml
 
@@ -101,7 +101,7 @@ def _solve(program: freefem.FreeFem, scene: Scene | Multibody, foreign: bytes | 
     flags = [text for name, value in given.items() for text in (f"-{name}", str(value))]
     exit_code, said = freefem.run(program, scene.script, flags, where / "log.txt", show, lock)
     if scene_toml and (where / "scene.toml").exists():
-        (where / "scene.toml").write_text(scene_toml)
+        (where / "scene.toml").write_text(scene_toml, "utf-8")
     _check(where, exit_code, said)
 
 
@@ -149,7 +149,7 @@ def _finish(stage: Path, found: dict, provenance: dict) -> None:
     found["warnings"] = summary.get("warnings", []) + found.get("warnings", [])
     if found.get("estimated_error"):
         summary["skipped"] = [name for name in summary["skipped"] if name != "error estimate"]
-    summary |= {"estimated_error": None} | found | {"provenance": provenance}
+    summary |= {"estimated_error": None} | found | {"provenance": provenance | {"files": files_of(stage)}}
     (stage / "summary.json").unlink()
     write_json(stage / "summary.json.part", summary)
     os.replace(stage / "summary.json.part", stage / "summary.json")
@@ -159,7 +159,7 @@ def _keep_failed(stage: Path, failure: Failure, scene: Scene | Multibody, proven
     """failure.json: the one the script wrote, or what is known; never a summary.json."""
     (stage / "summary.json").unlink(missing_ok=True)
     if not (stage / "scene.toml").exists():
-        (stage / "scene.toml").write_text(to_toml(scene.given))
+        (stage / "scene.toml").write_text(to_toml(scene.given), "utf-8")
     record = {"status": FAILURES.get(failure.code, "crashed"), "message": str(failure)} | read_json(stage / "failure.json")
     write_json(stage / "failure.json", record | {"exit_code": failure.code, "provenance": provenance})
 
@@ -183,6 +183,8 @@ def reusable(scene: Scene | Multibody, folder: Path, mesh_file: Path | None = No
     summary = finished_in(folder, force=False)
     same = (summary and (folder / "history.csv").exists() and summary.get("provenance", {}).get("code") == code_hash()
             and (summary["provenance"].get("estimate") or not estimate) and read_scene(folder) and _same_scene(folder, scene, mesh_file))
+    if same:
+        check_files(folder)
     return RunResult(folder, summary, reused=True) if same else None
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from . import estimate, mesh, parameters
 from .describe import describe
-from .failure import BadInput
+from .failure import BadInput, brief
 
 SCENES = Path(__file__).resolve().parent / "scenes"
 
@@ -110,7 +110,7 @@ def read_toml(path: Path, missing: str) -> tuple[str, dict]:
     try:
         if path.exists() and not path.is_file() and not path.is_dir():   # reading a pipe or a device might never end
             raise BadInput(f"{path}: is no file")
-        text = path.read_text()
+        text = path.read_text("utf-8")
         return text, tomllib.loads(text)
     except (FileNotFoundError, IsADirectoryError, NotADirectoryError):
         raise BadInput(missing) from None
@@ -143,7 +143,7 @@ def _read(given: dict, path: Path) -> "Scene | multibody.Multibody":
     script, title = given.pop("script", "disc-plane"), given.pop("title", path.stem)
     scripts = [word for word in describe()["scripts"].split("|") if word not in dimension.SCRIPTS]
     if script in dimension.SCRIPTS:
-        raise BadInput(f"body: is missing, which script = '{script}' needs (accepted: one table [[body]] or more)")
+        raise BadInput(f"body: is missing, which script = '{brief(script)}' needs (accepted: one table [[body]] or more)")
     if script not in scripts:
-        raise BadInput(f"script: '{script}' is not known (accepted: {'|'.join(scripts)})")
+        raise BadInput(f"script: '{brief(script)}' is not known (accepted: {'|'.join(scripts)})")
     return Scene(path.stem, title, script, parameters.defaults(script) | parameters.check(given, script))

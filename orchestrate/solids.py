@@ -21,7 +21,7 @@ from typing import Protocol
 import numpy as np
 
 from . import solid_file, tumbling
-from .failure import BadInput
+from .failure import BadInput, brief
 from .outlines import normal_of
 from .solid_mesh import MOST_CELLS, Sizes, SolidMesh, expected_cells, mesh_shape
 from .tables import LONGEST, SHORTEST, Table
@@ -409,7 +409,7 @@ def fitted_sphere(points: np.ndarray) -> tuple[np.ndarray, float]:
 def motion(table: Table) -> dict:
     """Where a body is at the start and how it moves: position [m], turn [rad], velocity [m/s], spin [rad/s], vectors (3,)."""
     if "angle" in table and "turn" in table:
-        raise BadInput(f"{table.path}.angle: '{table.given['angle']}' stands beside turn (accepted: angle about z, or turn = [x, y, z])")
+        raise BadInput(f"{table.path}.angle: '{brief(table.given['angle'])}' stands beside turn (accepted: angle about z, or turn = [x, y, z])")
     turn = [0.0, 0.0, table.number("angle", -36000, 36000)] if "angle" in table else table.numbers("turn", -36000, 36000, (0.0,) * 3, 3)
     about_z = "spin" in table and not isinstance(table.given["spin"], list)
     spin = [0.0, 0.0, table.number("spin", -1e12, 1e12)] if about_z else table.numbers("spin", -1e12, 1e12, (0.0,) * 3, 3)
