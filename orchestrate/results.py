@@ -7,12 +7,15 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-import pandas as pd
 
 from .failure import Unreadable
 from .parameters import Value
+
+if TYPE_CHECKING:
+    from pandas import DataFrame   # takes longer to load than a run: only where a table is wanted
 
 
 @dataclass(frozen=True)
@@ -46,10 +49,11 @@ def read_history(folder: Path) -> dict[str, np.ndarray]:
         raise Unreadable(f"{path} cannot be read: {why(error)}") from None
 
 
-def read_table(path: Path, columns: Iterable[str]) -> pd.DataFrame:
+def read_table(path: Path, columns: Iterable[str]) -> "DataFrame":
     """A table of a run; Unreadable where it is not one that has these columns."""
+    from pandas import read_csv
     try:
-        table = pd.read_csv(path)
+        table = read_csv(path)
     except (OSError, ValueError) as error:
         raise Unreadable(f"{path} cannot be read: {error}; run with --force") from None
     if lacks := [name for name in columns if name not in table]:

@@ -76,4 +76,5 @@ fi
 .venv/bin/python -c 'import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["dependencies"], sep="\n")' \
   | .venv/bin/python -m pip install -q --disable-pip-version-check -r /dev/stdin
 .venv/bin/python -c 'import gmsh, matplotlib.pyplot'   # they load, and matplotlib's font list is made now, not in the first run
+.venv/bin/python -c 'from orchestrate import freefem; freefem.find()'   # builds edp/libclock.so where there is a compiler
 say "ready"

@@ -15,6 +15,7 @@ from matplotlib.collections import TriMesh
 from matplotlib.ticker import NullFormatter
 from matplotlib.transforms import ScaledTranslation
 from matplotlib.tri import LinearTriInterpolator, Triangulation
+from PIL import Image
 
 from .. import dimension, vtu
 from ..parameters import Value
@@ -67,8 +68,7 @@ def draw(folder: Path, warnings: list[str]) -> list[Path]:
         for name, figure in reversed(drawn.items()):
             figure.suptitle(title(scene))
             footer(figure, warnings)
-            figure.savefig(target / f"{name}.png")
-            plt.close(figure)
+            save(figure, target / f"{name}.png")
     return [target / f"{name}.png" for name in drawn]
 
 
@@ -86,6 +86,14 @@ def _on_a_plane(history: dict[str, np.ndarray], contact: dict[str, np.ndarray], 
         if len(snapshots) > 2 and not half and _goes_along(history, scene):
             drawn["flight"] = _flight(history, scene, snapshots)
     return drawn
+
+
+def save(figure: plt.Figure, path: Path) -> None:
+    """Writes the figure, laid out and drawn once (savefig draws it twice), and closes it."""
+    figure.set_dpi(plt.rcParams["savefig.dpi"])
+    figure.canvas.draw()
+    Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB").save(path, dpi=(figure.dpi, figure.dpi), compress_level=3)
+    plt.close(figure)
 
 
 def footer(figure: plt.Figure, warnings: list[str]) -> None:
