@@ -7,7 +7,7 @@ revolution it is the half x >= 0 of their sections, the axis with the label 2, o
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
@@ -29,6 +29,9 @@ NEVER = 3                    # the label of what nothing reaches
 ROUND = 0.5                  # largest element size on a circle or ellipse, over its smaller semi-axis
 SAMPLED = 0.25               # a step between points at which an element size is asked for, over that size
 LIKE = ("radius", "young", "nu", "density", "speed", "angle", "spin")
+NARROW = 0.6                 # of the contact of a disc on a plane: where less of an outline is near, elements are smaller; of two equal discs it is 0.71
+POINTED = 0.5                # largest half-width of a contact over the radius of the obstacle, as over that of a disc on a plane (sizes.idp)
+SMALLEST = 1e-3              # element in a contact over the pair's radius, however small the obstacle is
 BETWEEN = 0.2                # from body to body in the reference configuration, over the largest extent
 
 Rule = Callable[[dict[str, Value]], dict]    # describe: what the scripts make of a disc or a ball on a plane
@@ -62,6 +65,7 @@ def assemble(scene: Multibody, rule: Rule | None = None, met: list[Meeting] | No
     asked for a disc, or a ball, of the pair's radius that hits a plane. `met`: the scene's meetings, where they are known already."""
     ask = Asker(scene, meetings(scene) if met is None else met, rule or partial(describe, script=scene.dimension.like))
     values = scene.values | contact_values(scene.bodies, scene.contact, ask, "contact")
+    scene = replace(scene, pairs=_with_small_obstacles(scene, ask))
     pairs = [pair_values(pair, ask, values) for pair in scene.pairs]
     sizes = [None if body.mesh else _sizes(k, ask) for k, body in enumerate(scene.bodies)]
     together, regions, centres = (_solids if scene.dimension is SOLID else _sections)(scene, sizes)
@@ -102,6 +106,15 @@ class Asker:
         """Of the rule, for such a disc."""
         return self.rule(self.disc(bodies, radius, slides) | more)
 
+    def small(self, first: int, second: int) -> float:
+        """The radius [m] of an obstacle where a body meets it, if that is less than half of the body's own; else infinite."""
+        for one in self.met:
+            if (one.first, one.second) == (first, second) and second < 0 and not one.never:
+                body, obstacle = one.outlines
+                radius = obstacle.radius_at(body.points[obstacle.gap(body.points).argmin()])
+                return radius if 0 < radius < one.radius / 2 else math.inf
+        return math.inf
+
     def disc(self, bodies: list[Body], radius: float, slides: bool) -> dict[str, Value]:
         """A disc of this radius [m] and the softer body's material; straight on unless it `slides`."""
         along, across, pressing, pulling = (max((getattr(one, name) for one in self.met), default=0.0)
@@ -116,9 +129,10 @@ class Asker:
         return asked
 
 
-def contact_values(bodies: list[Body], contact: dict[str, Value], ask: Asker, path: str) -> dict[str, Value]:
-    """`contact` with penalty, friction_dynamic and slip_velocity as numbers: for the softest of the bodies and the smallest radius."""
-    radius = min(body.outline.half_thickness for body in bodies)
+def contact_values(bodies: list[Body], contact: dict[str, Value], ask: Asker, path: str, least: float = math.inf) -> dict[str, Value]:
+    """`contact` with penalty, friction_dynamic and slip_velocity as numbers: for the softest of the bodies and the smallest radius, `least` [m] that of an
+    obstacle."""
+    radius = min([least, *(body.outline.half_thickness for body in bodies)])
     given = [body.contact_mesh_size for body in bodies]
     more = {"contact_mesh_size": min(*given, radius)} if min(given) > 0 else {}
     used = ask.answer(bodies, radius, slides=True, exponent=contact["exponent"], **more)["used"]
@@ -136,8 +150,19 @@ def pair_values(pair: Pair, ask: Asker, values: dict[str, Value]) -> dict[str, V
     the pair says."""
     bodies = [ask.scene.bodies[k] for k in (pair.first, pair.second) if k >= 0]
     inherited = {name: values[name] for name in ask.scene.contact} | {"friction_dynamic": ask.scene.contact["friction_dynamic"]}
-    own = contact_values(bodies, inherited | pair.values, ask, pair.path)
+    small = ask.small(pair.first, pair.second)
+    if small < math.inf:
+        inherited["penalty"] = ask.scene.contact["penalty"]
+    own = contact_values(bodies, inherited | pair.values, ask, pair.path, small)
     return {name: own[name] for name in OWN}
+
+
+def _with_small_obstacles(scene: Multibody, ask: "Asker") -> list[Pair]:
+    """The scene's pairs, and those that an open penalty makes differ: a body and an obstacle that is smaller than its contact on a plane would be."""
+    said = {(pair.first, pair.second) for pair in scene.pairs}
+    small = [(one.first, one.second) for one in ask.met if ask.small(one.first, one.second) < math.inf] if scene.contact["penalty"] == "auto" else []
+    pairs = scene.pairs + [Pair(*both, {}, f"obstacle.{-both[1]}") for both in small if both not in said]
+    return sorted(pairs, key=lambda pair: (pair.first, pair.second))
 
 
 def used_tables(scene: Multibody, sizes: list[Sizes | None], values: dict[str, Value], pairs: list[dict[str, Value]]) -> dict:
@@ -180,20 +205,26 @@ def _hit(body: Body, k: int, one: Meeting, ask: Asker) -> tuple[float, np.ndarra
     bodies = [ask.scene.bodies[j] for j in (one.first, one.second) if j >= 0]
     straight = ask.answer(bodies, one.radius)
     arc, size = straight["touch_arc"], float(straight["used"]["contact_mesh_size"])
+    depth, small = one.radius * (1 - math.cos(min(arc, math.pi / 2))), ask.small(one.first, one.second)
     points, spacing = body.outline.samples(size)
-    near = _near(body, k, one, arc, points)
-    wider = body.outline.width(len(near), spacing) / (2 * arc * one.radius)    # than the contact of a disc: flat faces
+    near = _near(body, k, one, depth, points)
+    wider = body.outline.width(len(near), spacing) / (2 * arc * one.radius)    # than the contact of a disc: flat faces; or less wide: corners, pegs
+    wider = min(max(1.0, wider), wider / NARROW, POINTED * small / (2 / math.pi * arc * one.radius))
+    if wider < 1:
+        size = max(SMALLEST * one.radius / wider, size)
+        points, spacing = body.outline.samples(size * wider)
+        near = _near(body, k, one, min(depth, small), points)
     slide = (ask.answer(bodies, one.radius, slides=True)["touch_arc"] - arc) * one.radius
     if slide > 0:
         near = points[nearest(points, near) <= slide]
-    return size * max(1.0, wider), near, spacing / 2
+    return size * wider, near, spacing / 2
 
 
-def _near(body: Body, k: int, one: Meeting, touch_arc: float, points: np.ndarray) -> np.ndarray:
-    """Those of the points of body k where the gap at the meeting is no larger than that of a disc of the pair's radius at touch_arc
-    from its lowest point."""
+def _near(body: Body, k: int, one: Meeting, depth: float, points: np.ndarray) -> np.ndarray:
+    """Those of the points of body k where the gap at the meeting is larger than the least by `depth` [m] at most, which of a disc on a plane is that at
+    touch_arc from its lowest point."""
     gaps = one.gaps(k, body.outline.carried(one.outlines[0 if k == one.first else 1], points))
-    return points[gaps <= gaps.min() + one.radius * (1 - math.cos(min(touch_arc, math.pi / 2)))]
+    return points[gaps <= gaps.min() + depth]
 
 
 def _boundary(scene: Multibody, k: int) -> list[list[tuple[Curve, float, int]]]:
