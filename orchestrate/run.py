@@ -26,7 +26,7 @@ from .results import RunResult, check_files, files_of, read_answers, read_histor
 from .scene import Scene
 from .tables import to_toml
 
-DECISIVE = ("approach", "assembly", "bodies", "dimension", "estimate", "flat", "gmsh_file", "mesh", "mirror", "multibody", "obstacles", "outlines", "polyline", "revolution",
+DECISIVE = ("approach", "assembly", "bodies", "curved", "dimension", "estimate", "flat", "gmsh_file", "mesh", "mirror", "multibody", "obstacles", "outlines", "polyline", "revolution",
             "solid_file", "solid_mesh", "solids", "tables", "tumbling")
 FAILURES = {10: "bad input", 11: "step failed", 12: "material broke down", 13: "not installed", 14: "unreadable"}
 

@@ -165,7 +165,7 @@ def block(low: float, high: float, count: int) -> vtu.Solid:
         tetrahedra.append(row)
     points = np.array(points)
     fields = {"displacement": points.copy(), "von_mises": 1 + points @ (2.0, -1.0, 1.0)}
-    return vtu.Solid(points, np.array(tetrahedra), results.Contents(fields, Path("a.vtu"))
+    return vtu.Solid(points, np.array(tetrahedra), results.Contents(fields, Path("a.vtu")))
 
 
 @pytest.mark.parametrize("low, high, count", [(-1, 2, 2), (-1, 1, 1), (-1, 1, 3), (-0.25, 0.75, 1)])
