@@ -121,7 +121,7 @@ class Asker:
 
     def disc(self, bodies: list[Body], radius: float, slides: bool) -> dict[str, Value]:
         """A disc of this radius [m] and the softer body's material; straight on unless it `slides`."""
-        along, across, pressing, pulling = (max((getattr(one, name) for one in self.met), default=0.0)
+        along, across, pressing, pulling = (float(f"{max((getattr(one, name) for one in self.met), default=0.0):.6g}")    # no round-off: a mesh follows every digit
                                             for name in ("closing", "sliding", "pressing", "pulling"))
         soft = min(bodies, key=lambda body: body.young)
         asked = {name: self.scene.values[name] for name in ("accuracy", "accuracy_of", "end_time")}

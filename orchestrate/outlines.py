@@ -204,12 +204,22 @@ class Outline:
         """Of a stretch with so many of the samples."""
         return (count - 1) * spacing
 
+    @property
+    def disc(self) -> tuple[np.ndarray, float] | None:
+        """Centre and radius of a disc, None for anything else."""
+        whole = len(self.loops) == 1 and self.loops[0].radius
+        return (self.loops[0].centre, whole) if whole else None
+
     def least(self, gap: Callable[[np.ndarray], np.ndarray]) -> float:
         """The least value of a distance on the outline."""
-        return float(gap(self.points).min())
+        return float(gap(self.disc[0][None])[0] - self.disc[1] if self.disc else gap(self.points).min())
 
     def normal_from(self, other) -> np.ndarray:
         """The outward normal of another body or an obstacle where this one is nearest to it."""
+        if self.disc:
+            return normal_of(other, self.disc[0])
+        if getattr(other, "disc", None):
+            return -normal_of(self, other.disc[0])
         return normal_of(other, self.points[other.gap(self.points).argmin()])
 
     def gap(self, points: np.ndarray) -> np.ndarray:
@@ -219,10 +229,10 @@ class Outline:
 
 
 def normal_of(other, point: np.ndarray) -> np.ndarray:
-    """The gradient (axes,) of the distance from a body or an obstacle, the outward normal, to six digits; 0 where there is none."""
-    h = 1e-6 * max(1e-3 * np.abs(point).max(), abs(other.gap(point[None])[0]), SHORTEST)
-    steps = h * np.eye(len(point))
-    normal = np.round((other.gap(point + steps) - other.gap(point - steps)) / (2 * h), 6)
+    """The gradient (axes,) of the distance from a body or an obstacle, the outward normal, to eight digits; 0 where there is none."""
+    h = max(1e-7 * np.abs(point).max(), 1e-3 * abs(other.gap(point[None])[0]), SHORTEST)
+    slope = [(other.gap(point + k * h * np.eye(len(point))) - other.gap(point - k * h * np.eye(len(point)))) / (2 * k * h) for k in (1, 2)]
+    normal = np.round((4 * slope[0] - slope[1]) / 3, 8)        # of fourth order
     return normal / max(np.linalg.norm(normal), 0.5)
 
 

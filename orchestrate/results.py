@@ -137,12 +137,29 @@ def read_scene(folder: Path) -> dict[str, Value]:
 
 
 def read_answers(folder: Path) -> tuple[dict, dict[str, Value], float]:
-    """Of a finished run the summary, with largest_energy of its history [J/m], the scene as used, and the largest speed of a centre of
-    mass [m/s]: what energies and velocities are measured by."""
-    history, summary = read_history(folder), read_summary(folder)
-    energy = float((history["kinetic"] + history["elastic"] + history["contact"]).max())
-    speed = max(float(np.sqrt(sum(history[f"v{axis}{of}"]**2 for axis in "xyz" if f"v{axis}{of}" in history)).max()) for of in suffixes(history))
-    return summary | {"largest_energy": energy}, read_scene(folder), speed
+    """Of a finished run the summary, with energy_final and largest_energy of its history [J/m], the scene as used, and the largest speed of a
+    centre of mass [m/s]: what energies and velocities are measured by. All as seen by one who moves with the obstacles, or without any with the
+    bodies' common centre of mass: errors do not depend on a motion that all share."""
+    history, summary, used = read_history(folder), read_summary(folder), read_scene(folder)
+    axes, bodies = [axis for axis in "xyz" if f"v{axis}" in history], suffixes(history)
+    mass = summary["mass"]
+    common = np.column_stack([history[f"v{axis}"] for axis in axes])
+    frame = _frame(used, common[0], len(bodies))
+    seen = common if frame is None else np.broadcast_to(frame, common.shape)
+    speed = max(float(np.linalg.norm([history[f"v{axis}{of}"] - seen[:, i] for i, axis in enumerate(axes)], axis=0).max()) for of in bodies)
+    shared = mass * (seen * (seen / 2 - common)).sum(axis=1)                 # from the scene's frame to the other
+    energy = float((history["kinetic"] + history["elastic"] + history["contact"] + shared).max())
+    last = np.array([summary.get(f"rebound_v{axis}", 0.0) for axis in axes])
+    at = last if frame is None else frame
+    return summary | {"largest_energy": energy, "energy_final": summary["energy_final"] + mass * float(at @ (at / 2 - last))}, used, speed
+
+
+def _frame(used: dict, like: np.ndarray, bodies: int) -> np.ndarray | None:
+    """The velocity of the obstacles of a scene; None where there are none."""
+    if "body" not in used:
+        return None if bodies > 1 else np.zeros_like(like)
+    obstacles = [one.get("velocity", np.zeros_like(like)) for one in used.get("obstacle", [])]
+    return np.mean(obstacles, axis=0) if obstacles else None
 
 
 def suffixes(columns: Iterable[str]) -> list[str]:
