@@ -12,13 +12,15 @@ from functools import cache, partial
 from pathlib import Path
 
 from .failure import NotInstalled
-from .places import ROOT
+from .places import INSTALLED, PACKAGE, ROOT
 
 OLDEST = (4, 9)                          # the version in the banner; Debian's 4.11 calls itself 4.9
 DEBIAN_PLUGINS = "/usr/lib/freefem++"    # where Debian puts the plugins, and its FreeFem++ does not look
-PROBE = ROOT / "orchestrate/probe.edp"
+PROBE = PACKAGE / "probe.edp"
 CLOCK = ROOT / "edp/clock.c"
-HOW = "run: make setup   (or: apt-get install freefem++ libfreefem++)"
+WAYS = ("apt-get install freefem++ libfreefem++; conda install -c conda-forge freefem; a package of https://github.com/FreeFem/FreeFem-sources/releases; "
+        "or set FREEFEM to where it is")
+HOW = f"install it: {WAYS}" if INSTALLED else f"run: make setup   (or: {WAYS})"
 
 Progress = Callable[[float, str, str], None]   # fraction in [0, 1], t, steps
 

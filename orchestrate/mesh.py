@@ -19,8 +19,10 @@ from types import ModuleType
 import numpy as np
 
 from .failure import BadInput, NotInstalled
+from .places import INSTALLED
 
 FREE, AXIS = 1, 2          # boundary labels
+LIBRARIES = "apt-get install libglu1-mesa libxcursor1 libxft2 libxinerama1 libgomp1"   # that gmsh's wheel needs, with what they need
 GROWTH = 0.3               # element size gained per length of distance from the contact arc
 ROUND = 0.5                # largest element size on a circle or ellipse, over its smaller semi-axis: an edge spans at most 30 degrees
 
@@ -116,7 +118,7 @@ def start_gmsh() -> ModuleType:
     try:
         import gmsh
     except OSError as error:
-        raise NotInstalled(f"gmsh does not load ({error}); run: make setup") from None
+        raise NotInstalled(f"gmsh does not load ({error}); run: {LIBRARIES if INSTALLED else 'make setup'}") from None
     handlers = {number: signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGPIPE)}
     gmsh.initialize([], readConfigFiles=False, interruptible=False)
     if threading.current_thread() is threading.main_thread():

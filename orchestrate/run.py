@@ -16,12 +16,12 @@ from pathlib import Path
 
 import numpy as np
 
-from . import estimate as estimates, freefem, mesh
+from . import __version__, estimate as estimates, freefem, mesh
 from .failure import BadInput, Failure, TooLong, Unreadable
 from .folder import checkpoints, clear, failed_beside, finished_in, replace, result_folder, staging, unfinished
 from .multibody import Multibody
-from .parameters import ROOT, Value
-from .places import shown
+from .parameters import Value
+from .places import INSTALLED, PACKAGE, RESULTS, ROOT, shown
 from .results import RunResult, check_files, files_of, read_answers, read_history, read_json, read_scene, read_summary, write_json
 from .scene import Scene
 from .tables import to_toml
@@ -40,7 +40,7 @@ def run(scene: Scene | Multibody, overrides: dict[str, Value] | None = None, out
     With `estimate` a second, coarser run estimates the error, and finer ones follow until it is below the accuracy (estimate.py).
     """
     scene = scene.override(overrides or {})
-    folder = result_folder(out or ROOT / "results" / scene.name)
+    folder = result_folder(out or RESULTS / scene.name)
     if mesh_file:
         mesh_file = _mesh_path(mesh_file)
     foreign = mesh.load(mesh_file) if mesh_file else None
@@ -55,7 +55,7 @@ def run(scene: Scene | Multibody, overrides: dict[str, Value] | None = None, out
     with staging(folder) as (stage, lock):
         if not force and (there := reusable(scene, folder, mesh_file, estimate)):   # another run has finished it meanwhile
             return there
-        provenance = {"script": scene.script, "code": code_hash(), "freefem": program.version,
+        provenance = {"script": scene.script, "version": __version__, "code": code_hash(), "freefem": program.version,
                       "gmsh": _gmsh(scene, mesh_file)}
         asked_for = {"asked": scene.asked, "estimate": estimate}
         asked = asked_for | provenance | {"mesh": _sha256(mesh_file) if mesh_file else None}
@@ -192,8 +192,9 @@ def code_hash() -> str:
     """sha256 over what decides a result besides the scene: the FreeFEM scripts and what makes meshes and scene.dat."""
     files = sorted(path for path in (ROOT / "edp").rglob("*") if path.suffix in (".edp", ".idp"))
     digest = hashlib.sha256()
-    for path in [*files, *(ROOT / f"orchestrate/{name}.py" for name in DECISIVE)]:
-        digest.update(f"{path.relative_to(ROOT)}\n".encode() + path.read_bytes())
+    named = {path.relative_to(ROOT): path for path in files} | {f"orchestrate/{name}.py": PACKAGE / f"{name}.py" for name in DECISIVE}
+    for name, path in named.items():
+        digest.update(f"{name}\n".encode() + path.read_bytes())
     return digest.hexdigest()
 
 
@@ -236,7 +237,9 @@ def _sha256(path: Path) -> str:
 
 
 def _git() -> str:
-    """The commit, with -dirty where the tree differs from it."""
+    """The commit, with -dirty where the tree differs from it; unknown where the program is installed, in whosever folder."""
+    if INSTALLED:
+        return "unknown"
     try:
         return subprocess.run(["git", "describe", "--always", "--dirty", "--abbrev=40", "--exclude=*"], cwd=ROOT,
                               capture_output=True, text=True, check=True).stdout.strip()

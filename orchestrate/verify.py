@@ -24,8 +24,7 @@ from verification.cases import CASES
 from . import freefem, run
 from .failure import BadInput, Failure
 from .folder import result_folder
-from .parameters import ROOT
-from .places import shown
+from .places import COMMAND, RESULTS, ROOT, shown
 from .report.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE
 from .report.report import REFERENCE
 from .studies import study
@@ -37,8 +36,8 @@ SHOWN = 1e-6                # smaller errors are drawn there
 
 def main(argv: list[str]) -> int:
     """Runs the cases, prints the table, writes verify.csv and the figures; 0 only if all pass."""
-    parser = argparse.ArgumentParser(prog="python -m orchestrate verify", description=__doc__)
-    parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/verify", help="the result folder")
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} verify", description=__doc__)
+    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "verify", help="the result folder")
     parser.add_argument("--cores", metavar="N", type=int, default=study.CORES, help="this many cases at a time (default: %(default)s)")
     parser.add_argument("--force", action="store_true", help="run again what the same code has left")
     options = parser.parse_args(argv)

@@ -10,8 +10,8 @@ import numpy as np
 from .. import scene
 from ..failure import BadInput, Failure
 from ..folder import result_folder
-from ..parameters import ROOT, overrides
-from ..places import shown
+from ..parameters import overrides
+from ..places import COMMAND, RESULTS, shown
 from ..results import RunResult, suffixes
 from ..run import run
 from . import report
@@ -21,10 +21,10 @@ from .figures import ABOVE, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE, numb
 
 def main(argv: list[str]) -> int:
     """Runs or reuses every scene, prints the reports, draws DIR/<names>.png. A scene that fails does not keep the others."""
-    parser = argparse.ArgumentParser(prog="python -m orchestrate compare", description=__doc__)
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} compare", description=__doc__)
     parser.add_argument("scenes", metavar="SCENE", nargs="+", help="two or more built-in scenes or TOML files")
     parser.add_argument("--set", metavar="NAME=VALUE", nargs="+", action="extend", default=[], help="set a parameter in all of them")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results", help="a folder for a folder of each scene")
+    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS, help="a folder for a folder of each scene")
     options = parser.parse_args(argv)
     scenes, folder = [scene.load(name) for name in options.scenes], result_folder(options.out)
     if len({each.name for each in scenes}) < max(2, len(scenes)):

@@ -19,8 +19,8 @@ from tqdm import tqdm
 
 from .. import scene, vtu
 from ..failure import BadInput, NotInstalled, Unreadable
-from ..parameters import ROOT, overrides, whole
-from ..places import shown
+from ..parameters import overrides, whole
+from ..places import COMMAND, RESULTS, shown
 from ..results import RunResult, suffixes
 from ..run import run
 from . import bodies, contact, solid
@@ -35,7 +35,7 @@ logging.getLogger("matplotlib.animation").setLevel(logging.ERROR)   # what ffmpe
 
 def main(argv: list[str]) -> int:
     """Runs or reuses the scene with a snapshot a frame in DIR and writes DIR/<scene>.mp4 (or .gif), or reuses the film too."""
-    parser = argparse.ArgumentParser(prog="python -m orchestrate movie", description=__doc__)
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} movie", description=__doc__)
     parser.add_argument("scene", metavar="SCENE", help="a built-in scene or the path of a TOML file")
     parser.add_argument("--set", metavar="NAME=VALUE", nargs="+", action="extend", default=[], help="set a parameter")
     parser.add_argument("--frames", metavar="N", type=whole, default=100, help="number of frames (default: 100), and of snapshots of the run")
@@ -48,7 +48,7 @@ def main(argv: list[str]) -> int:
         raise NotInstalled("ffmpeg not found, which writes mp4; run: sudo apt-get install ffmpeg; or take --format gif")
     form = options.format or ("mp4" if FFMpegWriter.isAvailable() else "gif")
     given, progress = scene.load(options.scene), sys.stderr.isatty()
-    result = run(given, overrides(options.set) | {"fields": options.frames}, options.out or ROOT / "results/movies" / given.name,
+    result = run(given, overrides(options.set) | {"fields": options.frames}, options.out or RESULTS / "movies" / given.name,
                  progress=progress)
     film = result.folder / f"{given.name}.{form}"
     done = result.reused and film.exists() and film.stat().st_mtime >= (result.folder / "summary.json").stat().st_mtime
