@@ -92,9 +92,9 @@ def main(argv: list[str]) -> int:
     out = result_folder(options.out or ROOT / "results/sweeps" / wanted.name)
     names = {study.place(out, point).name: point for point in wanted.runs}
     if options.list or options.open:
-        base = scene.load(wanted.scene).override(wanted.base)
+        given = scene.load(wanted.scene)
         print("\n".join(name for name, point in names.items()
-                        if options.list or not study.there(study.place(out, point), base.override(point))))
+                        if options.list or not study.there(study.place(out, point), given.override(wanted.base | point))))
         return 0
     if options.run is not None and options.run not in names:
         raise BadInput(f"--run: '{brief(options.run)}' is no run of {wanted.name} (accepted: see --list)")
