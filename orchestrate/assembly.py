@@ -153,7 +153,8 @@ def pair_values(pair: Pair, ask: Asker, values: dict[str, Value]) -> dict[str, V
     """All that a pair may have of its own: what it does not say is as settled for the scene, and open again where it depends on what
     the pair says."""
     bodies = [ask.scene.bodies[k] for k in (pair.first, pair.second) if k >= 0]
-    inherited = {name: values[name] for name in ask.scene.contact} | {"friction_dynamic": ask.scene.contact["friction_dynamic"]}
+    alone = "friction_static" in pair.values                    # sets both
+    inherited = {name: values[name] for name in ask.scene.contact} | {"friction_dynamic": "auto" if alone else ask.scene.contact["friction_dynamic"]}
     small = ask.small(pair.first, pair.second)
     if small < math.inf:
         inherited["penalty"] = ask.scene.contact["penalty"]

@@ -40,6 +40,8 @@ RUN = ("gravity", "body_force_x", "body_force_y", "degree", "integrator", "dt", 
        "chatter", "end_time", "fields", "modes", "checkpoint_every", "without")
 OWN = ("penalty", "friction_static", "friction_dynamic")                                  # a pair may have its own
 CONTACT = (*OWN, "exponent", "slip_velocity", "regularization", "friction_transition", "pairing", "pairing_range")
+SHAPE = ("shape", "semi_axes", "width", "height", "depth", "inner_radius", "vertices", "file")     # sizes of a body, beside radius
+EVERYWHERE = ("penalty", "dt")
 TOUCHING = 1e-9              # of a body's thickness: an overlap up to it is round-off
 
 
@@ -68,6 +70,7 @@ class Multibody:
     contact: dict[str, Value]
     pairs: list[Pair]
     values: dict[str, Value]
+    released: tuple[str, ...] = ()      # sentences: what was fixed for others that are set now
 
     @property
     def script(self) -> str:
@@ -75,11 +78,14 @@ class Multibody:
         return self.dimension.script
 
     def override(self, given: dict[str, Value]) -> "Multibody":
-        """The same scene with some entries set by their dotted names, and read again."""
+        """The same scene with some entries set by their dotted names, open again what it had fixed for them (release), and read again."""
+        if not given:
+            return self
         changed = self.given
         for name, value in given.items():
             changed = set_entry(changed, name, value)
-        return read(changed, self.folder, self.name) if given else self
+        said = release(changed, list(given))
+        return replace(read(changed, self.folder, self.name), released=self.released + said)
 
     def check(self, given: dict[str, Value]) -> dict[str, Value]:
         """The given entries of such a scene, by dotted names, text as TOML reads it; BadInput where there is no such place."""
@@ -302,6 +308,30 @@ def set_entry(given: dict, name: str, value: Value | list) -> dict:
             raise BadInput(f"{brief(name)}: {path} is '{brief(place)}' and has no entry {brief(following)}")
     place[_key(place, last, name, name)] = toml_value(value)
     return changed
+
+
+def release(given: dict, names: list[str]) -> tuple[str, ...]:
+    """Takes out of the tables of a file what FOLLOWS says that the entries `names`, which were set, leave open; the sentences about it. What is of one table
+    (coefficients of friction, sizes of a body) follows what is set there, penalty and step whatever body it is of."""
+    places = [_table_of(name) for name in names]
+    tables = {"": given, "contact": given.get("contact", {})}
+    for key, listed_in in (("body", given), ("obstacle", given), ("contact.pair", tables["contact"])):
+        tables |= {f"{key}.{k}": one for k, one in enumerate(listed_in.get(key.rpartition(".")[2], []), 1)}
+    said = []
+    for path, table in tables.items():
+        for key in [key for key in parameters.FOLLOWS if key in table and (path, key) not in places]:
+            causes = parameters.FOLLOWS[key] + (SHAPE if "radius" in parameters.FOLLOWS[key] else ())
+            found = [name for name, (where, entry) in zip(names, places) if entry in causes and (where == path or key in EVERYWHERE)]
+            if found and table[key] not in ("auto", 0):
+                said.append(parameters.release(f"{path}.{key}".lstrip("."), table.pop(key), found))
+    return tuple(said)
+
+
+def _table_of(name: str) -> tuple[str, str]:
+    """Of a dotted name that of its table, and the entry in it."""
+    parts = name.split(".")
+    depth = 3 if parts[:2] == ["contact", "pair"] else {"body": 2, "obstacle": 2, "contact": 1}.get(parts[0], 0)
+    return ".".join(parts[:depth]), ".".join(parts[depth:depth + 1])
 
 
 def _key(place: dict | list, step: str, path: str, name: str) -> str | int:

@@ -3,6 +3,7 @@
 import difflib
 import math
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 
@@ -10,6 +11,11 @@ from .failure import BadInput, brief
 from .places import ROOT as ROOT
 
 Value = float | int | str
+
+# What a scene fixes for others of its entries: where one of those is set and it is not, it is open again, as by default (auto, 0). friction_static alone sets
+# both coefficients; a penalty is of a material, a size and an exponent; a step and meshes are of a size. slip_velocity and end_time stay, with their warnings.
+FOLLOWS = {"friction_dynamic": ("friction_static",), "penalty": ("young", "density", "radius", "exponent"), "dt": ("young", "density", "radius"),
+           **dict.fromkeys(("mesh_size", "contact_mesh_size", "block_width", "block_height"), ("radius",))}
 
 NOT_DECISIVE = ("checkpoint_every",)   # parameters that do not change the answer
 
@@ -97,6 +103,18 @@ def check(given: dict[str, Value], script: str = "") -> dict[str, Value]:
             hint = f"; did you mean {' or '.join(close)}?" if close else ""
             raise BadInput(f"{brief(name)}: no such parameter{hint} (accepted: {', '.join(names(script))})")
     return {name: table()[name].check(value) for name, value in given.items()}
+
+
+def released(values: dict[str, Value], given: Iterable[str]) -> dict[str, Value]:
+    """Those of a scene's values that are open again where `given` are set, at their defaults."""
+    return {name: table()[name].default for name, causes in FOLLOWS.items()
+            if name in values and name not in given and set(causes) & set(given) and values[name] != table()[name].default}
+
+
+def release(name: str, value: Value, causes: Iterable[str]) -> str:
+    """What is said of an entry that is open again."""
+    fixed = f"{value:g}" if isinstance(value, float) else brief(value)
+    return f"{name} is open again: the scene's {fixed} was for its own {', '.join(causes)}"
 
 
 def defaults(script: str = "disc-plane") -> dict[str, Value]:

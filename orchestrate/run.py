@@ -8,6 +8,7 @@ import hashlib
 import json
 import math
 import os
+import re
 import signal
 import subprocess
 from collections.abc import Iterator
@@ -63,9 +64,14 @@ def run(scene: Scene | Multibody, overrides: dict[str, Value] | None = None, out
             clear(stage)
             write_json(stage / "checkpoint.json", asked)
 
+        seconds = []
+
         def solve(given: dict[str, Value], where: Path) -> None:
-            with _progress_line(scene.name) if progress else nullcontext() as show:
-                _solve(program, scene.override(given), foreign, where, lock, show)
+            try:
+                with _progress_line(scene.name) if progress else nullcontext() as show:
+                    _solve(program, scene.override(given), foreign, where, lock, show)
+            finally:
+                seconds.append((read_json(where / "summary.json") or read_json(where / "failure.json")).get("wall_seconds", 0.0))
 
         try:
             solve({}, stage)
@@ -81,7 +87,8 @@ def run(scene: Scene | Multibody, overrides: dict[str, Value] | None = None, out
             raise
         provenance |= asked_for | {"git": _git(), "mesh": _sha256(mesh_file or stage / scene.mesh_name) if scene.meshed else None}
         _say_where(stage, folder)
-        _finish(stage, found, provenance)
+        _tell_accuracy(stage / "scene.toml", scene.values["accuracy"])
+        _finish(stage, scene, found | {"total_seconds": sum(seconds)}, provenance)
         replace(stage, folder, _same_scene(folder, scene, mesh_file))
     return RunResult(folder, read_summary(folder), reused=False)
 
@@ -143,13 +150,21 @@ def _tail(stage: Path) -> str:
     return "end of its log: " + " | ".join([line for line in lines if line and not line.startswith("progress ")][-4:])
 
 
-def _finish(stage: Path, found: dict, provenance: dict) -> None:
+def _tell_accuracy(path: Path, asked: float) -> None:
+    """scene.toml says what was asked for beside the accuracy as used, where finer runs were made for it."""
+    used = read_scene(path.parent)["accuracy"]
+    if not math.isclose(used, asked):
+        why = f"   # asked for: {asked:g}; this one, with the sizes of mesh and steps, for the estimated error\n"
+        path.write_text(re.sub(r"(?m)^(accuracy = \S+)\n", rf"\1{why}", path.read_text("utf-8"), count=1), "utf-8")
+
+
+def _finish(stage: Path, scene: Scene | Multibody, found: dict, provenance: dict) -> None:
     """The summary with what was `found` beside the run and its provenance, last and by rename."""
     summary = read_summary(stage)
     found["warnings"] = summary.get("warnings", []) + found.get("warnings", [])
     if found.get("estimated_error"):
         summary["skipped"] = [name for name in summary["skipped"] if name != "error estimate"]
-    summary |= {"estimated_error": None} | found | {"provenance": provenance | {"files": files_of(stage)}}
+    summary |= {"estimated_error": None, "released": list(scene.released)} | found | {"provenance": provenance | {"files": files_of(stage)}}
     (stage / "summary.json").unlink()
     write_json(stage / "summary.json.part", summary)
     os.replace(stage / "summary.json.part", stage / "summary.json")

@@ -20,10 +20,14 @@ class Scene:
     title: str
     script: str
     values: dict[str, parameters.Value]
+    released: tuple[str, ...] = ()      # sentences: what was fixed for others that are set now
 
     def override(self, given: dict[str, parameters.Value]) -> "Scene":
-        """The same scene with some parameters set (text or values); BadInput where one is not accepted."""
-        return replace(self, values=self.values | self.check(given))
+        """The same scene with some parameters set (text or values), and open again what it had fixed for them (FOLLOWS); BadInput where one is not accepted."""
+        checked = self.check(given)
+        opened = parameters.released(self.values, checked)
+        said = tuple(parameters.release(name, self.values[name], [cause for cause in parameters.FOLLOWS[name] if cause in checked]) for name in opened)
+        return replace(self, values=self.values | opened | checked, released=self.released + said)
 
     def check(self, given: dict[str, parameters.Value]) -> dict[str, parameters.Value]:
         """The given entries of such a scene, checked one by one and converted; BadInput."""

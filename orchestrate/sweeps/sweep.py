@@ -65,6 +65,7 @@ class Sweep:
     collect: list[str]
     limit: float
     figure: dict
+    sample: scene.Scene | Multibody      # a point's scene
     text: str                   # the file
 
     @property
@@ -92,9 +93,8 @@ def main(argv: list[str]) -> int:
     out = result_folder(options.out or RESULTS / "sweeps" / wanted.name)
     names = {study.place(out, point).name: point for point in wanted.runs}
     if options.list or options.open:
-        base = scene.load(wanted.scene).override(wanted.base)
-        print("\n".join(name for name, point in names.items()
-                        if options.list or not study.there(study.place(out, point), base.override(point))))
+        there = study.outcomes([*names.values()], out, wanted.base, scene.load(wanted.scene)) if options.open else {}
+        print("\n".join(name for name, point in names.items() if study.place(out, point) not in there))
         return 0
     if options.run is not None and options.run not in names:
         raise BadInput(f"--run: '{brief(options.run)}' is no run of {wanted.name} (accepted: see --list)")
@@ -108,7 +108,8 @@ def main(argv: list[str]) -> int:
     bad = rows[~rows.exit.isin(RECORDED)]
     if len(bad):
         again = "" if bad.exit.isin(LASTING).all() else "; the same command runs again what was killed or did not end"
-        raise Failure(f"{wanted.name}: {len(bad)} of {len(rows)} points have no answer, first: {bad.message.iloc[0]}{again}",
+        first = study.place(Path(), bad[wanted.axes].iloc[0].to_dict()).name
+        raise Failure(f"{wanted.name}: {len(bad)} of {len(rows)} points have no answer, first: {first}: {bad.message.iloc[0]}{again}",
                       int(bad.exit.iloc[0]) if bad.exit.nunique() == 1 else 1)
     return 0
 
@@ -182,7 +183,7 @@ def _sweep(path: Path, given: dict, text: str) -> Sweep:
     points = [{name: value for part in parts for name, value in part.items()} for parts in itertools.product(*axes)]
     if len({tuple(point.values()) for point in points}) < len(points):
         raise BadInput("zip: two points are the same (accepted: every combination once)")
-    of.override({"fields": 0} | base | points[0])
+    sample = _sample(of, {"fields": 0} | base, points)
     _finer(refine, of.values | of.sizes | base, points)
     known = [f"{each}_end" if each in varied else each for each in of.numbers]
     wanted = _is(given.get("collect", known), list, "collect", "a list of names")
@@ -194,7 +195,18 @@ def _sweep(path: Path, given: dict, text: str) -> Sweep:
         raise BadInput(f"limit: {brief(limit)} (accepted: 1 to 1e6 seconds)")
     figure = sweep_figures.check(tables["figure"], points, wanted, of.columns) | {"per": per_metre({"script": of.script})} if tables["figure"] else {}
     base = {"fields": 0} | base
-    return Sweep(path.stem, str(given.get("title", path.stem)), name, base, points, refine, wanted, float(limit), figure, text)
+    return Sweep(path.stem, str(given.get("title", path.stem)), name, base, points, refine, wanted, float(limit), figure, sample, text)
+
+
+def _sample(of: scene.Scene | Multibody, base: study.Point, points: list[study.Point]) -> scene.Scene | Multibody:
+    """The scene of the first point that is accepted; BadInput, as of the first point, where none is. One that is refused keeps no other from its run."""
+    refused = None
+    for point in points:
+        try:
+            return of.override(base | point)
+        except BadInput as error:
+            refused = refused or error
+    raise refused
 
 
 def _finer(refine: study.Point, values: study.Point, points: list[study.Point]) -> None:
@@ -309,6 +321,7 @@ def report(wanted: Sweep, rows: pd.DataFrame, out: Path) -> str:
     for (code, message), group in failed.groupby(["exit", "message"], sort=False):
         where = "; ".join(study.place(Path(), point).name for point in group[wanted.axes].to_dict("records"))
         lines.append(f"failed, exit {code}: {where}: {message}")
+    lines += [f"released: {sentence}" for sentence in wanted.sample.released]
     if found := study.warned(rows.warnings):
         lines.append(f"warnings: {found}")
     lines += sweep_figures.findings(wanted, rows, out)

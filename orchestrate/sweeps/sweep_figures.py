@@ -19,7 +19,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.ticker import LogLocator, NullLocator
 
-from .. import parameters, scene
+from .. import parameters
 from ..failure import BadInput, brief
 from ..report import report
 from ..report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, SMALL, STYLE, as_written, numbers_of_the_paper
@@ -100,7 +100,7 @@ def draw(sweep, rows: pd.DataFrame, out: Path) -> None:
 
 def _constants(sweep) -> str:
     """What is the same in all runs of a body: law, nu, speed, contact stiffness and, with friction, the slip velocity."""
-    used = scene.load(sweep.scene).override(sweep.base | sweep.points[0]).given
+    used = sweep.sample.given
     names = ("law", "nu", "speed", "penalty") + ("slip_velocity",) * (used.get("friction_static", 0) > 0)
     words = ", ".join(_value(name, used[name]) for name in names if name in used and name not in sweep.axes)
     return words.replace("Pa/m^m", "Pa/m") if used.get("exponent", 1) == 1 else words
@@ -210,7 +210,7 @@ def _why(codes: pd.Series) -> str:
 
 def _published(axes: plt.Axes, sweep, x: str, y: str) -> None:
     """The numbers of the paper for y, whose contact time is that while the force is not zero: a star at its x, or a line over all x where it states none."""
-    for at, value, words in numbers_of_the_paper(scene.load(sweep.scene).override(sweep.base | sweep.points[0]).given, y.removeprefix("thresholded_"), over=x):
+    for at, value, words in numbers_of_the_paper(sweep.sample.given, y.removeprefix("thresholded_"), over=x):
         words = f"{words}: {_factor(y) * value:.3g}{_unit(y, sweep.figure['per'])}"
         if at is None:
             axes.axhline(_factor(y) * value, color=BLACK, linestyle="-.", linewidth=0.9, label=words)
