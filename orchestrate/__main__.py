@@ -86,7 +86,7 @@ def _run(options: argparse.Namespace) -> None:
     if options.checkpoint_every:
         given["checkpoint_every"] = options.checkpoint_every
     result = run.run(scene.load(options.scene), given, options.out, mesh_file=options.mesh,
-                     force=options.force, progress=not options.quiet and sys.stderr.isatty())
+                     force=options.force, progress=False if options.quiet else None)
     report.draw(result)
     if not options.quiet:
         print(report.report(result))

@@ -5,14 +5,13 @@ earlier finished run, which is not lost. How a folder is made, locked and put in
 """
 
 import hashlib
+import itertools
 import json
 import math
 import os
 import re
 import signal
 import subprocess
-from collections.abc import Iterator
-from contextlib import contextmanager, nullcontext
 from pathlib import Path
 
 import numpy as np
@@ -23,9 +22,11 @@ from .folder import checkpoints, clear, failed_beside, finished_in, replace, res
 from .multibody import Multibody
 from .parameters import Value
 from .places import INSTALLED, PACKAGE, RESULTS, ROOT, shown
+from .progress import Line
 from .results import RunResult, check_files, files_of, read_answers, read_history, read_json, read_scene, read_summary, write_json
 from .scene import Scene
 from .tables import to_toml
+from .told import Told, runs
 
 DECISIVE = ("approach", "assembly", "bodies", "curved", "dimension", "estimate", "flat", "gmsh_file", "mesh", "mirror", "multibody", "obstacles", "outlines", "polyline", "revolution",
             "solid_file", "solid_mesh", "solids", "tables", "tumbling")
@@ -33,11 +34,12 @@ FAILURES = {10: "bad input", 11: "step failed", 12: "material broke down", 13: "
 
 
 def run(scene: Scene | Multibody, overrides: dict[str, Value] | None = None, out: Path | None = None, *,
-        mesh_file: Path | None = None, force: bool = False, progress: bool = False, estimate: bool = True) -> RunResult:
+        mesh_file: Path | None = None, force: bool = False, progress: bool | None = None, estimate: bool = True) -> RunResult:
     """Runs `scene` with some parameters overridden in the folder `out` (default results/<scene>), or reuses it.
 
     Raises Failure with the exit code of the run contract. `force` runs again, from the start, even if the folder is up to
     date. With a checkpoint_every > 0 a run that is killed goes on from its last checkpoint when it is asked for again.
+    `progress` says whether a line shows how far it is (None: on a terminal and in a notebook).
     With `estimate` a second, coarser run estimates the error, and finer ones follow until it is below the accuracy (estimate.py).
     """
     scene = scene.override(overrides or {})
@@ -53,7 +55,7 @@ def run(scene: Scene | Multibody, overrides: dict[str, Value] | None = None, out
     program = freefem.find()
     if scene.meshed and not foreign:
         mesh.start_gmsh()
-    with staging(folder) as (stage, lock):
+    with Line(scene.name, runs(estimate), progress) as line, staging(folder) as (stage, lock):
         if not force and (there := reusable(scene, folder, mesh_file, estimate)):   # another run has finished it meanwhile
             return there
         provenance = {"script": scene.script, "version": __version__, "code": code_hash(), "freefem": program.version,
@@ -64,14 +66,15 @@ def run(scene: Scene | Multibody, overrides: dict[str, Value] | None = None, out
             clear(stage)
             write_json(stage / "checkpoint.json", asked)
 
-        seconds = []
+        number, seconds = itertools.count(1), []
 
         def solve(given: dict[str, Value], where: Path) -> None:
+            told = Told(line, scene, mesh_file, "main run" if where == stage else f"{where.name} run", next(number))
             try:
-                with _progress_line(scene.name) if progress else nullcontext() as show:
-                    _solve(program, scene.override(given), foreign, where, lock, show)
+                _solve(program, scene.override(given), foreign, where, lock, told)
             finally:
                 seconds.append((read_json(where / "summary.json") or read_json(where / "failure.json")).get("wall_seconds", 0.0))
+            told.at("ready", 1.0)
 
         try:
             solve({}, stage)
@@ -94,7 +97,7 @@ def run(scene: Scene | Multibody, overrides: dict[str, Value] | None = None, out
 
 
 def _solve(program: freefem.FreeFem, scene: Scene | Multibody, foreign: bytes | None, where: Path, lock: int,
-           show: freefem.Progress | None) -> None:
+           told: Told) -> None:
     """Runs the scene in the folder `where`: from its checkpoint where there is one, not again where it is finished."""
     if (where / "summary.json").exists():
         return
@@ -103,10 +106,12 @@ def _solve(program: freefem.FreeFem, scene: Scene | Multibody, foreign: bytes | 
         where.mkdir(exist_ok=True)
         if not (where / "checkpoint.json").exists():   # what makes the folder ours
             write_json(where / "checkpoint.json", scene.asked)
+    told.at("mesh")
     given, scene_toml = scene.prepare(where, foreign)
+    told.at("set-up")
     given = given | {"out": where} | ({"restart": where / "checkpoint"} if goes_on else {})
     flags = [text for name, value in given.items() for text in (f"-{name}", str(value))]
-    exit_code, said = freefem.run(program, scene.script, flags, where / "log.txt", show, lock)
+    exit_code, said = freefem.run(program, scene.script, flags, where / "log.txt", told.show, lock)
     if scene_toml and (where / "scene.toml").exists():
         (where / "scene.toml").write_text(scene_toml, "utf-8")
     _check(where, exit_code, said)
@@ -177,17 +182,6 @@ def _keep_failed(stage: Path, failure: Failure, scene: Scene | Multibody, proven
         (stage / "scene.toml").write_text(to_toml(scene.given), "utf-8")
     record = {"status": FAILURES.get(failure.code, "crashed"), "message": str(failure)} | read_json(stage / "failure.json")
     write_json(stage / "failure.json", record | {"exit_code": failure.code, "provenance": provenance})
-
-
-@contextmanager
-def _progress_line(name: str) -> Iterator[freefem.Progress]:
-    """One line on stderr, gone at the end."""
-    from tqdm import tqdm
-    with tqdm(total=1.0, desc=name, leave=False, bar_format="{desc} {percentage:3.0f}% |{bar}| {elapsed}{postfix}") as line:
-        def show(fraction: float, t: str, steps: str) -> None:
-            line.n = min(max(fraction, line.n), 1.0) if math.isfinite(fraction) else line.n
-            line.set_postfix_str(f"t = {float(t) * 1e3:.3f} ms, {steps} steps")
-        yield show
 
 
 # ---- reuse

@@ -16,7 +16,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 from matplotlib.ticker import NullLocator
-from tqdm import tqdm
 
 from verification.case import Case, Row
 from verification.cases import CASES
@@ -83,10 +82,8 @@ def run_all(out: Path, cores: int = study.CORES) -> pd.DataFrame:
     for case in CASES:
         (out / "runs" / slug(case)).mkdir(parents=True)
     acts = {(c, p): partial(perform, part, out / "runs" / slug(case)) for c, case in enumerate(CASES) for p, part in enumerate(case.parts)}
-    with tqdm(total=len(acts), disable=None, leave=False) as line:
-        for key, outcome in study.side_by_side(acts, cores):
-            found[key] = ([], str(outcome)) if isinstance(outcome, Failure) else outcome
-            line.update()
+    for key, outcome in study.side_by_side(acts, cores, "verify"):
+        found[key] = ([], str(outcome)) if isinstance(outcome, Failure) else outcome
     for c, case in enumerate(CASES):
         outcomes = [found[c, p] for p in range(len(case.parts))]
         rows, message = [row for some, _ in outcomes for row in some], next((said for _, said in outcomes if said), "")

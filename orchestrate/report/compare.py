@@ -1,13 +1,12 @@
 """Runs of several scenes side by side: their reports, and one figure of their forces, energies and velocities."""
 
 import argparse
-import sys
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
 
-from .. import scene
+from .. import progress, scene
 from ..failure import BadInput, Failure
 from ..folder import result_folder
 from ..parameters import overrides
@@ -30,9 +29,9 @@ def main(argv: list[str]) -> int:
     if len({each.name for each in scenes}) < max(2, len(scenes)):
         raise BadInput("compare: two or more different scenes are needed")
     results, failed = {}, None
-    for each in scenes:
+    for each in progress.each("compare", scenes):
         try:
-            result = run(each, overrides(options.set), folder / each.name, progress=sys.stderr.isatty())
+            result = run(each, overrides(options.set), folder / each.name)
             results[each.name] = result
             report.draw(result)
             print(report.report(result) + "\n")
