@@ -12,7 +12,7 @@ from .. import estimate, run, scene
 from ..failure import Failure, TooLong
 from ..folder import result_folder
 from ..multibody import Multibody
-from ..parameters import Value, defaults, whole
+from ..parameters import Value, whole
 from ..places import COMMAND, RESULTS, shown
 from ..results import read_answers
 from . import draws, study
