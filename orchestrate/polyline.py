@@ -60,7 +60,7 @@ def numbers(vertices: np.ndarray, closed: bool, rounding: float) -> tuple[float,
 
 def gap(points: np.ndarray, numbers: tuple[float, ...]) -> np.ndarray:
     """Signed distances (n,) of points (n, 2) from the surface of the chain `numbers`, negative inside the solid."""
-    sides = _sides(np.reshape(numbers[2:], (-1, 2)), bool(numbers[0]))
+    sides = sides_of(numbers)
     from_start = points[:, None] - sides.start                                       # (n, m, 2)
     at = np.sum(from_start * sides.along, axis=2)
     away = from_start - np.clip(at, sides.low, sides.high)[..., None] * sides.along  # from the nearest point of each side
@@ -73,6 +73,11 @@ def gap(points: np.ndarray, numbers: tuple[float, ...]) -> np.ndarray:
     beyond = (at > sides.high[nearest])[:, None] * after + (at < sides.low[nearest])[:, None] * before
     side = np.sum(away * (normal[nearest] + beyond), axis=1)
     return np.where(side < 0, -1, 1) * distance[row, nearest] - numbers[1]
+
+
+def sides_of(numbers: tuple[float, ...]) -> Sides:
+    """Those of the chain `numbers`."""
+    return _sides(np.reshape(numbers[2:], (-1, 2)), bool(numbers[0]))
 
 
 def _sides(vertices: np.ndarray, closed: bool) -> Sides:
