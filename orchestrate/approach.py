@@ -5,13 +5,14 @@ While the spheres around them are apart time is skipped at once, between roots o
 import itertools
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.polynomial import Polynomial
 
 from . import polyline
 from .bodies import Body
+from .dimension import PLANE_STRAIN
 from .failure import BadInput
 from .multibody import Multibody, gap_between
 from .obstacles import Obstacle
@@ -20,14 +21,15 @@ from .solids import Solid
 
 Shape = Outline | Solid
 STEPS = 2000                 # of bodies within reach of each other: what has not met by then is not known to
-MET = 1e-3                   # of the smaller thickness: a gap that counts as closed
+MET, CLOSED = 1e-3, 1e-9     # of the smaller thickness: a gap that counts as met, and one that is followed no further
 
 
 @dataclass(frozen=True)
 class Meeting:
     """Body `first` and `second` (body k, or -1 - k for obstacle k) when they first touch, or, where they do not, at the start: both
     as they are then; the parts along and across the normal, positive, of their relative velocity [m/s] and of the constant force
-    between them [m/s2]; the radius that stands for the pair [m]; whether as rigid bodies they never meet."""
+    between them [m/s2]; the radius that stands for the pair [m]; the time [s], infinite where they do not; the normal, outward of the second; whether as
+    rigid bodies they never meet."""
 
     first: int
     second: int
@@ -37,6 +39,8 @@ class Meeting:
     pressing: float
     pulling: float
     radius: float
+    time: float
+    normal: np.ndarray
     never: bool = False
 
     def gaps(self, body: int, points: np.ndarray) -> np.ndarray:
@@ -59,14 +63,32 @@ def _meeting(scene: Multibody, first: int, second: int) -> Meeting:
     start = body.velocity - other.velocity
     radius = min([body.outline.half_thickness, *([other.outline.half_thickness] if second >= 0 else [])])
     turning = sum(one.outline.fastest(one.angle, one.spin) * one.outline.reach for one in (body, other) if isinstance(one, Body))
-    t, never = _first_touch(body, other, start, pull, turning, MET * radius)
+    t, never = _first_touch(body, other, start, pull, turning, radius)
     met = not math.isinf(t)
     t = t if met else 0.0
     outlines, velocity = _at(body, other, t, pull), start + pull * t
     normal = outlines[0].normal_from(outlines[1])
     if not met:                                                # what lets them meet later may turn them in any direction
-        return Meeting(first, second, outlines, float(np.linalg.norm(velocity)), 0.0, float(np.linalg.norm(pull)), 0.0, float(radius), never)
-    return Meeting(first, second, outlines, *_parts(velocity, normal), *_parts(pull, normal), float(radius))
+        return Meeting(first, second, outlines, float(np.linalg.norm(velocity)), 0.0, float(np.linalg.norm(pull)), 0.0, float(radius), math.inf, normal, never)
+    return Meeting(first, second, outlines, *_parts(velocity, normal), *_parts(pull, normal), float(radius), t, normal)
+
+
+def turned(scene: Multibody) -> Multibody:
+    """The scene with its discs turned so that what touches first is their lowest point when they are not turned: where a disc is meshed finely
+    does not depend on the frame in which the scene is written."""
+    if scene.dimension is not PLANE_STRAIN:
+        return scene
+    met = meetings(scene)
+    found = list(scene.bodies)
+    for k, body in enumerate(scene.bodies):
+        mine = [one for one in met if k in (one.first, one.second)]
+        if not body.outline.disc or not mine:
+            continue
+        soonest = min(one.time for one in mine)
+        first = next(one for one in mine if one.time <= soonest * (1 + 1e-9))
+        outward = -first.normal if k == first.first else first.normal
+        found[k] = replace(body, angle=math.atan2(outward[1], outward[0]) + math.pi / 2 - (body.spin * first.time if math.isfinite(first.time) else 0.0))
+    return replace(scene, bodies=found)
 
 
 def refuse_nothing(scene: Multibody, met: list[Meeting]) -> None:
@@ -95,16 +117,17 @@ def _at(body: Body, other: Body | Obstacle, t: float, pull: np.ndarray) -> tuple
     return flown(body, body.velocity - other.velocity), other
 
 
-def _first_touch(body: Body, other: Body | Obstacle, start: np.ndarray, pull: np.ndarray, turning: float, closed: float) -> tuple[float, bool]:
+def _first_touch(body: Body, other: Body | Obstacle, start: np.ndarray, pull: np.ndarray, turning: float, radius: float) -> tuple[float, bool]:
     """When the gap is closed [s], infinite where it is not known to, and whether it never is. By conservative advancement where they are within
     reach of each other: in each step no point can come nearer than the gap."""
-    rate, steps = np.linalg.norm(pull), 0
+    rate, steps, met, before = np.linalg.norm(pull), 0, False, math.inf
     for t, end in _within_reach(body, other, start, pull):
         while t < end:
             gap, speed = _gap(*_at(body, other, t, pull)), np.linalg.norm(start + pull * t) + turning
-            if gap <= closed:
+            met = met or gap <= MET * radius
+            if met and (gap <= CLOSED * radius or gap >= before):               # closed, or passing by
                 return t, False
-            steps += 1
+            steps, before = steps + 1, gap
             if steps > STEPS:
                 return math.inf, False
             if speed + rate == 0:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .failure import Unreadable
+from .results import Contents, content, reading
 
 TRIANGLE, QUADRATIC_TRIANGLE, QUADRATIC_TETRAHEDRON = 5, 22, 24   # VTK's cell types
 NODES = {TRIANGLE: 3, QUADRATIC_TRIANGLE: 6, QUADRATIC_TETRAHEDRON: 10}
@@ -25,7 +25,7 @@ class Snapshot:
 
     points: np.ndarray
     triangles: np.ndarray
-    fields: dict[str, np.ndarray]
+    fields: Contents
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class Solid:
 
     points: np.ndarray
     tetrahedra: np.ndarray
-    fields: dict[str, np.ndarray]
+    fields: Contents
 
 
 def read(path: Path) -> Snapshot:
@@ -48,7 +48,7 @@ def read(path: Path) -> Snapshot:
         if not len(cells):
             return _cut(Solid(points, solid, fields), on_plane)
     row = np.cumsum(on_plane) - 1
-    flat = Snapshot(points[on_plane, :2], row[cells], {name: field[on_plane] for name, field in fields.items()})
+    flat = Snapshot(points[on_plane, :2], row[cells], Contents({name: field[on_plane] for name, field in fields.items()}, path))
     return flat if kind == TRIANGLE else _straight(flat)
 
 
@@ -60,8 +60,9 @@ def read_solid(path: Path) -> Solid | None:
 
 def _parts(path: Path) -> tuple[np.ndarray, int, np.ndarray, dict[str, np.ndarray]]:
     """Points, the type of all cells, their nodes (cells, nodes) and the fields. Unreadable where it is not such a file."""
-    try:
-        piece = xml.parse(path).getroot().find("UnstructuredGrid/Piece")
+    text = content(path)
+    with reading(path):
+        piece = xml.fromstring(text).find("UnstructuredGrid/Piece")
         points = _array(piece.find("Points/DataArray"))
         cells = {array.get("Name"): _array(array).astype(int) for array in piece.iterfind("Cells/DataArray")}
         kinds = set(cells["types"])
@@ -72,9 +73,7 @@ def _parts(path: Path) -> tuple[np.ndarray, int, np.ndarray, dict[str, np.ndarra
         nodes = cells["connectivity"].reshape(-1, NODES[kind])
         if nodes.min() < 0 or nodes.max() >= len(points) or any(len(field) != len(points) for field in fields.values()):
             raise ValueError("a node or a value at one is missing")
-        return points, kind, nodes, fields
-    except (OSError, xml.ParseError, AttributeError, KeyError, ValueError, IndexError) as error:
-        raise Unreadable(f"{path} cannot be read: {error}") from None
+        return points, kind, nodes, Contents(fields, path)
 
 
 def _straight(curved: Snapshot) -> Snapshot:
@@ -96,7 +95,7 @@ def _straight(curved: Snapshot) -> Snapshot:
     up = [(place[i, j], place[i + 1, j], place[i, j + 1]) for i, j in lattice if i + j < n]
     down = [(place[i + 1, j], place[i + 1, j + 1], place[i, j + 1]) for i, j in lattice if i + j < n - 1]
     triangles = which.reshape(len(cells), -1)[:, np.array(up + down)].reshape(-1, 3)
-    return Snapshot(at(curved.points), triangles, {name: at(field) for name, field in curved.fields.items()})
+    return Snapshot(at(curved.points), triangles, Contents({name: at(field) for name, field in curved.fields.items()}, curved.fields.path))
 
 
 def _in_plane(tetrahedra: np.ndarray, on_plane: np.ndarray, points: np.ndarray) -> np.ndarray:
@@ -124,18 +123,17 @@ def _cut(solid: Solid, on_plane: np.ndarray) -> Snapshot:
     (ax, ay), (bx, by), (cx, cy) = (at(solid.points)[triangles[:, k], :2].T for k in range(3))
     area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
     triangles = np.where((area < 0)[:, None], triangles[:, ::-1], triangles)[area != 0]
-    return Snapshot(at(solid.points)[:, :2], triangles, {name: at(field) for name, field in solid.fields.items()})
+    return Snapshot(at(solid.points)[:, :2], triangles, Contents({name: at(field) for name, field in solid.fields.items()}, solid.fields.path))
 
 
 def series(pvd: Path) -> list[tuple[float, Path]]:
     """(time in s, file) of every snapshot, in the order of time; empty where there is no such list."""
     if not pvd.exists():
         return []
-    try:
-        sets = xml.parse(pvd).getroot().iterfind("Collection/DataSet")
+    text = content(pvd)
+    with reading(pvd):
+        sets = xml.fromstring(text).iterfind("Collection/DataSet")
         return sorted((float(each.get("timestep")), pvd.parent / each.get("file")) for each in sets)
-    except (xml.ParseError, TypeError, ValueError) as error:
-        raise Unreadable(f"{pvd} cannot be read: {error}") from None
 
 
 def _array(element: xml.Element) -> np.ndarray:

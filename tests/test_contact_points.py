@@ -119,5 +119,5 @@ def test_picture_and_broken_tables(ran):
     assert (result.folder / "figures/contact.png").stat().st_size > 10000
     assert contact.draw(contact.read(result.folder).iloc[:0], ["body"], False, np.array([])) is None
     (result.folder / "fields/contact.csv").write_text("t,body\n1,2\n")
-    with pytest.raises(Unreadable, match="contact.csv lacks the columns partner, s"):
+    with pytest.raises(Unreadable, match="contact.csv cannot be read: it is not as the run has written it"):
         contact.read(result.folder)

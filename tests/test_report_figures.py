@@ -1,12 +1,13 @@
 """What figures must say: where time begins, when the contact ends, the paper's number, a scale; and the cut of a body in three dimensions."""
 
 import itertools
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from orchestrate import vtu
+from orchestrate import results, vtu
 from orchestrate.report import figures, impacts
 from orchestrate.sweeps import sweep, sweep_figures
 
@@ -164,7 +165,7 @@ def block(low: float, high: float, count: int) -> vtu.Solid:
         tetrahedra.append(row)
     points = np.array(points)
     fields = {"displacement": points.copy(), "von_mises": 1 + points @ (2.0, -1.0, 1.0)}
-    return vtu.Solid(points, np.array(tetrahedra), fields)
+    return vtu.Solid(points, np.array(tetrahedra), results.Contents(fields, Path("a.vtu")))
 
 
 @pytest.mark.parametrize("low, high, count", [(-1, 2, 2), (-1, 1, 1), (-1, 1, 3), (-0.25, 0.75, 1)])

@@ -1,17 +1,16 @@
 """Runs of several scenes side by side: their reports, and one figure of their forces, energies and velocities."""
 
 import argparse
-import sys
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
 
-from .. import scene
+from .. import progress, scene
 from ..failure import BadInput, Failure
 from ..folder import result_folder
-from ..parameters import ROOT, overrides
-from ..places import shown
+from ..parameters import overrides
+from ..places import COMMAND, RESULTS, shown
 from ..results import RunResult, suffixes
 from ..run import run
 from . import report
@@ -21,18 +20,18 @@ from .figures import ABOVE, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE, numb
 
 def main(argv: list[str]) -> int:
     """Runs or reuses every scene, prints the reports, draws DIR/<names>.png. A scene that fails does not keep the others."""
-    parser = argparse.ArgumentParser(prog="python -m orchestrate compare", description=__doc__)
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} compare", description=__doc__)
     parser.add_argument("scenes", metavar="SCENE", nargs="+", help="two or more built-in scenes or TOML files")
     parser.add_argument("--set", metavar="NAME=VALUE", nargs="+", action="extend", default=[], help="set a parameter in all of them")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results", help="a folder for a folder of each scene")
+    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS, help="a folder for a folder of each scene")
     options = parser.parse_args(argv)
     scenes, folder = [scene.load(name) for name in options.scenes], result_folder(options.out)
     if len({each.name for each in scenes}) < max(2, len(scenes)):
         raise BadInput("compare: two or more different scenes are needed")
     results, failed = {}, None
-    for each in scenes:
+    for each in progress.each("compare", scenes):
         try:
-            result = run(each, overrides(options.set), folder / each.name, progress=sys.stderr.isatty())
+            result = run(each, overrides(options.set), folder / each.name)
             results[each.name] = result
             report.draw(result)
             print(report.report(result) + "\n")

@@ -19,7 +19,7 @@ from PIL import Image
 
 from .. import dimension, vtu
 from ..parameters import Value
-from ..results import read_history, read_json, read_scene
+from ..results import Contents, check_files, read_history, read_json, read_scene
 
 LAWS = {"svk": "St. Venant–Kirchhoff", "neohookean": "neo-Hookean", "incompressible": "incompressible neo-Hookean"}
 BLUE, ORANGE, GREEN, PURPLE, BLACK, GREY = "#0072b2", "#d55e00", "#009e73", "#aa4499", "#222222", "#999999"
@@ -41,12 +41,14 @@ def draw(folder: Path, warnings: list[str]) -> list[Path]:
     """Draws all figures of the run in `folder` into folder/figures, with its warnings below; the files. Unreadable where the
     folder is broken. energies.png is the last: where it is, all are."""
     from . import bodies, contact as contacts, impacts, solid, vibration
-    history, scene = read_history(folder), read_scene(folder) | {"touched": touched(read_json(folder / "summary.json"))}
+    check_files(folder)
+    history, scene = read_history(folder), read_scene(folder)
+    scene["touched"] = touched(read_json(folder / "summary.json"))
     snapshots = vtu.series(folder / "fields.pvd")
     target = folder / "figures"
     target.mkdir(exist_ok=True)
     touches = history["normal_force"] > 0
-    contact = {name: column[max(0, int(np.argmax(touches)) - 1):] for name, column in history.items()}   # without the flight
+    contact = Contents({name: column[max(0, int(np.argmax(touches)) - 1):] for name, column in history.items()}, history.path)   # without the flight
     with plt.rc_context(STYLE):
         if bodies.are_several(scene):
             drawn = bodies.draw(contact, scene, snapshots)

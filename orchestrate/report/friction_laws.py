@@ -10,8 +10,7 @@ import pandas as pd
 from .. import freefem, parameters
 from ..failure import Failure, Unreadable
 from ..folder import result_folder
-from ..parameters import ROOT
-from ..places import shown
+from ..places import COMMAND, RESULTS, shown
 from .figures import BELOW, BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE
 
 VALUES = {"friction_static": 0.7, "friction_dynamic": 0.5, "slip_velocity": 0.1}   # of section 3.1 and figure 3
@@ -22,8 +21,8 @@ LABELS = {"linear": (r"linear, $\phi^3$ with $v_T/\varepsilon$", BLUE, "-"), "sq
 
 def main(argv: list[str]) -> int:
     """Tabulates the laws into DIR/laws.csv and draws DIR/friction-laws.png."""
-    parser = argparse.ArgumentParser(prog="python -m orchestrate friction-laws", description=__doc__)
-    parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/friction-laws", help="the result folder")
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} friction-laws", description=__doc__)
+    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "friction-laws", help="the result folder")
     for name, value in VALUES.items():
         parser.add_argument(f"--{name}", metavar="VALUE", default=value, help=f"{parameters.table()[name].help} (default: {value:g})")
     options = parser.parse_args(argv)
