@@ -244,7 +244,7 @@ def test_one_body_and_nothing_else(inputs, tmp_path):
     with pytest.raises(BadInput, match="^obstacle: is missing, and a second body too"):
         multibody.read(alone, tmp_path, "alone").prepare(tmp_path)
     lines = (inputs / "scene.dat").read_text().split("\n")
-    kept = [*lines[:2], "bodies 1", lines[3], "circles 0", "obstacles 0", "pairs 0", ""]
+    kept = [*lines[:2], "bodies 1", lines[3], "circles 0", "files 0", "obstacles 0", "pairs 0", ""]
     (tmp_path / "scene.dat").write_text("\n".join(kept))
     done = freefem_run("-mesh", str(inputs / "mesh.msh"), "-bodies", str(tmp_path / "scene.dat"), "-out", str(tmp_path / "out"))
     assert done.returncode == 10 and "nothing could ever touch" in done.stderr and done.stderr.count("\n") == 1, done.stderr
