@@ -14,8 +14,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from .. import mesh, scene
 from ..folder import result_folder
-from ..parameters import ROOT
-from ..places import shown
+from ..places import COMMAND, RESULTS, shown
 from ..report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE
 from ..results import read_history
 from ..sweeps.sweep_figures import distance
@@ -80,10 +79,10 @@ CASES = {
 
 def main(argv: list[str]) -> int:
     """Runs all settings one after the other, writes bench.csv, a figure a case and bench.md; 0 if the references are sound."""
-    parser = argparse.ArgumentParser(prog="python -m orchestrate bench", description=__doc__)
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} bench", description=__doc__)
     parser.add_argument("cases", metavar="CASE", nargs="*", default=list(CASES), help=f"(default: {' '.join(CASES)})")
     parser.add_argument("--quick", action="store_true", help="the first case, coarse settings only, a coarser reference; under three minutes")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/bench", help="the result folder")
+    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "bench", help="the result folder")
     options = parser.parse_args(argv)
     for name in options.cases:
         if name not in CASES:

@@ -15,8 +15,7 @@ import pandas as pd
 from .. import results, run, scene
 from ..failure import Failure
 from ..folder import result_folder
-from ..parameters import ROOT
-from ..places import shown
+from ..places import COMMAND, RESULTS, shown
 from ..report.figures import BLUE, GREY, ORANGE, STYLE
 from . import study
 
@@ -34,9 +33,9 @@ CASES = {                                       # of the profile: scene and what
 
 def main(argv: list[str]) -> int:
     """Prints both tables, writes profile.csv, growth.csv and growth.png."""
-    parser = argparse.ArgumentParser(prog="python -m orchestrate costs", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} costs", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--quick", action="store_true", help="small meshes only")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/costs", help="the result folder")
+    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "costs", help="the result folder")
     options = parser.parse_args(argv)
     out = result_folder(options.out)
     rate = bandwidth()

@@ -7,8 +7,8 @@ import pandas as pd
 
 from .. import estimate
 from ..folder import result_folder
-from ..parameters import ROOT, defaults, whole
-from ..places import shown
+from ..parameters import defaults, whole
+from ..places import COMMAND, RESULTS, shown
 from ..results import read_answers, read_scene
 from . import draws, study
 
@@ -22,13 +22,13 @@ NEAR, FAR = 0.2, 1.0        # between which the median error must lie, over the 
 
 def main(argv: list[str]) -> int:
     """Prints the errors, scene by scene, writes promise.csv; 0 if the promise is kept in enough scenes, and not at too high a price."""
-    parser = argparse.ArgumentParser(prog="python -m orchestrate promise", description=__doc__)
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} promise", description=__doc__)
     parser.add_argument("--scenes", metavar="N", type=whole, default=COUNT, help=f"how many (default: {COUNT})")
     parser.add_argument("--seed", metavar="N", type=whole, default=SEED, help=f"other scenes (default: {SEED})")
     parser.add_argument("--hard", action="store_true", help="also gravity, other integrators, linear elements ...: nothing above what was asked without a warning")
     parser.add_argument("--of", metavar="SCENE", choices=draws.SCENES, default="disc-normal", help="a disc on the plane, on a free block, or a ball: "
                         f"{', '.join(draws.SCENES)} (default: disc-normal)")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/promise", help="the result folder")
+    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "promise", help="the result folder")
     parser.add_argument("--page", metavar="FILE", type=Path, help="also write what is printed as a page")
     options = parser.parse_args(argv)
     points = draws.draw(options.seed, max(1, options.scenes), options.hard, options.of)

@@ -7,8 +7,8 @@ import pandas as pd
 
 from .. import estimate
 from ..folder import result_folder
-from ..parameters import ROOT, defaults
-from ..places import shown
+from ..parameters import defaults
+from ..places import COMMAND, RESULTS, shown
 from ..results import read_scene
 from . import draws, study
 
@@ -26,9 +26,9 @@ ANSWERS = ("impulse", "rebound", "rebound_spin", "energy", "friction_work", "thr
 
 def main(argv: list[str]) -> int:
     """Prints how far the dimensionless answers of each world are from the paper's disc; 0 if all are equal, or within the scatter."""
-    parser = argparse.ArgumentParser(prog="python -m orchestrate scaling", description=__doc__)
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} scaling", description=__doc__)
     parser.add_argument("--accuracy", type=float, default=defaults()["accuracy"], help="of the runs (default: %(default)g)")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/scaling", help="the result folder")
+    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "scaling", help="the result folder")
     parser.add_argument("--page", metavar="FILE", type=Path, help="also write what is printed as a page")
     options = parser.parse_args(argv)
     table = compare(result_folder(options.out), options.accuracy)
