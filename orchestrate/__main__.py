@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 from . import __version__, stopping
-from .failure import BadInput, Failure, Unreadable
+from .failure import BadInput, Failure, Unreadable, brief
 from .places import COMMAND, from_source, shown
 
 # the commands with a module of their own, which has a main(argv), by its package
@@ -47,7 +47,7 @@ def main(argv: list[str]) -> int:
 
 
 def _bad_usage(parser: argparse.ArgumentParser, message: str) -> None:
-    raise BadInput(f"{message} (see {parser.prog} --help)")
+    raise BadInput(f"{brief(message)} (see {parser.prog} --help)")
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -1,11 +1,12 @@
 """Where bodies of a scene first touch: they fly as rigid bodies, r = r0 + v t + b t^2 / 2, angle = angle0 + spin t, until the gap closes."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from .bodies import Body
+from .dimension import PLANE_STRAIN
 from .failure import BadInput
 from .multibody import Multibody, gap_between
 from .obstacles import Obstacle
@@ -15,14 +16,15 @@ from .solids import Solid
 Shape = Outline | Solid
 STEPS = 200                  # what has not met by then does not
 FAR = 1e6                    # of the smaller thickness: a gap that does not close again
-MET = 1e-3                   # of the smaller thickness: a gap that counts as closed
+MET, CLOSED = 1e-3, 1e-9     # of the smaller thickness: a gap that counts as met, and one that is followed no further
 
 
 @dataclass(frozen=True)
 class Meeting:
     """Body `first` and `second` (body k, or -1 - k for obstacle k) when they first touch, or, where they do not, at the start: both
     as they are then; the parts along and across the normal, positive, of their relative velocity [m/s] and of the constant force
-    between them [m/s2]; the radius that stands for the pair [m]; whether as rigid bodies they never meet."""
+    between them [m/s2]; the radius that stands for the pair [m]; the time [s], infinite where they do not; the normal, outward of the second; whether as
+    rigid bodies they never meet."""
 
     first: int
     second: int
@@ -32,6 +34,8 @@ class Meeting:
     pressing: float
     pulling: float
     radius: float
+    time: float
+    normal: np.ndarray
     never: bool = False
 
     def gaps(self, body: int, points: np.ndarray) -> np.ndarray:
@@ -55,21 +59,42 @@ def _meeting(scene: Multibody, first: int, second: int) -> Meeting:
     start = body.velocity - other.velocity
     radius = min([body.outline.half_thickness, *([other.outline.half_thickness] if second >= 0 else [])])
     turning = sum(one.outline.fastest(one.angle, one.spin) * one.outline.reach for one in (body, other) if isinstance(one, Body))
-    t, met = 0.0, False
+    t, met, before = 0.0, False, math.inf
     for _ in range(STEPS):
         gap = _gap(*_at(body, other, t, pull))
-        met = gap <= MET * radius
+        met = met or gap <= MET * radius
+        if met and (gap <= CLOSED * radius or gap >= before):    # closed, or passing by
+            break
+        before = gap
         speed, rate = np.linalg.norm(start + pull * t) + turning, np.linalg.norm(pull)
         never = not met and (speed + rate == 0 or gap > FAR * radius)
-        if met or never:
+        if never:
             break
         t += 2 * gap / (speed + math.sqrt(speed**2 + 2 * rate * gap))       # speed t + rate t^2 / 2 = gap
     t = t if met else 0.0
     outlines, velocity = _at(body, other, t, pull), start + pull * t
     normal = outlines[0].normal_from(outlines[1])
     if not met:                                                # what lets them meet later may turn them in any direction
-        return Meeting(first, second, outlines, float(np.linalg.norm(velocity)), 0.0, float(np.linalg.norm(pull)), 0.0, float(radius), never)
-    return Meeting(first, second, outlines, *_parts(velocity, normal), *_parts(pull, normal), float(radius))
+        return Meeting(first, second, outlines, float(np.linalg.norm(velocity)), 0.0, float(np.linalg.norm(pull)), 0.0, float(radius), math.inf, normal, never)
+    return Meeting(first, second, outlines, *_parts(velocity, normal), *_parts(pull, normal), float(radius), t, normal)
+
+
+def turned(scene: Multibody) -> Multibody:
+    """The scene with its discs turned so that what touches first is their lowest point when they are not turned: where a disc is meshed finely
+    does not depend on the frame in which the scene is written."""
+    if scene.dimension is not PLANE_STRAIN:
+        return scene
+    met = meetings(scene)
+    found = list(scene.bodies)
+    for k, body in enumerate(scene.bodies):
+        mine = [one for one in met if k in (one.first, one.second)]
+        if not body.outline.disc or not mine:
+            continue
+        soonest = min(one.time for one in mine)
+        first = next(one for one in mine if one.time <= soonest * (1 + 1e-9))
+        outward = -first.normal if k == first.first else first.normal
+        found[k] = replace(body, angle=math.atan2(outward[1], outward[0]) + math.pi / 2 - (body.spin * first.time if math.isfinite(first.time) else 0.0))
+    return replace(scene, bodies=found)
 
 
 def refuse_nothing(scene: Multibody, met: list[Meeting]) -> None:

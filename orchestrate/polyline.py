@@ -75,6 +75,15 @@ def gap(points: np.ndarray, numbers: tuple[float, ...]) -> np.ndarray:
     return np.where(side < 0, -1, 1) * distance[row, nearest] - numbers[1]
 
 
+def radius_at(point: np.ndarray, numbers: tuple[float, ...]) -> float:
+    """The radius [m] of the surface where that is nearest to a point (2,) in front of it: the rounding at a convex vertex, else infinite."""
+    sides = _sides(np.reshape(numbers[2:], (-1, 2)), bool(numbers[0]))
+    at = np.sum((point - sides.start) * sides.along, axis=1)
+    foot = np.clip(at, sides.low, sides.high)
+    nearest = np.linalg.norm(point - sides.start - foot[:, None] * sides.along, axis=1).argmin()
+    return numbers[1] if at[nearest] != foot[nearest] else np.inf
+
+
 def _sides(vertices: np.ndarray, closed: bool) -> Sides:
     start, end = (vertices, np.roll(vertices, -1, axis=0)) if closed else (vertices[:-1], vertices[1:])
     length = np.linalg.norm(end - start, axis=1)

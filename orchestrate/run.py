@@ -5,9 +5,10 @@ earlier finished run, which is not lost. How a folder is made, locked and put in
 """
 
 import hashlib
-import itertools
 import json
+import math
 import os
+import re
 import signal
 import subprocess
 from pathlib import Path
@@ -21,12 +22,12 @@ from .multibody import Multibody
 from .parameters import Value
 from .places import INSTALLED, PACKAGE, RESULTS, ROOT, shown
 from .progress import Line
-from .results import RunResult, read_answers, read_history, read_json, read_scene, read_summary, write_json
+from .results import RunResult, check_files, files_of, read_answers, read_history, read_json, read_scene, read_summary, write_json
 from .scene import Scene
 from .tables import to_toml
 from .told import Told, runs
 
-DECISIVE = ("approach", "assembly", "bodies", "dimension", "estimate", "flat", "gmsh_file", "mesh", "mirror", "multibody", "obstacles", "outlines", "polyline", "revolution",
+DECISIVE = ("approach", "assembly", "bodies", "curved", "dimension", "estimate", "flat", "gmsh_file", "mesh", "mirror", "multibody", "obstacles", "outlines", "polyline", "revolution",
             "solid_file", "solid_mesh", "solids", "tables", "tumbling")
 FAILURES = {10: "bad input", 11: "step failed", 12: "material broke down", 13: "not installed", 14: "unreadable"}
 
@@ -64,12 +65,15 @@ def run(scene: Scene | Multibody, overrides: dict[str, Value] | None = None, out
             clear(stage)
             write_json(stage / "checkpoint.json", asked)
 
-        number = itertools.count(1)
+        seconds = []
 
         def solve(given: dict[str, Value], where: Path) -> None:
-            told = Told(line, scene, mesh_file, "main run" if where == stage else f"{where.name} run", next(number))
-            _solve(program, scene.override(given), foreign, where, lock, told)
-            told.at("ready", 1.0)
+            told = Told(line, scene, mesh_file, "main run" if where == stage else f"{where.name} run", 1 + len(seconds))
+            try:
+                _solve(program, scene.override(given), foreign, where, lock, told)
+                told.at("ready", 1.0)
+            finally:
+                seconds.append((read_json(where / "summary.json") or read_json(where / "failure.json")).get("wall_seconds", 0.0))
 
         try:
             solve({}, stage)
@@ -85,7 +89,8 @@ def run(scene: Scene | Multibody, overrides: dict[str, Value] | None = None, out
             raise
         provenance |= asked_for | {"git": _git(), "mesh": _sha256(mesh_file or stage / scene.mesh_name) if scene.meshed else None}
         _say_where(stage, folder)
-        _finish(stage, found, provenance)
+        _tell_accuracy(stage / "scene.toml", scene.values["accuracy"])
+        _finish(stage, scene, found | {"total_seconds": sum(seconds)}, provenance)
         replace(stage, folder, _same_scene(folder, scene, mesh_file))
     return RunResult(folder, read_summary(folder), reused=False)
 
@@ -107,7 +112,7 @@ def _solve(program: freefem.FreeFem, scene: Scene | Multibody, foreign: bytes | 
     flags = [text for name, value in given.items() for text in (f"-{name}", str(value))]
     exit_code, said = freefem.run(program, scene.script, flags, where / "log.txt", told.show, lock)
     if scene_toml and (where / "scene.toml").exists():
-        (where / "scene.toml").write_text(scene_toml)
+        (where / "scene.toml").write_text(scene_toml, "utf-8")
     _check(where, exit_code, said)
 
 
@@ -149,13 +154,21 @@ def _tail(stage: Path) -> str:
     return "end of its log: " + " | ".join([line for line in lines if line and not line.startswith("progress ")][-4:])
 
 
-def _finish(stage: Path, found: dict, provenance: dict) -> None:
+def _tell_accuracy(path: Path, asked: float) -> None:
+    """scene.toml says what was asked for beside the accuracy as used, where finer runs were made for it."""
+    used = read_scene(path.parent)["accuracy"]
+    if not math.isclose(used, asked):
+        why = f"   # asked for: {asked:g}; this one, with the sizes of mesh and steps, for the estimated error\n"
+        path.write_text(re.sub(r"(?m)^(accuracy = \S+)\n", rf"\1{why}", path.read_text("utf-8"), count=1), "utf-8")
+
+
+def _finish(stage: Path, scene: Scene | Multibody, found: dict, provenance: dict) -> None:
     """The summary with what was `found` beside the run and its provenance, last and by rename."""
     summary = read_summary(stage)
     found["warnings"] = summary.get("warnings", []) + found.get("warnings", [])
     if found.get("estimated_error"):
         summary["skipped"] = [name for name in summary["skipped"] if name != "error estimate"]
-    summary |= {"estimated_error": None} | found | {"provenance": provenance}
+    summary |= {"estimated_error": None, "released": list(scene.released)} | found | {"provenance": provenance | {"files": files_of(stage)}}
     (stage / "summary.json").unlink()
     write_json(stage / "summary.json.part", summary)
     os.replace(stage / "summary.json.part", stage / "summary.json")
@@ -165,7 +178,7 @@ def _keep_failed(stage: Path, failure: Failure, scene: Scene | Multibody, proven
     """failure.json: the one the script wrote, or what is known; never a summary.json."""
     (stage / "summary.json").unlink(missing_ok=True)
     if not (stage / "scene.toml").exists():
-        (stage / "scene.toml").write_text(to_toml(scene.given))
+        (stage / "scene.toml").write_text(to_toml(scene.given), "utf-8")
     record = {"status": FAILURES.get(failure.code, "crashed"), "message": str(failure)} | read_json(stage / "failure.json")
     write_json(stage / "failure.json", record | {"exit_code": failure.code, "provenance": provenance})
 
@@ -178,6 +191,8 @@ def reusable(scene: Scene | Multibody, folder: Path, mesh_file: Path | None = No
     summary = finished_in(folder, force=False)
     same = (summary and (folder / "history.csv").exists() and summary.get("provenance", {}).get("code") == code_hash()
             and (summary["provenance"].get("estimate") or not estimate) and read_scene(folder) and _same_scene(folder, scene, mesh_file))
+    if same:
+        check_files(folder)
     return RunResult(folder, summary, reused=True) if same else None
 
 

@@ -5,6 +5,7 @@ import itertools
 import math
 import os
 import subprocess
+import tomllib
 
 import numpy as np
 import pytest
@@ -560,3 +561,21 @@ def test_a_sliver_is_refused_by_its_thickness():
     """A polygon thinner than any length that is accepted."""
     with pytest.raises(BadInput, match=r"^body.1: is 1e-12 m thick \(accepted: from 2e-09 m\)"):
         read(with_body(shape="polygon", vertices=[[0, 0], [1, 0], [1, 1e-12]]))
+
+
+# ---- written down
+
+def odd_texts(count: int) -> list[str]:
+    """Texts of characters that files trip over, drawn at random, the first of all control characters."""
+    rng = np.random.default_rng(20)
+    odd = [*map(chr, range(0x80)), *"\x80\x85\xa0\u2028\u2029\ufeff\ufffd\U0001f600ß中", '"""', "'''", "\r\n", "\\u0041", "]]", " # ", " = "]
+    return ["".join(map(chr, range(0xa1))), *("".join(rng.choice(odd, rng.integers(0, 12))) for _ in range(count))]
+
+
+def test_what_toml_accepts_is_written_back():
+    """Whatever a TOML file can say is written so that it reads, as the same."""
+    texts = odd_texts(400)
+    said = {text: [text, 1e-300, -0.0, True, 10**30, [[], [1.5, "x"]], math.inf] for text in texts}
+    said |= {"table": {text: text for text in texts}, "list": [{"a": text, "b": {text: {}}} for text in texts], "none": [], "mixed": [{"a": "\x7f"}, 1]}
+    said |= tomllib.loads("day = 2026-11-23\nat = 07:32:00.5\nboth = 1979-05-27T07:32:00.25Z\n")
+    assert tomllib.loads(to_toml(said)) == said

@@ -45,7 +45,7 @@ def test_scripts_describe_what_they_write(result):
     assert (result.folder / "history.csv").read_text().splitlines()[0].split(",") == told["columns"]
     assert [key for key in written if key in told["summary"]] == told["summary"]
     numbers = {key for key, value in written.items() if type(value) in (int, float)}
-    assert numbers - {"estimate_cpu_seconds", "refinements"} <= set(told["summary"])   # these join it from beside the run
+    assert numbers - {"estimate_cpu_seconds", "refinements", "total_seconds"} <= set(told["summary"])   # these join it from beside the run
 
 
 def test_history_and_summary_agree(result):
@@ -323,7 +323,7 @@ def test_readme_gives_the_unit_of_every_number(result):
     """Each column of the history and each key of the summary is in the README's table of units, but for counts, words and lists."""
     text = (parameters.ROOT / "README.md").read_text()
     told = set(re.findall(r"`(\w+)`", text[text.index("Units (per metre"):text.index("**Looking at fields.**")]))
-    counts = {"status", "message", "warnings", "skipped", "provenance", "contact_intervals", "steps", "rejected_steps", "newton_iterations", "factorizations",
+    counts = {"status", "message", "warnings", "skipped", "released", "provenance", "contact_intervals", "steps", "rejected_steps", "newton_iterations", "factorizations",
               "residual_evaluations", "dofs", "unsolved_jumps", "refinements", "quick_clock"}
     assert set(result.summary) - counts <= told, set(result.summary) - counts - told
     assert set(result.history) <= told, set(result.history) - told

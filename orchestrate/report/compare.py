@@ -15,7 +15,7 @@ from ..results import RunResult, suffixes
 from ..run import run
 from . import report
 from .bodies import names
-from .figures import ABOVE, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE, numbers_of_the_paper, per_metre
+from .figures import ABOVE, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE, numbers_of_the_paper, per_metre, touched
 
 
 def main(argv: list[str]) -> int:
@@ -62,8 +62,8 @@ def draw(results: dict[str, RunResult], path: Path) -> None:
             t, per = 1e3 * h["t"], per_metre(used)
             heavy, start = (_mass(h), result.summary["energy_initial"]) if mixed else (1.0, 1.0)
             force.plot(t, 1e-3 * h["normal_force"] / heavy, color=colour,
-                       label=f"{name}: {_material(used)}{result.summary['dofs']} dofs")
-            _contact(force, h, used, colour)
+                       label=f"{name}: {_material(used)}{result.summary['dofs']} dofs{_doubts(result.summary)}")
+            _contact(force, result, colour)
             drag.plot(t, 1e-3 * h["friction_force"] / heavy if rubs else h["max_penetration"] * 1e3, color=colour)
             energy.plot(t, (h["kinetic"] + h["elastic"] + h["contact"]) / start, color=colour, linewidth=max(1.0, 3.4 - 0.8 * k))   # one on another is seen
             energy.plot(t, h["elastic"] / start, color=colour, linestyle="--")
@@ -80,7 +80,7 @@ def draw(results: dict[str, RunResult], path: Path) -> None:
         drag.set_ylabel(("acceleration by friction [10³ m/s²]" if mixed else f"friction force [kN{per}]") if rubs else "largest penetration [mm]")
         energy.set(ylabel="energy over that at the start" if mixed else f"energy [J{per}]", ylim=(0, None), xlabel="time [ms]")
         stated = any(each.scene.get("law") == "svk" and numbers_of_the_paper(each.scene, "contact_time") for each in results.values())
-        _key(force, {"last step in contact": ":", "last touch by the paper": "-."} if stated else {"last step in contact": ":"})
+        _key(force, {"end of the contact": ":", "by the paper": "-."} if stated else {"end of the contact": ":"})
         _key(energy, {"total": "-", "elastic": "--"})
         velocity.set(ylabel="velocity [m/s]", xlabel="time [ms]")
         _key(velocity, {"$v_x$": "-", "$v_y$": "--", r"$-\omega R$": ":"} if rubs else {"$v_y$": "--"})
@@ -90,14 +90,13 @@ def draw(results: dict[str, RunResult], path: Path) -> None:
         plt.close(figure)
 
 
-def _contact(axes: plt.Axes, history: dict[str, np.ndarray], used: dict, colour: str) -> None:
-    """The end of the last step in contact, and when the last touch would be by the contact time that the paper states of that impact with that law."""
-    touching = np.flatnonzero(history["normal_force"] > 0)
-    if len(touching):
-        begin = (history["t"] - history["dt"])[touching[0]]
-        axes.axvline(1e3 * history["t"][touching[-1]], color=colour, linestyle=":", linewidth=0.9)
-        for _, seconds, _ in numbers_of_the_paper(used, "contact_time") if used.get("law") == "svk" else []:   # the law of all of the paper's
-            axes.axvline(1e3 * (begin + seconds), color=colour, linestyle="-.", linewidth=0.9)
+def _contact(axes: plt.Axes, result: RunResult, colour: str) -> None:
+    """The end of the contact, and when it would be by the contact time that the paper states of that impact with that law."""
+    if not (when := touched(result.summary)):
+        return
+    axes.axvline(1e3 * when[1], color=colour, linestyle=":", linewidth=0.9)
+    for _, seconds, _ in numbers_of_the_paper(result.scene, "contact_time") if result.scene.get("law") == "svk" else []:   # the law of all of the paper's
+        axes.axvline(1e3 * (when[0] + seconds), color=colour, linestyle="-.", linewidth=0.9)
 
 
 def _mass(history: dict[str, np.ndarray]) -> float:
@@ -107,8 +106,13 @@ def _mass(history: dict[str, np.ndarray]) -> float:
 
 
 def _material(used: dict) -> str:
-    """Law and nu, where the scene has one of them."""
-    return f"{LAWS.get(used['law'], used['law'])}, ν = {used['nu']:g}, " if "law" in used else ""
+    """Law, nu and penalty, where the scene has one of them."""
+    return f"{LAWS.get(used['law'], used['law'])}, ν = {used['nu']:g}, k = {used['penalty']:.3g}, " if "law" in used else ""
+
+
+def _doubts(summary: dict) -> str:
+    """The names of the warnings of a run."""
+    return "".join(f"\n    ! {', '.join(dict.fromkeys(sentence.partition(':')[0] for sentence in summary['warnings']))}" if summary.get("warnings") else "")
 
 
 def _key(axes: plt.Axes, lines: dict[str, str]) -> None:

@@ -79,7 +79,8 @@ def rows(per_metre: bool) -> list[Quantity]:
         Quantity("resumed_at", "resumed at", "ms", 1e3),
         Quantity("steps", "steps", digits=".0f"),
         Quantity("dofs", "degrees of freedom", digits=".0f"),
-        Quantity("wall_seconds", "wall time", "s", digits=".2f"),
+        Quantity("total_seconds", "wall time", "s", digits=".2f"),
+        Quantity("wall_seconds", "  of it this run", "s", digits=".2f"),
     ]
 
 
@@ -148,6 +149,7 @@ def report(result: RunResult) -> str:
         lines.append(f"  {quantity.label:<{width}}{quantity.text(value):<18}{beside[0]}".rstrip())
         lines += [f"  {'':<{width + 18}}{more}" for more in beside[1:]]
     lines += [f"  {'warning':<{width}}{sentence}" for sentence in summary["warnings"]]
+    lines += [f"  {'released':<{width}}{sentence}" for sentence in summary.get("released", [])]
     if summary.get("skipped"):
         lines.append(f"  {'skipped':<{width}}{', '.join(summary['skipped'])}")
     pictures = sorted((result.folder / "figures").glob("*.png"))

@@ -31,7 +31,7 @@ BASE = {"law": "neohookean", "nu": NU, "fields": 0}
 PAPER = {"young": YOUNG, "density": DENSITY, "radius": RADIUS}
 SLOW = PAPER | {"speed": 0.2, "slip_velocity": 2e-4, "penalty": "auto"}
 KINDS = {"stiff": {"disc": STIFF | {"nu": NU, "penalty": 1e10}, "ball": RIGID | {"nu": NU}},
-         "paper": {"disc": PAPER | {"speed": 12, "accuracy": 0.005}, "ball": PAPER | {"speed": 12, "accuracy": 0.05}},
+         "paper": {"disc": PAPER | {"speed": 12, "penalty": 1e10, "accuracy": 0.005}, "ball": PAPER | {"speed": 12, "penalty": 1e10, "accuracy": 0.05}},
          "slow": {"disc": SLOW | {"accuracy": 0.01}, "ball": SLOW | {"accuracy": 0.1}}}
 WORDS = {"stiff": "E = 10 GPa, 1 m/s", "paper": "E = 7 MPa, 12 m/s", "slow": "E = 7 MPa, 0.2 m/s"}
 COLOURS = {"stiff": BLUE, "paper": ORANGE, "slow": GREEN}

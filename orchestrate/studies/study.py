@@ -16,7 +16,7 @@ from typing import Any, TypeVar
 import pandas as pd
 
 from .. import estimate as estimates, freefem, run, scene, stopping
-from ..failure import Busy, Failure, TooLong, Unreadable
+from ..failure import BadInput, Busy, Failure, TooLong, Unreadable
 from ..parameters import Value
 from ..progress import Line, forward
 from ..results import read_json
@@ -42,16 +42,28 @@ def study(points: list[Point], folder: Path, base: Point, limit: float, name: st
     """
     places = [place(folder, point) for point in points]
     given = scene.load(name)
-    tasks = {where: given.override(base | point) for where, point in zip(places, points)}
-    found = {where: outcome for where, wanted in tasks.items() if (outcome := there(where, wanted, estimate))}
-    to_do = {where: wanted for where, wanted in tasks.items() if where not in found}
-    if to_do:
+    found = outcomes(points, folder, base, given, estimate)
+    tasks = {where: given.override(base | point) for where, point in zip(places, points) if where not in found}
+    if tasks:
         freefem.find()
         (folder / "runs").mkdir(parents=True, exist_ok=True)   # here: a run takes away what it had to make if it is interrupted
-    acts = {where: partial(_limited, limit, where, wanted, estimate) for where, wanted in to_do.items()}
+    acts = {where: partial(_limited, limit, where, wanted, estimate) for where, wanted in tasks.items()}
     for where, outcome in side_by_side(acts, cores, folder.name, len(found)):
         found[where] = _row(1, str(outcome), False, {}) if isinstance(outcome, Failure) else outcome
     return pd.DataFrame([point | found[where] for where, point in zip(places, points)])
+
+
+def outcomes(points: list[Point], folder: Path, base: Point, given: scene.Scene, estimate: bool = False) -> dict[Path, dict]:
+    """By folder what is known of the points without a run: what is there already, and those that the scene `given` refuses."""
+    found = {}
+    for point in points:
+        where = place(folder, point)
+        try:
+            outcome = there(where, given.override(base | point), estimate)
+        except BadInput as error:
+            outcome = _row(error.code, str(error), False, {})
+        found |= {where: outcome} if outcome else {}
+    return found
 
 
 def place(folder: Path, point: Point) -> Path:
