@@ -132,11 +132,16 @@ def _work(sender: Connection, parent: int, act: Callable) -> None:
 
 def _limited(limit: float, folder: Path, wanted: scene.Scene, estimate: bool) -> dict | None:
     """_outcome() of a run that may take `limit` seconds."""
+    end_after(limit)
+    return _outcome(folder, wanted, estimate)
+
+
+def end_after(limit: float) -> None:
+    """TooLong is raised in `limit` seconds."""
     def too_long(number):
         raise TooLong(f"no end after {limit:g} s: killed")
     stopping.on(signal.SIGALRM, too_long)                # run() tidies up on the way out
     signal.setitimer(signal.ITIMER_REAL, limit)
-    return _outcome(folder, wanted, estimate)
 
 
 def there(folder: Path, wanted: scene.Scene, estimate: bool = False) -> dict | None:
