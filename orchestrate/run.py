@@ -5,7 +5,6 @@ earlier finished run, which is not lost. How a folder is made, locked and put in
 """
 
 import hashlib
-import itertools
 import json
 import math
 import os
@@ -68,15 +67,15 @@ def run(scene: Scene | Multibody, overrides: dict[str, Value] | None = None, out
             clear(stage)
             write_json(stage / "checkpoint.json", asked)
 
-        number, seconds = itertools.count(1), []
+        seconds = []
 
         def solve(given: dict[str, Value], where: Path) -> None:
-            told = Told(line, scene, mesh_file, "main run" if where == stage else f"{where.name} run", next(number))
+            told = Told(line, scene, mesh_file, "main run" if where == stage else f"{where.name} run", 1 + len(seconds))
             try:
                 _solve(program, scene.override(given), foreign, where, lock, told)
+                told.at("ready", 1.0)
             finally:
                 seconds.append((read_json(where / "summary.json") or read_json(where / "failure.json")).get("wall_seconds", 0.0))
-            told.at("ready", 1.0)
 
         try:
             solve({}, stage)
