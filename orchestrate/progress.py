@@ -1,7 +1,7 @@
 """Progress: one line on a terminal or in a notebook: what is being done, the share of it that is done, the time left.
 
 Work in parts has one line. What its parts say of themselves, each a line of its own where it stands alone, goes into that one: those of a part in this
-process (part, each), and those of a process beside others (forward, in study.side_by_side).
+process (part, in_turn), and those of a process beside others (forward, in study.side_by_side).
 """
 
 import contextlib
@@ -88,7 +88,7 @@ class Line:
             self.at(part, 1.0, words)
 
 
-def each(name: str, items: Iterable, watched: bool | None = None) -> Iterator:
+def in_turn(name: str, items: Iterable, watched: bool | None = None) -> Iterator:
     """The items, one after another, with a line that says which of how many."""
     items = list(items)
     with Line(name, dict.fromkeys(range(len(items)), 1.0), watched) as line:
