@@ -21,6 +21,9 @@ from .solids import Solid
 
 Shape = Outline | Solid
 STEPS = 2000                 # of bodies within reach of each other: what has not met by then is not known to
+RESTITUTION = 0.5            # of a hit that turns bodies: much of it goes to vibration, and they turn while it lasts
+ECCENTRIC = 1e-2             # lever of a hit over the reach of the body that it turns
+MORE = 3                     # touches of two bodies that follow the first one
 MET, CLOSED = 1e-3, 1e-9     # of the smaller thickness: a gap that counts as met, and one that is followed no further
 
 
@@ -49,9 +52,53 @@ class Meeting:
 
 
 def meetings(scene: Multibody) -> list[Meeting]:
-    """One for each two bodies and each body with each obstacle."""
+    """One for each two bodies and each body with each obstacle, and those that follow as a hit turns them."""
     bodies = len(scene.bodies)
-    return [_meeting(scene, i, j) for i in range(bodies) for j in [*range(i + 1, bodies), *(-1 - k for k in range(len(scene.obstacles)))]]
+    pairs = [(i, j) for i in range(bodies) for j in [*range(i + 1, bodies), *(-1 - k for k in range(len(scene.obstacles)))]]
+    return [one for pair in pairs for one in _in_turn(scene, _meeting(scene, *pair))]
+
+
+def _in_turn(scene: Multibody, one: Meeting) -> list[Meeting]:
+    """A meeting, and in the plane those of the same two that follow, where rigid bodies without friction are turned by it: other corners strike."""
+    found = [one]
+    while scene.dimension is PLANE_STRAIN and len(found) <= MORE and math.isfinite(one.time):
+        scene = _rebound(scene, one)
+        if scene is None:
+            break
+        one = _meeting(scene, one.first, one.second)
+        found += [one] if math.isfinite(one.time) else []
+    return found
+
+
+def _rebound(scene: Multibody, one: Meeting) -> Multibody | None:
+    """The bodies of a meeting a little later, when they have parted and nothing pulls them on. None where the hit does not turn
+    them."""
+    n = one.normal
+    point = min((shape.points[other.gap(shape.points).argmin()] for shape, other in (one.outlines, one.outlines[::-1]) if isinstance(shape, Outline)),
+                key=lambda at: max(abs(shape.gap(at[None])[0]) for shape in one.outlines))
+    fall = np.array([scene.values.get("body_force_x", 0.0), scene.values["body_force_y"] - scene.values["gravity"]]) * one.time
+    hit, yields, closing = [], 0.0, 0.0
+    for sign, k in ((1, one.first), (-1, one.second)):
+        if k < 0:
+            closing += scene.obstacles[-1 - k].velocity @ n
+            continue
+        body = scene.bodies[k]
+        shape = one.outlines[0 if k == one.first else 1]
+        arm = point - shape.area_centre
+        lever, mass = arm[0] * n[1] - arm[1] * n[0], body.density * shape.area
+        yields += (1 + lever**2 / shape.gyration) / mass
+        closing -= sign * ((body.velocity + fall) @ n + body.spin * lever)
+        hit.append((sign, k, shape, lever, mass))
+    turning = max(abs(lever) / shape.reach for _, _, shape, lever, _ in hit)
+    if closing <= 0 or turning < ECCENTRIC:
+        return None
+    soon, bodies = 4 * MET * one.radius / (RESTITUTION * closing), list(scene.bodies)
+    for sign, k, shape, lever, mass in hit:
+        body, push = bodies[k], sign * (1 + RESTITUTION) * closing / yields / mass
+        velocity, spin = body.velocity + fall + push * n, body.spin + push * lever / shape.gyration
+        bodies[k] = replace(body, position=shape.area_centre + velocity * soon, angle=body.angle + body.spin * one.time + spin * soon, velocity=velocity, spin=spin)
+    still = {name: 0.0 for name in ("gravity", "body_force_x", "body_force_y") if name in scene.values}
+    return replace(scene, bodies=bodies, values=scene.values | still)
 
 
 def _meeting(scene: Multibody, first: int, second: int) -> Meeting:
