@@ -328,13 +328,10 @@ def test_hopping_is_no_chatter(tmp_path):
     assert process.returncode == 0 and summary["contact_intervals"] > 40 and not any("chatter" in each for each in summary["warnings"])
 
 
-def test_readme_gives_the_unit_of_every_number(result):
-    """Each column of the history and each key of the summary is in the README's table of units, but for counts, words and lists."""
-    text = (parameters.ROOT / "README.md").read_text()
-    told = set(re.findall(r"`(\w+)`", text[text.index("Units (per metre"):text.index("**Looking at fields.**")]))
-    counts = {"status", "message", "warnings", "skipped", "released", "provenance", "contact_intervals", "steps", "rejected_steps", "newton_iterations", "factorizations",
-              "residual_evaluations", "dofs", "unsolved_jumps", "refinements", "quick_clock"}
-    assert set(result.summary) - counts <= told, set(result.summary) - counts - told
-    assert set(result.history) <= told, set(result.history) - told
-    of_bodies = {name for key in ("body_columns", "body_summary") for name in describe()[key]}
-    assert of_bodies <= told, of_bodies - told
+def test_every_number_of_a_run_has_a_unit_and_a_meaning(result):
+    """Each key of the summary and each column of the tables that a run writes is one that the scripts explain (docs/results.md)."""
+    told = {name for table in describe()["meanings"].values() for name in table}
+    assert set(result.summary) <= told, set(result.summary) - told
+    for name in ("history.csv", "contacts.csv", "fields/contact.csv"):
+        columns = set((result.folder / name).read_text().partition("\n")[0].split(","))
+        assert columns <= told, columns - told

@@ -388,9 +388,9 @@ def test_words_as_axes(fake, tmp_path, capsys):
     assert "| neohookean |" in capsys.readouterr().out and (tmp_path / "out/sweep.png").exists()
 
 
-def test_the_sweep_of_the_readme_is_sound(tmp_path):
-    """What the README shows is accepted as it stands."""
-    text = (parameters.ROOT / "README.md").read_text()
+def test_the_sweep_of_the_docs_is_sound(tmp_path):
+    """What docs/sweeps.md shows is accepted as it stands."""
+    text = (parameters.ROOT / "docs/sweeps.md").read_text()
     example = re.search(r"```\n(scene = \"disc-normal\".*?)```", text, re.S)[1]
     wanted = sweep.load(str(write(tmp_path, example)))
     assert len(wanted.points) == 32 and wanted.refine and wanted.figure
