@@ -60,10 +60,9 @@ stick-slip: $(READY) ## search for the paper's order of sliding and sticking ove
 verify: $(READY) ## exact solutions with convergence: bar, rod, Hertz, rigid bodies, friction, manufactured motions
 	@$(PYTHON) -m orchestrate $@ $(ARGS)
 
-paper: override ARGS :=
-paper: disc-normal disc-oblique disc-rolling disc-block ball-axisymmetric friction-laws $(SWEEPS) stick-slip verify ## all of the above, and results/paper/report.html
-	@$(PYTHON) -m orchestrate compare disc-normal disc-normal-neohookean ball-axisymmetric-svk ball-axisymmetric
-	@$(PYTHON) -m orchestrate $@
+PAPER := disc-normal disc-oblique disc-rolling disc-block ball-axisymmetric friction-laws $(SWEEPS) stick-slip verify ball-comparison
+paper: $(READY) ## all of the above, and results/paper/report.html
+	@$(PYTHON) -m orchestrate $@ --make $(PAPER)
 
 movie: CASE := disc-oblique
 movie: $(READY) ## a film of a scene, built in or a file: make movie CASE=disc-oblique

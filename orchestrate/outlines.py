@@ -171,6 +171,15 @@ class Outline:
         """Distance of its farthest point from the centre of its area."""
         return float(np.linalg.norm(self.loops[0].polygon - self.area_centre, axis=1).max())
 
+    @cached_property
+    def gyration(self) -> float:
+        """The square [m2] of its radius of gyration about the centre of its area, of polygons of some hundreds of sides."""
+        first, moments, areas = [loop.polygon - self.area_centre for loop in self.loops], [], []
+        for a, b in ((one, np.roll(one, -1, axis=0)) for one in first):
+            areas.append(cross(a, b).sum() / 2)
+            moments.append((cross(a, b) * (a * a + a * b + b * b).sum(axis=1)).sum() / 12)
+        return float((moments[0] - sum(moments[1:])) / (areas[0] - sum(areas[1:])))
+
     @property
     def half_thickness(self) -> float:
         """What stands for the radius of a body that is no disc: half its smaller extent, or 2 area / length where that is less

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -136,9 +136,18 @@ def read_scene(folder: Path) -> dict[str, Value]:
         return Contents(tomllib.loads(text), path)
 
 
-def read_answers(folder: Path) -> tuple[dict, dict[str, Value], float]:
-    """Of a finished run the summary, with energy_final and largest_energy of its history [J/m], the scene as used, and the largest speed of a
-    centre of mass [m/s]: what energies and velocities are measured by. All as seen by one who moves with the obstacles, or without any with the
+class Answers(NamedTuple):
+    """Of a finished run the summary, with energy_final and largest_energy [J/m], the scene as used, the largest speed of a centre of mass [m/s], and
+    the columns of its history."""
+
+    summary: dict
+    used: dict[str, Value]
+    speed: float
+    history: dict[str, np.ndarray]
+
+
+def read_answers(folder: Path) -> Answers:
+    """The answers of a finished run, and what energies and velocities are measured by: as seen by one who moves with the obstacles, or without any with the
     bodies' common centre of mass: errors do not depend on a motion that all share."""
     history, summary, used = read_history(folder), read_summary(folder), read_scene(folder)
     axes, bodies = [axis for axis in "xyz" if f"v{axis}" in history], suffixes(history)
@@ -151,7 +160,8 @@ def read_answers(folder: Path) -> tuple[dict, dict[str, Value], float]:
     energy = float((history["kinetic"] + history["elastic"] + history["contact"] + shared).max())
     last = np.array([summary.get(f"rebound_v{axis}", 0.0) for axis in axes])
     at = last if frame is None else frame
-    return summary | {"largest_energy": energy, "energy_final": summary["energy_final"] + mass * float(at @ (at / 2 - last))}, used, speed
+    found = summary | {"largest_energy": energy, "energy_final": summary["energy_final"] + mass * float(at @ (at / 2 - last))}
+    return Answers(found, used, speed, history)
 
 
 def _frame(used: dict, like: np.ndarray, bodies: int) -> np.ndarray | None:
@@ -159,7 +169,7 @@ def _frame(used: dict, like: np.ndarray, bodies: int) -> np.ndarray | None:
     if "body" not in used:
         return None if bodies > 1 else np.zeros_like(like)
     obstacles = [one.get("velocity", np.zeros_like(like)) for one in used.get("obstacle", [])]
-    return np.mean(obstacles, axis=0) if obstacles else None
+    return np.mean([[0.0, one] if np.isscalar(one) else one for one in obstacles], axis=0) if obstacles else None    # of revolution: along the axis
 
 
 def suffixes(columns: Iterable[str]) -> list[str]:

@@ -5,13 +5,13 @@ earlier finished run, which is not lost. How a folder is made, locked and put in
 """
 
 import hashlib
-import itertools
 import json
 import math
 import os
 import re
 import signal
 import subprocess
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
@@ -28,8 +28,9 @@ from .scene import Scene
 from .tables import to_toml
 from .told import Told, runs
 
-DECISIVE = ("approach", "assembly", "bodies", "curved", "dimension", "estimate", "flat", "gmsh_file", "mesh", "mirror", "multibody", "obstacles", "outlines", "polyline", "revolution",
+DECISIVE = ("approach", "assembly", "bodies", "curved", "dimension", "flat", "gmsh_file", "mesh", "mirror", "multibody", "obstacles", "outlines", "polyline", "revolution",
             "solid_file", "solid_mesh", "solids", "tables", "tumbling")
+ESTIMATING = ("estimate", "results")   # what decides the stated errors besides
 FAILURES = {10: "bad input", 11: "step failed", 12: "material broke down", 13: "not installed", 14: "unreadable"}
 
 
@@ -60,21 +61,21 @@ def run(scene: Scene | Multibody, overrides: dict[str, Value] | None = None, out
             return there
         provenance = {"script": scene.script, "version": __version__, "code": code_hash(), "freefem": program.version,
                       "gmsh": _gmsh(scene, mesh_file)}
-        asked_for = {"asked": scene.asked, "estimate": estimate}
+        asked_for = {"asked": scene.asked, "estimate": estimate and _hash(ESTIMATING)}
         asked = asked_for | provenance | {"mesh": _sha256(mesh_file) if mesh_file else None}
         if force or unfinished(stage) != asked:
             clear(stage)
             write_json(stage / "checkpoint.json", asked)
 
-        number, seconds = itertools.count(1), []
+        seconds = []
 
         def solve(given: dict[str, Value], where: Path) -> None:
-            told = Told(line, scene, mesh_file, "main run" if where == stage else f"{where.name} run", next(number))
+            told = Told(line, scene, mesh_file, "main run" if where == stage else f"{where.name} run", 1 + len(seconds))
             try:
                 _solve(program, scene.override(given), foreign, where, lock, told)
+                told.at("ready", 1.0)
             finally:
                 seconds.append((read_json(where / "summary.json") or read_json(where / "failure.json")).get("wall_seconds", 0.0))
-            told.at("ready", 1.0)
 
         try:
             solve({}, stage)
@@ -191,7 +192,7 @@ def reusable(scene: Scene | Multibody, folder: Path, mesh_file: Path | None = No
     else None; Unreadable if it is not ours."""
     summary = finished_in(folder, force=False)
     same = (summary and (folder / "history.csv").exists() and summary.get("provenance", {}).get("code") == code_hash()
-            and (summary["provenance"].get("estimate") or not estimate) and read_scene(folder) and _same_scene(folder, scene, mesh_file))
+            and (summary["provenance"].get("estimate") == _hash(ESTIMATING) or not estimate) and read_scene(folder) and _same_scene(folder, scene, mesh_file))
     if same:
         check_files(folder)
     return RunResult(folder, summary, reused=True) if same else None
@@ -199,9 +200,12 @@ def reusable(scene: Scene | Multibody, folder: Path, mesh_file: Path | None = No
 
 def code_hash() -> str:
     """sha256 over what decides a result besides the scene: the FreeFEM scripts and what makes meshes and scene.dat."""
-    files = sorted(path for path in (ROOT / "edp").rglob("*") if path.suffix in (".edp", ".idp"))
+    return _hash(DECISIVE, sorted(path for path in (ROOT / "edp").rglob("*") if path.suffix in (".edp", ".idp")))
+
+
+def _hash(modules: Iterable[str], files: Iterable[Path] = ()) -> str:
     digest = hashlib.sha256()
-    named = {path.relative_to(ROOT): path for path in files} | {f"orchestrate/{name}.py": PACKAGE / f"{name}.py" for name in DECISIVE}
+    named = {path.relative_to(ROOT): path for path in files} | {f"orchestrate/{name}.py": PACKAGE / f"{name}.py" for name in modules}
     for name, path in named.items():
         digest.update(f"{name}\n".encode() + path.read_bytes())
     return digest.hexdigest()

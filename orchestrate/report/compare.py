@@ -29,7 +29,7 @@ def main(argv: list[str]) -> int:
     if len({each.name for each in scenes}) < max(2, len(scenes)):
         raise BadInput("compare: two or more different scenes are needed")
     results, failed = {}, None
-    for each in progress.each("compare", scenes):
+    for each in progress.in_turn("compare", scenes):
         try:
             result = run(each, overrides(options.set), folder / each.name)
             results[each.name] = result

@@ -84,9 +84,11 @@ SCENES = {"disc-normal": _on_plane, "disc-block": _on_block, "ball-axisymmetric"
 def words(point: Point) -> str:
     """A scene as a line of a table reads it best: law, material, speed over c, what is special."""
     named = {value[:2]: name for name, value in MATERIALS.items()}
-    told = {"law", "young", "density", "nu", "speed", "friction_static", "friction_dynamic"}
-    parts = [point["law"], named[point["young"], point["density"]], f"v/c {point['speed'] / bar_speed(point['young'], point['density']):.2g}"]
-    if "friction_static" in point:
+    told = {"law", "young", "density", "nu", "speed", "friction_static", "friction_dynamic", "body.1.position", "body.1.velocity", "body.2.velocity"}
+    point = {name.removeprefix("contact."): value for name, value in point.items()}
+    speed = point["speed"] if "speed" in point else point["body.1.velocity"][0] - point["body.2.velocity"][0]
+    parts = [point["law"], named[point["young"], point["density"]], f"v/c {speed / bar_speed(point['young'], point['density']):.2g}"]
+    if point.get("friction_static"):
         parts.append(f"friction {point['friction_static']:g}, {point['friction_dynamic']:g}")
     return ", ".join(parts + [f"{name} {value:g}" if isinstance(value, float) else f"{name} {value}" for name, value in point.items() if name not in told])
 

@@ -48,7 +48,7 @@ def study(points: list[Point], folder: Path, base: Point, limit: float, name: st
         freefem.find()
         (folder / "runs").mkdir(parents=True, exist_ok=True)   # here: a run takes away what it had to make if it is interrupted
     acts = {where: partial(_limited, limit, where, wanted, estimate) for where, wanted in tasks.items()}
-    for where, outcome in side_by_side(acts, cores, folder.name, len(found)):
+    for where, outcome in side_by_side(acts, cores, "/".join(folder.parts[-2:]), len(found)):
         found[where] = _row(1, str(outcome), False, {}) if isinstance(outcome, Failure) else outcome
     return pd.DataFrame([point | found[where] for where, point in zip(places, points)])
 
@@ -132,11 +132,16 @@ def _work(sender: Connection, parent: int, act: Callable) -> None:
 
 def _limited(limit: float, folder: Path, wanted: scene.Scene, estimate: bool) -> dict | None:
     """_outcome() of a run that may take `limit` seconds."""
+    end_after(limit)
+    return _outcome(folder, wanted, estimate)
+
+
+def end_after(limit: float) -> None:
+    """TooLong is raised in `limit` seconds."""
     def too_long(number):
         raise TooLong(f"no end after {limit:g} s: killed")
     stopping.on(signal.SIGALRM, too_long)                # run() tidies up on the way out
     signal.setitimer(signal.ITIMER_REAL, limit)
-    return _outcome(folder, wanted, estimate)
 
 
 def there(folder: Path, wanted: scene.Scene, estimate: bool = False) -> dict | None:
