@@ -15,10 +15,10 @@ from orchestrate.describe import describe
 from orchestrate.failure import NotInstalled
 from orchestrate.report import report
 
-COLUMNS = ("t dt normal_force friction_force kinetic elastic contact friction_work external_work balance momentum_x momentum_y "
+COLUMNS = ("t dt normal_force normal_load friction_force kinetic elastic contact friction_work external_work balance momentum_x momentum_y "
            "vx vy spin max_penetration contact_size sliding_fraction min_jacobian min_stretch newton_iterations min_ellipticity").split()
 KEYS = ("status message warnings contact_time thresholded_contact_time contact_intervals peak_force impulse rebound_vx rebound_vy rebound_spin restitution restitution_tangential energy_initial energy_final "
-        "vibration_energy friction_work energy_drift momentum_drift min_jacobian min_stretch min_ellipticity ellipticity_lost_time breakdown_time max_penetration "
+        "vibration_energy friction_work energy_drift momentum_drift angular_momentum_drift min_jacobian min_stretch min_ellipticity ellipticity_lost_time breakdown_time max_penetration "
         "sliding_time sticking_time steps rejected_steps newton_iterations factorizations dofs wall_seconds phase_seconds "
         "skipped provenance").split()
 
