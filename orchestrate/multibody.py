@@ -137,9 +137,10 @@ class Multibody:
         from . import approach, assembly
         if len(self.bodies) == 1 and not self.obstacles:
             raise BadInput("obstacle: is missing, and a second body too (accepted: one table [[obstacle]] or more, or several [[body]])")
-        met = approach.meetings(self)
-        approach.refuse_nothing(self, met)
-        built = assembly.assemble(self, met=met)
+        scene = approach.turned(self)
+        met = approach.meetings(scene)
+        approach.refuse_nothing(scene, met)
+        built = assembly.assemble(scene, met=met)
         built.write(where)
         return built.values | {"mesh": where / self.mesh_name, "bodies": where / "scene.dat"}, to_toml(built.used)
 

@@ -51,6 +51,13 @@ class Obstacle:
         outside = np.linalg.norm(from_point, axis=1) - self.numbers[axes]
         return -outside if self.kind == "bowl" else outside
 
+    def radius_at(self, point: np.ndarray, within: float) -> float:
+        """The radius [m] of its surface where that is nearest to a point (axes,), 0 if a sharp corner is `within` [m] as near, infinite where it is flat or
+        hollow."""
+        if self.kind == "polyline":
+            return polyline.radius_at(point, within, self.numbers)
+        return self.numbers[len(point)] if self.kind in ("circle", "sphere") else np.inf
+
     def gap_in_plane(self, points: np.ndarray, t: float) -> np.ndarray:
         """The same of points (n, 2) of the plane z = 0 at the time t [s]."""
         whole = np.pad(points, [(0, 0), (0, len(self.velocity) - 2)])

@@ -11,12 +11,15 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import pandas as pd
 
 from .failure import Unreadable, brief
 from .parameters import Value
+
+if TYPE_CHECKING:
+    from pandas import DataFrame   # takes longer to load than a run: only where a table is wanted
 
 WRITTEN = ("scene.toml", "history.csv", "contacts.csv", "modes.csv", "fields.pvd", "fields/*.vtu", "fields/contact.csv")   # what is read again
 AGAIN = "delete its folder, or run it again with --force"
@@ -96,8 +99,9 @@ def check_files(folder: Path) -> None:
             content(folder / name)
 
 
-def read_table(path: Path, columns: Iterable[str] = ()) -> pd.DataFrame:
+def read_table(path: Path, columns: Iterable[str] = ()) -> "DataFrame":
     """A table of a run, all numbers; Unreadable where it is not one that has these columns, and where it is cut off."""
+    import pandas as pd
     text = content(path)
     with reading(path):
         lines = text.split("\n")
@@ -111,8 +115,9 @@ def read_table(path: Path, columns: Iterable[str] = ()) -> pd.DataFrame:
         return table
 
 
-def read_frame(path: Path, columns: Iterable[str] = (), **options) -> pd.DataFrame:
+def read_frame(path: Path, columns: Iterable[str] = (), **options) -> "DataFrame":
     """A table that a study or a sweep has written, words too."""
+    import pandas as pd
     with reading(path):
         table = pd.read_csv(path, **options)
         if lacks := [name for name in columns if name not in table]:
@@ -123,11 +128,14 @@ def read_frame(path: Path, columns: Iterable[str] = (), **options) -> pd.DataFra
 def read_history(folder: Path) -> dict[str, np.ndarray]:
     """The columns of history.csv by name, each (steps,)."""
     path = folder / "history.csv"
-    table = read_table(path)
+    head, _, rows = content(path).partition("\n")
     with reading(path):
+        if not rows.endswith("\n"):
+            raise ValueError("it is empty or cut off")
+        table = np.loadtxt(rows.splitlines(), delimiter=",", ndmin=2)
         if len(table) <= (steps := read_json(folder / "summary.json").get("steps", 0)):   # one more, of the start
             raise ValueError(f"it has {len(table)} rows of {steps + 1}")
-    return Contents({name: table[name].to_numpy(float) for name in table}, path)
+        return Contents(dict(zip(head.split(","), table.T, strict=True)), path)
 
 
 def read_scene(folder: Path) -> dict[str, Value]:
@@ -138,13 +146,40 @@ def read_scene(folder: Path) -> dict[str, Value]:
         return Contents(tomllib.loads(text), path)
 
 
-def read_answers(folder: Path) -> tuple[dict, dict[str, Value], float]:
-    """Of a finished run the summary, with largest_energy of its history [J/m], the scene as used, and the largest speed of a centre of
-    mass [m/s]: what energies and velocities are measured by."""
-    history, summary = read_history(folder), read_summary(folder)
-    energy = float((history["kinetic"] + history["elastic"] + history["contact"]).max())
-    speed = max(float(np.sqrt(sum(history[f"v{axis}{of}"]**2 for axis in "xyz" if f"v{axis}{of}" in history)).max()) for of in suffixes(history))
-    return summary | {"largest_energy": energy}, read_scene(folder), speed
+class Answers(NamedTuple):
+    """Of a finished run the summary, with energy_final and largest_energy [J/m], the scene as used, the largest speed of a centre of mass [m/s], and
+    the columns of its history."""
+
+    summary: dict
+    used: dict[str, Value]
+    speed: float
+    history: dict[str, np.ndarray]
+
+
+def read_answers(folder: Path) -> Answers:
+    """The answers of a finished run, and what energies and velocities are measured by: as seen by one who moves with the obstacles, or without any with the
+    bodies' common centre of mass: errors do not depend on a motion that all share."""
+    history, summary, used = read_history(folder), read_summary(folder), read_scene(folder)
+    axes, bodies = [axis for axis in "xyz" if f"v{axis}" in history], suffixes(history)
+    mass = summary["mass"]
+    common = np.column_stack([history[f"v{axis}"] for axis in axes])
+    frame = _frame(used, common[0], len(bodies))
+    seen = common if frame is None else np.broadcast_to(frame, common.shape)
+    speed = max(float(np.linalg.norm([history[f"v{axis}{of}"] - seen[:, i] for i, axis in enumerate(axes)], axis=0).max()) for of in bodies)
+    shared = mass * (seen * (seen / 2 - common)).sum(axis=1)                 # from the scene's frame to the other
+    energy = float((history["kinetic"] + history["elastic"] + history["contact"] + shared).max())
+    last = np.array([summary.get(f"rebound_v{axis}", 0.0) for axis in axes])
+    at = last if frame is None else frame
+    found = summary | {"largest_energy": energy, "energy_final": summary["energy_final"] + mass * float(at @ (at / 2 - last))}
+    return Answers(found, used, speed, history)
+
+
+def _frame(used: dict, like: np.ndarray, bodies: int) -> np.ndarray | None:
+    """The velocity of the obstacles of a scene; None where there are none."""
+    if "body" not in used:
+        return None if bodies > 1 else np.zeros_like(like)
+    obstacles = [one.get("velocity", np.zeros_like(like)) for one in used.get("obstacle", [])]
+    return np.mean([[0.0, one] if np.isscalar(one) else one for one in obstacles], axis=0) if obstacles else None    # of revolution: along the axis
 
 
 def suffixes(columns: Iterable[str]) -> list[str]:

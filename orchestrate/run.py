@@ -11,37 +11,40 @@ import os
 import re
 import signal
 import subprocess
-from collections.abc import Iterator
-from contextlib import contextmanager, nullcontext
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
 
-from . import estimate as estimates, freefem, mesh
+from . import __version__, estimate as estimates, freefem, mesh
 from .failure import BadInput, Failure, TooLong, Unreadable
 from .folder import checkpoints, clear, failed_beside, finished_in, replace, result_folder, staging, unfinished
 from .multibody import Multibody
-from .parameters import ROOT, Value
-from .places import shown
+from .parameters import Value
+from .places import INSTALLED, PACKAGE, RESULTS, ROOT, shown
+from .progress import Line
 from .results import RunResult, check_files, files_of, read_answers, read_history, read_json, read_scene, read_summary, write_json
 from .scene import Scene
 from .tables import to_toml
+from .told import Told, runs
 
-DECISIVE = ("approach", "assembly", "bodies", "dimension", "estimate", "flat", "gmsh_file", "mesh", "mirror", "multibody", "obstacles", "outlines", "polyline", "revolution",
+DECISIVE = ("approach", "assembly", "bodies", "curved", "dimension", "flat", "gmsh_file", "mesh", "mirror", "multibody", "obstacles", "outlines", "polyline", "revolution",
             "solid_file", "solid_mesh", "solids", "tables", "tumbling")
+ESTIMATING = ("estimate", "results")   # what decides the stated errors besides
 FAILURES = {10: "bad input", 11: "step failed", 12: "material broke down", 13: "not installed", 14: "unreadable"}
 
 
 def run(scene: Scene | Multibody, overrides: dict[str, Value] | None = None, out: Path | None = None, *,
-        mesh_file: Path | None = None, force: bool = False, progress: bool = False, estimate: bool = True) -> RunResult:
+        mesh_file: Path | None = None, force: bool = False, progress: bool | None = None, estimate: bool = True) -> RunResult:
     """Runs `scene` with some parameters overridden in the folder `out` (default results/<scene>), or reuses it.
 
     Raises Failure with the exit code of the run contract. `force` runs again, from the start, even if the folder is up to
     date. With a checkpoint_every > 0 a run that is killed goes on from its last checkpoint when it is asked for again.
+    `progress` says whether a line shows how far it is (None: on a terminal and in a notebook).
     With `estimate` a second, coarser run estimates the error, and finer ones follow until it is below the accuracy (estimate.py).
     """
     scene = scene.override(overrides or {})
-    folder = result_folder(out or ROOT / "results" / scene.name)
+    folder = result_folder(out or RESULTS / scene.name)
     if mesh_file:
         mesh_file = _mesh_path(mesh_file)
     foreign = mesh.load(mesh_file) if mesh_file else None
@@ -53,12 +56,12 @@ def run(scene: Scene | Multibody, overrides: dict[str, Value] | None = None, out
     program = freefem.find()
     if scene.meshed and not foreign:
         mesh.start_gmsh()
-    with staging(folder) as (stage, lock):
+    with Line(scene.name, runs(estimate), progress) as line, staging(folder) as (stage, lock):
         if not force and (there := reusable(scene, folder, mesh_file, estimate)):   # another run has finished it meanwhile
             return there
-        provenance = {"script": scene.script, "code": code_hash(), "freefem": program.version,
+        provenance = {"script": scene.script, "version": __version__, "code": code_hash(), "freefem": program.version,
                       "gmsh": _gmsh(scene, mesh_file)}
-        asked_for = {"asked": scene.asked, "estimate": estimate}
+        asked_for = {"asked": scene.asked, "estimate": estimate and _hash(ESTIMATING)}
         asked = asked_for | provenance | {"mesh": _sha256(mesh_file) if mesh_file else None}
         if force or unfinished(stage) != asked:
             clear(stage)
@@ -67,9 +70,10 @@ def run(scene: Scene | Multibody, overrides: dict[str, Value] | None = None, out
         seconds = []
 
         def solve(given: dict[str, Value], where: Path) -> None:
+            told = Told(line, scene, mesh_file, "main run" if where == stage else f"{where.name} run", 1 + len(seconds))
             try:
-                with _progress_line(scene.name) if progress else nullcontext() as show:
-                    _solve(program, scene.override(given), foreign, where, lock, show)
+                _solve(program, scene.override(given), foreign, where, lock, told)
+                told.at("ready", 1.0)
             finally:
                 seconds.append((read_json(where / "summary.json") or read_json(where / "failure.json")).get("wall_seconds", 0.0))
 
@@ -94,7 +98,7 @@ def run(scene: Scene | Multibody, overrides: dict[str, Value] | None = None, out
 
 
 def _solve(program: freefem.FreeFem, scene: Scene | Multibody, foreign: bytes | None, where: Path, lock: int,
-           show: freefem.Progress | None) -> None:
+           told: Told) -> None:
     """Runs the scene in the folder `where`: from its checkpoint where there is one, not again where it is finished."""
     if (where / "summary.json").exists():
         return
@@ -103,10 +107,12 @@ def _solve(program: freefem.FreeFem, scene: Scene | Multibody, foreign: bytes | 
         where.mkdir(exist_ok=True)
         if not (where / "checkpoint.json").exists():   # what makes the folder ours
             write_json(where / "checkpoint.json", scene.asked)
+    told.at("mesh")
     given, scene_toml = scene.prepare(where, foreign)
+    told.at("set-up")
     given = given | {"out": where} | ({"restart": where / "checkpoint"} if goes_on else {})
     flags = [text for name, value in given.items() for text in (f"-{name}", str(value))]
-    exit_code, said = freefem.run(program, scene.script, flags, where / "log.txt", show, lock)
+    exit_code, said = freefem.run(program, scene.script, flags, where / "log.txt", told.show, lock)
     if scene_toml and (where / "scene.toml").exists():
         (where / "scene.toml").write_text(scene_toml, "utf-8")
     _check(where, exit_code, said)
@@ -179,17 +185,6 @@ def _keep_failed(stage: Path, failure: Failure, scene: Scene | Multibody, proven
     write_json(stage / "failure.json", record | {"exit_code": failure.code, "provenance": provenance})
 
 
-@contextmanager
-def _progress_line(name: str) -> Iterator[freefem.Progress]:
-    """One line on stderr, gone at the end."""
-    from tqdm import tqdm
-    with tqdm(total=1.0, desc=name, leave=False, bar_format="{desc} {percentage:3.0f}% |{bar}| {elapsed}{postfix}") as line:
-        def show(fraction: float, t: str, steps: str) -> None:
-            line.n = min(max(fraction, line.n), 1.0) if math.isfinite(fraction) else line.n
-            line.set_postfix_str(f"t = {float(t) * 1e3:.3f} ms, {steps} steps")
-        yield show
-
-
 # ---- reuse
 
 def reusable(scene: Scene | Multibody, folder: Path, mesh_file: Path | None = None, estimate: bool = False) -> RunResult | None:
@@ -197,7 +192,7 @@ def reusable(scene: Scene | Multibody, folder: Path, mesh_file: Path | None = No
     else None; Unreadable if it is not ours."""
     summary = finished_in(folder, force=False)
     same = (summary and (folder / "history.csv").exists() and summary.get("provenance", {}).get("code") == code_hash()
-            and (summary["provenance"].get("estimate") or not estimate) and read_scene(folder) and _same_scene(folder, scene, mesh_file))
+            and (summary["provenance"].get("estimate") == _hash(ESTIMATING) or not estimate) and read_scene(folder) and _same_scene(folder, scene, mesh_file))
     if same:
         check_files(folder)
     return RunResult(folder, summary, reused=True) if same else None
@@ -205,10 +200,14 @@ def reusable(scene: Scene | Multibody, folder: Path, mesh_file: Path | None = No
 
 def code_hash() -> str:
     """sha256 over what decides a result besides the scene: the FreeFEM scripts and what makes meshes and scene.dat."""
-    files = sorted(path for path in (ROOT / "edp").rglob("*") if path.suffix in (".edp", ".idp"))
+    return _hash(DECISIVE, sorted(path for path in (ROOT / "edp").rglob("*") if path.suffix in (".edp", ".idp")))
+
+
+def _hash(modules: Iterable[str], files: Iterable[Path] = ()) -> str:
     digest = hashlib.sha256()
-    for path in [*files, *(ROOT / f"orchestrate/{name}.py" for name in DECISIVE)]:
-        digest.update(f"{path.relative_to(ROOT)}\n".encode() + path.read_bytes())
+    named = {path.relative_to(ROOT): path for path in files} | {f"orchestrate/{name}.py": PACKAGE / f"{name}.py" for name in modules}
+    for name, path in named.items():
+        digest.update(f"{name}\n".encode() + path.read_bytes())
     return digest.hexdigest()
 
 
@@ -251,7 +250,9 @@ def _sha256(path: Path) -> str:
 
 
 def _git() -> str:
-    """The commit, with -dirty where the tree differs from it."""
+    """The commit, with -dirty where the tree differs from it; unknown where the program is installed, in whosever folder."""
+    if INSTALLED:
+        return "unknown"
     try:
         return subprocess.run(["git", "describe", "--always", "--dirty", "--abbrev=40", "--exclude=*"], cwd=ROOT,
                               capture_output=True, text=True, check=True).stdout.strip()

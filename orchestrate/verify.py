@@ -16,7 +16,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 from matplotlib.ticker import NullLocator
-from tqdm import tqdm
 
 from verification.case import Case, Row
 from verification.cases import CASES
@@ -24,8 +23,7 @@ from verification.cases import CASES
 from . import freefem, run
 from .failure import BadInput, Failure
 from .folder import result_folder
-from .parameters import ROOT
-from .places import shown
+from .places import COMMAND, RESULTS, ROOT, shown
 from .report.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE
 from .report.report import REFERENCE
 from .results import read_frame
@@ -38,8 +36,8 @@ SHOWN = 1e-6                # smaller errors are drawn there
 
 def main(argv: list[str]) -> int:
     """Runs the cases, prints the table, writes verify.csv and the figures; 0 only if all pass."""
-    parser = argparse.ArgumentParser(prog="python -m orchestrate verify", description=__doc__)
-    parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/verify", help="the result folder")
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} verify", description=__doc__)
+    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "verify", help="the result folder")
     parser.add_argument("--cores", metavar="N", type=int, default=study.CORES, help="this many cases at a time (default: %(default)s)")
     parser.add_argument("--force", action="store_true", help="run again what the same code has left")
     options = parser.parse_args(argv)
@@ -85,10 +83,8 @@ def run_all(out: Path, cores: int = study.CORES) -> pd.DataFrame:
     for case in CASES:
         (out / "runs" / slug(case)).mkdir(parents=True)
     acts = {(c, p): partial(perform, part, out / "runs" / slug(case)) for c, case in enumerate(CASES) for p, part in enumerate(case.parts)}
-    with tqdm(total=len(acts), disable=None, leave=False) as line:
-        for key, outcome in study.side_by_side(acts, cores):
-            found[key] = ([], str(outcome)) if isinstance(outcome, Failure) else outcome
-            line.update()
+    for key, outcome in study.side_by_side(acts, cores, "verify"):
+        found[key] = ([], str(outcome)) if isinstance(outcome, Failure) else outcome
     for c, case in enumerate(CASES):
         outcomes = [found[c, p] for p in range(len(case.parts))]
         rows, message = [row for some, _ in outcomes for row in some], next((said for _, said in outcomes if said), "")

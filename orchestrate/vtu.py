@@ -10,7 +10,7 @@ from .results import Contents, content, reading
 
 TRIANGLE, QUADRATIC_TRIANGLE, QUADRATIC_TETRAHEDRON = 5, 22, 24   # VTK's cell types
 NODES = {TRIANGLE: 3, QUADRATIC_TRIANGLE: 6, QUADRATIC_TETRAHEDRON: 10}
-SPLIT = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]   # a quadratic triangle (corners 0-2, middles 3-5) as four
+FINEST, MOST = 6, 20_000     # straight triangles along a side of a quadratic one, at most; and of all, where that is more than two a side
 EIGHT = [[0, 4, 6, 7], [4, 1, 5, 8], [6, 5, 2, 9], [7, 8, 9, 3],      # a quadratic tetrahedron as its corners and the four about the diagonal 4-9
          [4, 9, 5, 6], [4, 9, 6, 7], [4, 9, 7, 8], [4, 9, 8, 5]]
 CUTS = {1: [[[0, 1], [0, 2], [0, 3]]], 2: [[[0, 2], [0, 3], [1, 3]], [[0, 2], [1, 3], [1, 2]]],     # edges of a tetrahedron between its first so many
@@ -38,8 +38,8 @@ class Solid:
 
 
 def read(path: Path) -> Snapshot:
-    """One snapshot; quadratic triangles, and the faces of quadratic tetrahedra in the plane z = 0, are split into four straight ones. Where a body in
-    three dimensions has no such faces, it is cut there. Unreadable where it is not such a file."""
+    """One snapshot; quadratic triangles, and the faces of quadratic tetrahedra in the plane z = 0, are split into straight ones, so many that curved sides
+    look it. Where a body in three dimensions has no such faces, it is cut there. Unreadable where it is not such a file."""
     points, kind, cells, fields = _parts(path)
     on_plane = np.ones(len(points), dtype=bool)
     if kind == QUADRATIC_TETRAHEDRON:
@@ -47,9 +47,9 @@ def read(path: Path) -> Snapshot:
         cells = _in_plane(solid, on_plane, points)
         if not len(cells):
             return _cut(Solid(points, solid, fields), on_plane)
-    triangles = cells if kind == TRIANGLE else cells[:, SPLIT].reshape(-1, 3)
     row = np.cumsum(on_plane) - 1
-    return Snapshot(points[on_plane, :2], row[triangles], Contents({name: field[on_plane] for name, field in fields.items()}, path))
+    flat = Snapshot(points[on_plane, :2], row[cells], Contents({name: field[on_plane] for name, field in fields.items()}, path))
+    return flat if kind == TRIANGLE else _straight(flat)
 
 
 def read_solid(path: Path) -> Solid | None:
@@ -74,6 +74,28 @@ def _parts(path: Path) -> tuple[np.ndarray, int, np.ndarray, dict[str, np.ndarra
         if nodes.min() < 0 or nodes.max() >= len(points) or any(len(field) != len(points) for field in fields.values()):
             raise ValueError("a node or a value at one is missing")
         return points, kind, nodes, Contents(fields, path)
+
+
+def _straight(curved: Snapshot) -> Snapshot:
+    """Its quadratic triangles (t, 6: corners, then the middles of 01, 12, 20) as n * n straight ones each, on points where the quadratic functions are."""
+    cells, corners = curved.triangles, curved.triangles[:, :3]
+    n = int(np.clip(np.sqrt(MOST / max(1, len(cells))), 2, FINEST))
+    lattice = [(i, j) for j in range(n + 1) for i in range(n + 1 - j)]
+    place = {each: k for k, each in enumerate(lattice)}
+    b, c = np.array(lattice).T / n
+    a = 1 - b - c
+    values = np.stack([a * (2 * a - 1), b * (2 * b - 1), c * (2 * c - 1), 4 * a * b, 4 * b * c, 4 * c * a], axis=1)        # (points of a cell, 6)
+    # a point of a side is one for both neighbours: it is known by its corners and their shares
+    shares = np.rint(n * np.stack([a, b, c], axis=1)).astype(int)[None].repeat(len(cells), axis=0)                          # (cells, points, 3)
+    owners = np.where(shares > 0, corners[:, None, :], -1)
+    order = np.argsort(owners, axis=2)
+    known = np.concatenate([np.take_along_axis(each, order, axis=2) for each in (owners, shares)], axis=2).reshape(-1, 6)
+    _, first, which = np.unique(known, axis=0, return_index=True, return_inverse=True)
+    at = lambda field: np.tensordot(field[cells], values, axes=(1, 1)).swapaxes(1, -1).reshape(-1, *field.shape[1:])[first]   # noqa: E731
+    up = [(place[i, j], place[i + 1, j], place[i, j + 1]) for i, j in lattice if i + j < n]
+    down = [(place[i + 1, j], place[i + 1, j + 1], place[i, j + 1]) for i, j in lattice if i + j < n - 1]
+    triangles = which.reshape(len(cells), -1)[:, np.array(up + down)].reshape(-1, 3)
+    return Snapshot(at(curved.points), triangles, Contents({name: at(field) for name, field in curved.fields.items()}, curved.fields.path))
 
 
 def _in_plane(tetrahedra: np.ndarray, on_plane: np.ndarray, points: np.ndarray) -> np.ndarray:

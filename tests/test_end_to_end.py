@@ -333,7 +333,7 @@ def test_readme_gives_the_unit_of_every_number(result):
     text = (parameters.ROOT / "README.md").read_text()
     told = set(re.findall(r"`(\w+)`", text[text.index("Units (per metre"):text.index("**Looking at fields.**")]))
     counts = {"status", "message", "warnings", "skipped", "released", "provenance", "contact_intervals", "steps", "rejected_steps", "newton_iterations", "factorizations",
-              "residual_evaluations", "dofs", "unsolved_jumps", "refinements"}
+              "residual_evaluations", "dofs", "unsolved_jumps", "refinements", "quick_clock"}
     assert set(result.summary) - counts <= told, set(result.summary) - counts - told
     assert set(result.history) <= told, set(result.history) - told
     of_bodies = {name for key in ("body_columns", "body_summary") for name in describe()[key]}

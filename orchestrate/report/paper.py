@@ -11,11 +11,10 @@ from pathlib import Path
 from .. import scene, verify
 from ..failure import Failure, Unreadable
 from ..folder import result_folder
-from ..parameters import ROOT
-from ..places import shown
+from ..places import COMMAND, RESULTS, ROOT, shown
 from ..studies import stick_slip, study
 from ..sweeps import sweep
-from . import paper_judging as judging, paper_friction, paper_impacts, paper_bodies   # noqa: F401: these register the statements, in this order
+from . import paper_judging as judging, paper_friction, paper_impacts, paper_making, paper_bodies   # noqa: F401: these register the statements, in this order
 from .paper_page import COLOURS, page, verification
 
 RUNS = {"disc-normal": ("force",), "disc-normal-neohookean": (), "disc-oblique": ("flight", "force", "energies"), "disc-oblique-svk": ("flight", "force", "rolling", "energies"),
@@ -27,9 +26,12 @@ TARGETS = {"disc-oblique-svk": "disc-oblique", "disc-block-neohookean": "disc-bl
 
 def main(argv: list[str]) -> int:
     """Writes the page; Failure that lists every case that is missing or was made with other code."""
-    parser = argparse.ArgumentParser(prog="python -m orchestrate paper", description=__doc__)
-    parser.add_argument("--results", metavar="DIR", type=Path, default=ROOT / "results", help="where the cases are (default: results)")
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} paper", description=__doc__)
+    parser.add_argument("--results", metavar="DIR", type=Path, default=RESULTS, help="where the cases are (default: results)")
+    parser.add_argument("--make", metavar="TARGET", nargs="+", default=[], help="run these targets of make first")
     options = parser.parse_args(argv)
+    if code := paper_making.make(options.make):
+        return code
     results = judging.Results(result_folder(options.results))
     require(results)
     findings = [(item, text, find(results)) for item, text, find in judging.STATEMENTS]

@@ -1,15 +1,14 @@
 """The page of the paper's statements beside our numbers, as HTML that holds everything itself."""
 
 import base64
-import tomllib
 from datetime import datetime
 from html import escape
 from pathlib import Path
 
 import pandas as pd
 
-from .. import parameters, scene, verify
-from ..parameters import ROOT, Value
+from .. import __version__, parameters, scene, verify
+from ..parameters import Value
 from ..results import read_frame, read_json, read_scene
 from ..run import code_hash
 from ..studies import study
@@ -66,7 +65,7 @@ step keeps on any mesh; “not decided” means that the effect is smaller than 
 </table>
 {sections}
 {more}
-<p>Made {datetime.now():%Y-%m-%d %H:%M} by ffimpact {_version()}, code sha256 {code_hash()}. {BACK}</p>
+<p>Made {datetime.now():%Y-%m-%d %H:%M} by ffimpact {__version__}, code sha256 {code_hash()}. {BACK}</p>
 </body></html>
 """
 
@@ -101,10 +100,6 @@ def caption(path: Path) -> str:
     if path.parent.name == "figures" and path.parent.parent.name in scene.built_in():
         return f"{path.parent.parent.name}: {scene.load(path.parent.parent.name).title}: {SHOWN.get(path.stem, path.stem)}"
     return TITLES.get(path.stem, path.stem.replace("-", " "))
-
-
-def _version() -> str:
-    return tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
 
 
 def verification(folder: Path) -> str:

@@ -34,9 +34,9 @@ import pandas as pd
 from .. import parameters, scene
 from ..failure import BadInput, Busy, Failure, Unreadable, brief
 from ..multibody import Multibody
-from ..parameters import ROOT, Value
+from ..parameters import Value
 from ..folder import result_folder
-from ..places import shown
+from ..places import COMMAND, RESULTS, shown
 from ..report.figures import per_metre
 from ..studies import study
 from . import sweep_figures
@@ -81,7 +81,7 @@ class Sweep:
 
 def main(argv: list[str]) -> int:
     """Runs what is not there yet, writes DIR/sweep.csv and DIR/sweep.png; Failure where a run has no answer (10, 14, killed...)."""
-    parser = argparse.ArgumentParser(prog="python -m orchestrate sweep", description=__doc__,
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} sweep", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("sweep", metavar="SWEEP", help=f"a built-in sweep ({', '.join(built_in())}) or the path of a TOML file")
     parser.add_argument("--out", metavar="DIR", type=Path, help="the result folder (default: results/sweeps/NAME)")
@@ -90,7 +90,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--run", metavar="NAME", help="only this run of the list, without table and figure")
     options = parser.parse_args(argv)
     wanted = load(options.sweep)
-    out = result_folder(options.out or ROOT / "results/sweeps" / wanted.name)
+    out = result_folder(options.out or RESULTS / "sweeps" / wanted.name)
     names = {study.place(out, point).name: point for point in wanted.runs}
     if options.list or options.open:
         there = study.outcomes([*names.values()], out, wanted.base, scene.load(wanted.scene)) if options.open else {}
