@@ -2,6 +2,7 @@
 
 import argparse
 import importlib
+import locale
 import os
 import sys
 from pathlib import Path
@@ -120,6 +121,8 @@ def _figures(options: argparse.Namespace) -> None:
 
 def start() -> int:
     """main() as a program: the command ffimpact, and python -m."""
+    if locale.getencoding().lower() not in ("utf-8", "utf8") and not sys.flags.utf8_mode:   # files are UTF-8 whatever the locale is
+        os.execv(sys.executable, [sys.executable, "-X", "utf8", *sys.orig_argv[1:]])
     stopping.obey()
     for name in ("stdout", "stderr"):                  # closed by who started us
         if getattr(sys, name) is None:
