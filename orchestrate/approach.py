@@ -1,10 +1,16 @@
-"""Where bodies of a scene first touch: they fly as rigid bodies, r = r0 + v t + b t^2 / 2, angle = angle0 + spin t, until the gap closes."""
+"""Where bodies of a scene first touch: they fly as rigid bodies, r = r0 + v t + b t^2 / 2, angle = angle0 + spin t, until the gap closes.
 
+While the spheres around them are apart time is skipped at once, between roots of polynomials (as edp/core/run/reach.idp has it)."""
+
+import itertools
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.polynomial import Polynomial
 
+from . import polyline
 from .bodies import Body
 from .dimension import PLANE_STRAIN
 from .failure import BadInput
@@ -14,8 +20,7 @@ from .outlines import Outline
 from .solids import Solid
 
 Shape = Outline | Solid
-STEPS = 200                  # what has not met by then does not
-FAR = 1e6                    # of the smaller thickness: a gap that does not close again
+STEPS = 2000                 # of bodies within reach of each other: what has not met by then is not known to
 MET, CLOSED = 1e-3, 1e-9     # of the smaller thickness: a gap that counts as met, and one that is followed no further
 
 
@@ -50,7 +55,6 @@ def meetings(scene: Multibody) -> list[Meeting]:
 
 
 def _meeting(scene: Multibody, first: int, second: int) -> Meeting:
-    """Conservative advancement: in each step no point can come nearer than the gap."""
     body = scene.bodies[first]
     other = scene.bodies[second] if second >= 0 else scene.obstacles[-1 - second]
     pull = np.zeros(scene.dimension.axes)
@@ -59,18 +63,8 @@ def _meeting(scene: Multibody, first: int, second: int) -> Meeting:
     start = body.velocity - other.velocity
     radius = min([body.outline.half_thickness, *([other.outline.half_thickness] if second >= 0 else [])])
     turning = sum(one.outline.fastest(one.angle, one.spin) * one.outline.reach for one in (body, other) if isinstance(one, Body))
-    t, met, before = 0.0, False, math.inf
-    for _ in range(STEPS):
-        gap = _gap(*_at(body, other, t, pull))
-        met = met or gap <= MET * radius
-        if met and (gap <= CLOSED * radius or gap >= before):    # closed, or passing by
-            break
-        before = gap
-        speed, rate = np.linalg.norm(start + pull * t) + turning, np.linalg.norm(pull)
-        never = not met and (speed + rate == 0 or gap > FAR * radius)
-        if never:
-            break
-        t += 2 * gap / (speed + math.sqrt(speed**2 + 2 * rate * gap))       # speed t + rate t^2 / 2 = gap
+    t, never = _first_touch(body, other, start, pull, turning, radius)
+    met = not math.isinf(t)
     t = t if met else 0.0
     outlines, velocity = _at(body, other, t, pull), start + pull * t
     normal = outlines[0].normal_from(outlines[1])
@@ -121,6 +115,60 @@ def _at(body: Body, other: Body | Obstacle, t: float, pull: np.ndarray) -> tuple
     if isinstance(other, Body):
         return flown(body, body.velocity), flown(other, other.velocity)
     return flown(body, body.velocity - other.velocity), other
+
+
+def _first_touch(body: Body, other: Body | Obstacle, start: np.ndarray, pull: np.ndarray, turning: float, radius: float) -> tuple[float, bool]:
+    """When the gap is closed [s], infinite where it is not known to, and whether it never is. By conservative advancement where they are within
+    reach of each other: in each step no point can come nearer than the gap."""
+    rate, steps, met, before = np.linalg.norm(pull), 0, False, math.inf
+    for t, end in _within_reach(body, other, start, pull):
+        while t < end:
+            gap, speed = _gap(*_at(body, other, t, pull)), np.linalg.norm(start + pull * t) + turning
+            met = met or gap <= MET * radius
+            if met and (gap <= CLOSED * radius or gap >= before):               # closed, or passing by
+                return t, False
+            steps, before = steps + 1, gap
+            if steps > STEPS:
+                return math.inf, False
+            if speed + rate == 0:
+                return math.inf, True
+            t += 2 * gap / (speed + math.sqrt(speed**2 + 2 * rate * gap))       # speed t + rate t^2 / 2 = gap
+    return math.inf, True
+
+
+def _within_reach(body: Body, other: Body | Obstacle, start: np.ndarray, pull: np.ndarray) -> Iterator[tuple[float, float]]:
+    """From when to when the sphere around the body touches that around the other one, or some part of the obstacle."""
+    parts = [[gate.trim() for gate in gates] for gates in _gates(body, other, start, pull)]
+    roots = np.concatenate([gate.roots() for gates in parts for gate in gates if gate.degree() > 0] or [np.empty(0)])
+    times = [0.0, *sorted(set(roots.real[(abs(roots.imag) <= 1e-6 * abs(roots)) & (roots.real > 0)].tolist())), math.inf]
+    for begin, end in itertools.pairwise(times):
+        middle = (begin + end) / 2 if end < math.inf else 2 * begin + 1
+        if any(all(gate(middle) <= 0 for gate in gates) for gates in parts):
+            yield begin, end
+
+
+def _gates(body: Body, other: Body | Obstacle, start: np.ndarray, pull: np.ndarray) -> Iterator[list[Polynomial]]:
+    """Of each part of the other one polynomials of time that are all <= 0 within reach of it."""
+    reach = 1.01 * body.outline.reach
+    def seen_from(point: np.ndarray) -> np.ndarray:
+        return np.array([Polynomial([x, v, a / 2]) for x, v, a in zip(body.position - point, start, pull)])
+    if isinstance(other, Body):
+        yield [(seen_from(other.position)**2).sum() - (reach + 1.01 * other.outline.reach)**2]
+    elif other.kind == "polyline":
+        sides, reach = polyline.sides_of(other.numbers), reach + other.numbers[1]
+        for point, along, low, high in zip(sides.start, sides.along, sides.low, sides.high):
+            r = seen_from(point)
+            above, at = r @ np.array([-along[1], along[0]]), r @ along
+            yield [above - reach, -above - reach, *([low - reach - at] if np.isfinite(low) else []), *([at - high - reach] if np.isfinite(high) else [])]
+    else:
+        axes = len(start)
+        r, more = seen_from(np.array(other.numbers[:axes])), other.numbers[axes:]
+        if other.kind == "plane":
+            yield [r @ np.array(more) - reach]
+        elif other.kind != "bowl":
+            yield [(r**2).sum() - (more[0] + reach)**2]
+        else:
+            yield [max(0.0, more[0] - reach)**2 - (r**2).sum()]
 
 
 def _gap(first: Shape, second: Shape | Obstacle) -> float:

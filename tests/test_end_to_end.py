@@ -281,6 +281,15 @@ def test_own_mesh_of_a_slow_impact_gives_what_gmsh_gives(tmp_path, symmetry):
         assert ours[key] == pytest.approx(theirs[key], rel=given["accuracy"]), key
 
 
+def test_a_step_far_too_large_for_friction_ends_early(tmp_path):
+    """A fixed step that leaves a handful in the contact, whose friction grinds, is exit code 11 in one line that names dt and the largest that is taken for long; the
+    adaptive step of the same impact is below that."""
+    given = ("-law", "neohookean", "-speed", "12", "-angle", "60", "-friction_static", "0.7", "-friction_dynamic", "0.5", "-slip_velocity", "0.1", "-penalty", "1e10")
+    process = direct(*given, "-dt", "4e-4", "-out", str(tmp_path / "out"))
+    assert process.returncode == 11 and re.search(r"dt = 0.0004 s is too long for its friction, .* take dt = 0, or up to 0.00024\d+ s", process.stderr)
+    assert process.stderr.count("\n") == 1 and json.loads((tmp_path / "out/failure.json").read_text())["steps"] < 4
+
+
 # ---- chatter
 
 COARSE = {"speed": "1.84", "accuracy": "0.01", "degree": "1", "mesh_size": "0.025", "contact_mesh_size": "0.0079"}
