@@ -238,17 +238,19 @@ def sliding_first(results: Results) -> Finding:
     some of any do. Constant energy: at most 5 % of the friction work in the last third."""
     every = results.stick_slip()
     every = every[every.exit == 0]
-    told, counts = [], []
+    told, counts = [], {}
     for (angle, law), rows in every.groupby(["angle", "law"], sort=False):
         order, both = int(rows["order"].sum()), int((rows["order"] & rows["quiet"]).sum())
-        counts += [(both, len(rows))] * (law == "svk")
+        counts |= {angle: (both, len(rows))} if law == "svk" else {}
         told.append(f"{angle:g}°, {LAWS[law]}: {order} of {len(rows)} runs, {both} of them with at most {100 * stick_slip.QUIET:g} % of the friction work in the last third")
     restitution = {name: results.summary(name)["rebound_vy"] / _normal() for name in ("disc-oblique-svk", "disc-oblique")}
     shares = " and ".join(f"{slip_share(e):.2f} with the e = {e:.3f} of {name}" for name, e in restitution.items())
-    explained = "" if any(both for both, _ in counts) else ", which explains it: the disc sticks long before two thirds, and slips back at the end"
-    return Finding(AGREES if any(both == runs for both, runs in counts) else PARTLY if any(both for both, _ in counts) else DIFFERS, f"slides first and sticks last: {'; '.join(told)}. "
+    met = [angle for angle, (both, _) in counts.items() if both]
+    explained = "" if ANGLE in met else ", which explains it: the disc sticks long before two thirds, and slips back at the end"
+    only = f" With SVK the order appears only at {FLAT:g}° from the plane, which is π/3 from the normal." if met == [FLAT] else ""
+    return Finding(AGREES if any(both == runs for both, runs in counts.values()) else PARTLY if met else DIFFERS, f"slides first and sticks last: {'; '.join(told)}. "
                    f"The slip of a rigid disc ends at the share v_t/(3 μ_d (1 + e) v_n) of the normal impulse, {shares}{explained}. At {FLAT:g}° from the plane it would end at "
-                   f"{slip_share(restitution['disc-oblique'], FLAT):.2f}.",
+                   f"{slip_share(restitution['disc-oblique'], FLAT):.2f}.{only}",
                    [results.folder / "stick-slip/stick-slip.png"],
                    [*(study.place(results.folder / "stick-slip", point) for point in stick_slip.grid(stick_slip.AXES)), *map(results.run, restitution)],
                    list(every[every.law == "svk"].ellipticity_lost_time))
