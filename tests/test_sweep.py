@@ -117,7 +117,7 @@ def test_bad_files_are_one_line(tmp_path, text, words):
 def test_unknown_sweep_and_run():
     """Exit code 10, one line, what there is."""
     code, _, err = call("sweep", "nothing")
-    assert code == 10 and "built in: calibrate, calibrate-ball, conservation, contact-time-neohookean" in err and err.count("\n") == 1
+    assert code == 10 and "built in: calibrate, calibrate-ball, calibrate-ball-3d, calibrate-oblique, conservation, contact-time-neohookean" in err and err.count("\n") == 1
     code, _, err = call("sweep", "law-comparison", "--run", "speed=3")
     assert code == 10 and "--run: 'speed=3' is no run of law-comparison (accepted: see --list)" in err
 
