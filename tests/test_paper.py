@@ -11,7 +11,7 @@ import fake_freefem
 from orchestrate import __version__, run, scene
 from orchestrate.__main__ import main
 from orchestrate.failure import Failure
-from orchestrate.report import figures, paper, paper_bodies, paper_friction, paper_judging, report
+from orchestrate.report import figures, paper, paper_bodies, paper_friction, paper_judging, paper_page, report
 from orchestrate.report.paper_judging import AGREES, DIFFERS, OPEN, PARTLY, STATEMENTS, Finding, maxima
 from orchestrate.parameters import ROOT
 from orchestrate.sweeps import sweep
