@@ -11,8 +11,8 @@ SWEEPS := oblique friction-jump friction-steps slip-limit contact-time-svk law-c
 help: ## list the targets
 	@sed -n 's/^\([a-z0-9-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
 
-setup: $(READY) ## install what is missing: FreeFem++, system libraries, .venv with the pinned packages
-$(READY): pyproject.toml orchestrate/setup.sh orchestrate/probe.edp
+setup: $(READY) ## install what is missing: FreeFem++, system libraries, .venv with the packages of requirements.lock
+$(READY): requirements.lock orchestrate/setup.sh orchestrate/probe.edp
 	@orchestrate/setup.sh
 	@touch $@
 
@@ -65,10 +65,9 @@ stick-slip: $(READY) ## search for the paper's order of sliding and sticking ove
 verify: $(READY) ## exact solutions with convergence: bar, rod, Hertz, rigid bodies, friction, manufactured motions
 	@$(PYTHON) -m orchestrate $@ $(ARGS)
 
-paper: override ARGS :=
-paper: disc-normal disc-oblique disc-rolling disc-block ball-axisymmetric ball friction-laws $(SWEEPS) stick-slip verify ## all of the above, and results/paper/report.html
-	@$(PYTHON) -m orchestrate compare disc-normal disc-normal-neohookean ball-axisymmetric-svk ball-axisymmetric
-	@$(PYTHON) -m orchestrate $@
+PAPER := disc-normal disc-oblique disc-rolling disc-block ball-axisymmetric ball friction-laws $(SWEEPS) stick-slip verify ball-comparison
+paper: $(READY) ## all of the above, and results/paper/report.html
+	@$(PYTHON) -m orchestrate $@ --make $(PAPER)
 
 movie: CASE := disc-oblique
 movie: $(READY) ## a film of a scene, built in or a file: make movie CASE=disc-oblique
@@ -83,7 +82,7 @@ test: $(READY) ## run all tests: the program's, and beside them on the other cor
 	$(PYTHON) -m pytest -q tests $(ARGS); code=$$?; wait $$beside || code=$$?; cat $$log; exit $$code
 
 robustness: $(READY) ## malformed input, kills, hard runs drawn at random, and every combination of hard parameters: nothing is silently wrong, lost or left behind
-	@$(PYTHON) -m pytest -q -m "robustness or not robustness" tests/test_malformed.py tests/test_direct.py tests/test_kills.py
+	@$(PYTHON) -m pytest -q -m "robustness or not robustness" tests/test_malformed.py tests/test_direct.py tests/test_kills.py tests/test_damaged.py tests/test_package.py
 	@$(PYTHON) -m orchestrate promise --hard --scenes 200 --seed 201 --out results/robustness --page docs/robustness.md $(ARGS)
 	@$(PYTHON) -m orchestrate promise --hard --of disc-block --scenes 20 --seed 202 --out results/robustness-block --page docs/robustness-block.md $(ARGS)
 	@$(PYTHON) -m orchestrate promise --hard --of ball-axisymmetric --scenes 20 --seed 203 --out results/robustness-ball --page docs/robustness-ball.md $(ARGS)

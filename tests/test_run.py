@@ -20,7 +20,7 @@ def test_finished_run_is_complete(fake, tmp_path):
     result = go(tmp_path / "out", {"fields": 2})
     assert {"scene.toml", "history.csv", "summary.json", "log.txt", "mesh.msh", "fields.pvd", "fields"} == {
         p.name for p in result.folder.iterdir()}
-    assert set(result.summary["provenance"]) == {"script", "asked", "git", "code", "freefem", "gmsh", "mesh", "estimate"}
+    assert set(result.summary["provenance"]) == {"script", "version", "asked", "git", "code", "freefem", "gmsh", "mesh", "estimate", "files"}
     assert result.summary["status"] == "ok" and not result.reused
     assert result.history["t"].shape == (200,) and result.scene["speed"] == 8.0
     assert not list(tmp_path.glob("out.*"))
@@ -192,8 +192,8 @@ def test_progress_arrives(fake, tmp_path):
     """The progress lines of the script arrive with their fraction, time and number of steps; the log keeps them too."""
     seen = []
     flags = ["-fields", "0", "-mesh", __file__, "-out", str(tmp_path)]
-    assert freefem.run(freefem.find(), "disc-plane", flags, tmp_path / "log.txt", lambda *p: seen.append(p)) == (0, "")
-    assert seen[0] == (0.25, "0.001", "50") and len(seen) == 3
+    assert freefem.run(freefem.find(), "disc-plane", flags, tmp_path / "log.txt", seen.append) == (0, "")
+    assert seen[0] == (0.25, 0.001, 50, 0, 1.0) and len(seen) == 3
     assert "progress 0.25" in (tmp_path / "log.txt").read_text()
 
 

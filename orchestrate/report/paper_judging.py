@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from ..results import read_history, read_scene, read_summary
+from ..results import read_frame, read_history, read_scene, read_summary
 from ..studies import study
 from ..sweeps import sweep, sweep_figures
 from . import vibration
@@ -106,11 +106,11 @@ class Results:
 
     def friction_laws(self) -> pd.DataFrame:
         """The table that figure 3 is drawn from."""
-        return pd.read_csv(self.folder / "friction-laws/laws.csv")
+        return read_frame(self.folder / "friction-laws/laws.csv")
 
     def stick_slip(self) -> pd.DataFrame:
         """The table of the search for the paper's order of sliding and sticking."""
-        return pd.read_csv(self.folder / "stick-slip/stick-slip.csv")
+        return read_frame(self.folder / "stick-slip/stick-slip.csv")
 
 
 @cache

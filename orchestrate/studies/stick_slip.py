@@ -14,8 +14,7 @@ from matplotlib.patches import Rectangle
 
 from ..failure import Unreadable
 from ..folder import result_folder
-from ..parameters import ROOT
-from ..places import shown
+from ..places import COMMAND, RESULTS, shown
 from ..report.figures import LAWS, SMALL, STYLE
 from ..results import read_history
 from . import study
@@ -32,9 +31,9 @@ THIRDS = ("first", "second", "last")
 
 def main(argv: list[str]) -> int:
     """Runs the grid, prints the share of sliding in each third of the contact, draws the map; 0 whatever is found."""
-    parser = argparse.ArgumentParser(prog="python -m orchestrate stick-slip", description=__doc__)
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} stick-slip", description=__doc__)
     parser.add_argument("--quick", action="store_true", help="a corner of the grid")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/stick-slip", help="the result folder")
+    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "stick-slip", help="the result folder")
     options = parser.parse_args(argv)
     out = result_folder(options.out)
     axes = {name: values[-2:] for name, values in AXES.items()} if options.quick else AXES

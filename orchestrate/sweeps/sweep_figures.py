@@ -19,8 +19,8 @@ import numpy as np
 import pandas as pd
 from matplotlib.ticker import LogLocator, NullLocator
 
-from .. import parameters, scene
-from ..failure import BadInput
+from .. import parameters
+from ..failure import BadInput, brief
 from ..report import report
 from ..report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, SMALL, STYLE, as_written, numbers_of_the_paper
 from ..results import read_history
@@ -38,10 +38,10 @@ def check(given: dict, points: list[dict], collected: list[str], columns: list[s
         return {}
     kind, varied = given.get("kind", "lines"), list(points[0])
     if kind not in list(KINDS):
-        raise BadInput(f"figure: kind '{kind}' is not known (accepted: {'|'.join(KINDS)})")
+        raise BadInput(f"figure: kind '{brief(kind)}' is not known (accepted: {'|'.join(KINDS)})")
     for key in given:
         if key not in ("kind", *KINDS[kind]):
-            raise BadInput(f"figure: {key}: no such entry for {kind} (accepted: {', '.join(KINDS[kind])})")
+            raise BadInput(f"figure: {brief(key)}: no such entry for {kind} (accepted: {', '.join(KINDS[kind])})")
     figure = {"kind": kind, "by": None, "panel": None, "level": None, "band": 0.0} | given
     if kind != "map" and isinstance(figure.get("y"), str):
         figure["y"] = [figure["y"]]
@@ -69,7 +69,7 @@ def check(given: dict, points: list[dict], collected: list[str], columns: list[s
 
 def _name(key: str, name, accepted: list[str]) -> None:
     if not isinstance(name, str) or name not in accepted:
-        raise BadInput(f"figure: {key} {'is missing' if name is None else f'= {name!r}'} (accepted: {', '.join(accepted)})")
+        raise BadInput(f"figure: {key} {'is missing' if name is None else f'= {brief(repr(name))}'} (accepted: {', '.join(accepted)})")
 
 
 def _check_map(figure: dict, points: list[dict]) -> None:
@@ -77,13 +77,13 @@ def _check_map(figure: dict, points: list[dict]) -> None:
     for key in ("x", "y"):
         values = {point[figure[key]] for point in points}
         if len(values) < 2 or any(isinstance(value, str) for value in values):
-            raise BadInput(f"figure: {key} = '{figure[key]}' (accepted for a map: a parameter with at least two numbers)")
+            raise BadInput(f"figure: {key} = '{brief(figure[key])}' (accepted for a map: a parameter with at least two numbers)")
     for key in ("level", "band"):
         value = figure[key]
         if value is not None and (type(value) not in (int, float) or not 0 <= value < 1e300):
-            raise BadInput(f"figure: {key} = {value} (accepted: a number from 0 on)")
+            raise BadInput(f"figure: {key} = {brief(value)} (accepted: a number from 0 on)")
     if figure["level"] is not None and min(point[figure["y"]] for point in points) <= 0:
-        raise BadInput(f"figure: y = '{figure['y']}' has values up to 0 (accepted with a level: above 0)")
+        raise BadInput(f"figure: y = '{brief(figure['y'])}' has values up to 0 (accepted with a level: above 0)")
 
 
 def draw(sweep, rows: pd.DataFrame, out: Path) -> None:
@@ -100,7 +100,7 @@ def draw(sweep, rows: pd.DataFrame, out: Path) -> None:
 
 def _constants(sweep) -> str:
     """What is the same in all runs of a body: law, nu, speed, contact stiffness and, with friction, the slip velocity."""
-    used = scene.load(sweep.scene).override(sweep.base | sweep.points[0]).given
+    used = sweep.sample.given
     names = ("law", "nu", "speed", "penalty") + ("slip_velocity",) * (used.get("friction_static", 0) > 0)
     words = ", ".join(_value(name, used[name]) for name in names if name in used and name not in sweep.axes)
     return words.replace("Pa/m^m", "Pa/m") if used.get("exponent", 1) == 1 else words
@@ -211,7 +211,7 @@ def _why(codes: pd.Series) -> str:
 
 def _published(axes: plt.Axes, sweep, x: str, y: str) -> None:
     """The numbers of the paper for y, whose contact time is that while the force is not zero: a star at its x, or a line over all x where it states none."""
-    for at, value, words in numbers_of_the_paper(scene.load(sweep.scene).override(sweep.base | sweep.points[0]).given, y.removeprefix("thresholded_"), over=x):
+    for at, value, words in numbers_of_the_paper(sweep.sample.given, y.removeprefix("thresholded_"), over=x):
         words = f"{words}: {_factor(y) * value:.3g}{_unit(y, sweep.figure['per'])}"
         if at is None:
             axes.axhline(_factor(y) * value, color=BLACK, linestyle="-.", linewidth=0.9, label=words)
