@@ -2,6 +2,7 @@
 
 import argparse
 import importlib
+import locale
 import os
 import sys
 from pathlib import Path
@@ -14,8 +15,8 @@ from .places import COMMAND, from_source, shown
 PACKAGES = {"sweeps": ("sweep",), "report": ("friction-laws", "compare", "movie", "paper"),
             "studies": ("stick-slip", "oblique-angles", "stress", "stress-map", "bench", "textbook", "skipping", "costs", "promise", "refine", "scaling", "materials",
                         "pairing-comparison", "disc-block-errors")}
-FROM_SOURCE = ("verify", "paper", "bench", "textbook", "oblique-angles")   # these need verification/
-OWN_MAIN = {"verify": "verify"} | {name: f"{package}.{name.replace('-', '_')}" for package, names in PACKAGES.items() for name in names}
+FROM_SOURCE = ("verify", "pages", "paper", "bench", "textbook", "oblique-angles")   # these need the source folder
+OWN_MAIN = {"verify": "verify", "pages": "pages"} | {name: f"{package}.{name.replace('-', '_')}" for package, names in PACKAGES.items() for name in names}
 
 
 def main(argv: list[str]) -> int:
@@ -120,6 +121,8 @@ def _figures(options: argparse.Namespace) -> None:
 
 def start() -> int:
     """main() as a program: the command ffimpact, and python -m."""
+    if locale.getencoding().lower() not in ("utf-8", "utf8") and not sys.flags.utf8_mode:   # files are UTF-8 whatever the locale is
+        os.execv(sys.executable, [sys.executable, "-X", "utf8", *sys.orig_argv[1:]])
     stopping.obey()
     for name in ("stdout", "stderr"):                  # closed by who started us
         if getattr(sys, name) is None:

@@ -30,6 +30,7 @@ SAMPLED = 0.25               # a step between points at which an element size is
 LIKE = ("radius", "young", "nu", "density", "speed", "angle", "spin")
 NARROW = 0.6                 # of the contact of a disc on a plane: where less of an outline is near, elements are smaller; of two equal discs it is 0.71
 POINTED = 0.5                # largest half-width of a contact over the radius of the obstacle, as over that of a disc on a plane (sizes.idp)
+ASIDE = 0.02                 # of the pair's radius: as near to a corner of an obstacle is on it
 SMALLEST = 1e-3              # element in a contact over the pair's radius, however small the obstacle is
 BETWEEN = 0.2                # from body to body in the reference configuration, over the largest extent
 
@@ -111,12 +112,12 @@ class Asker:
         return self.rule(self.disc(bodies, radius, slides) | more)
 
     def small(self, first: int, second: int) -> float:
-        """The radius [m] of an obstacle where a body meets it, if that is less than half of the body's own; else infinite."""
+        """The radius [m] of an obstacle where a body meets it, if that is less than half of the body's own, 0 at a sharp corner; else infinite."""
         for one in self.met:
             if (one.first, one.second) == (first, second) and second < 0 and not one.never:
                 body, obstacle = one.outlines
-                radius = obstacle.radius_at(body.points[obstacle.gap(body.points).argmin()])
-                return radius if 0 < radius < one.radius / 2 else math.inf
+                radius = obstacle.radius_at(body.points[obstacle.gap(body.points).argmin()], ASIDE * one.radius)
+                return radius if radius < one.radius / 2 else math.inf
         return math.inf
 
     def disc(self, bodies: list[Body], radius: float, slides: bool) -> dict[str, Value]:
@@ -156,16 +157,16 @@ def pair_values(pair: Pair, ask: Asker, values: dict[str, Value]) -> dict[str, V
     alone = "friction_static" in pair.values                    # sets both
     inherited = {name: values[name] for name in ask.scene.contact} | {"friction_dynamic": "auto" if alone else ask.scene.contact["friction_dynamic"]}
     small = ask.small(pair.first, pair.second)
-    if small < math.inf:
+    if 0 < small < math.inf:
         inherited["penalty"] = ask.scene.contact["penalty"]
-    own = contact_values(bodies, inherited | pair.values, ask, pair.path, small)
+    own = contact_values(bodies, inherited | pair.values, ask, pair.path, small or math.inf)
     return {name: own[name] for name in OWN}
 
 
 def _with_small_obstacles(scene: Multibody, ask: "Asker") -> list[Pair]:
     """The scene's pairs, and those that an open penalty makes differ: a body and an obstacle that is smaller than its contact on a plane would be."""
     said = {(pair.first, pair.second) for pair in scene.pairs}
-    small = [(one.first, one.second) for one in ask.met if ask.small(one.first, one.second) < math.inf] if scene.contact["penalty"] == "auto" else []
+    small = [(one.first, one.second) for one in ask.met if 0 < ask.small(one.first, one.second) < math.inf] if scene.contact["penalty"] == "auto" else []
     pairs = scene.pairs + [Pair(*both, {}, f"obstacle.{-both[1]}") for both in small if both not in said]
     return sorted(pairs, key=lambda pair: (pair.first, pair.second))
 
@@ -213,16 +214,17 @@ def _hit(body: Body, k: int, one: Meeting, ask: Asker) -> tuple[float, np.ndarra
     depth, small = one.radius * (1 - math.cos(min(arc, math.pi / 2))), ask.small(one.first, one.second)
     points, spacing = body.outline.samples(size)
     near = _near(body, k, one, depth, points)
-    wider = body.outline.width(len(near), spacing) / (2 * arc * one.radius)    # than the contact of a disc: flat faces; or less wide: corners, pegs
-    wider = min(max(1.0, wider), wider / NARROW, POINTED * small / (2 / math.pi * arc * one.radius))
-    if wider < 1:
+    wider = body.outline.width(max(2, len(near)), spacing) / (2 * arc * one.radius)    # than the contact of a disc: flat faces; or less wide: corners, pegs
+    if small > 0:                              # a sharp corner no elements resolve
+        wider = min(max(1.0, wider), wider / NARROW, POINTED * small / (2 / math.pi * arc * one.radius))
+    if small > 0 and wider < 1:
         size = max(SMALLEST * one.radius / wider, size)
         points, spacing = body.outline.samples(size * wider)
         near = _near(body, k, one, min(depth, small), points)
     slide = (ask.answer(bodies, one.radius, slides=True)["touch_arc"] - arc) * one.radius
     if slide > 0:
         near = points[nearest(points, near) <= slide]
-    return size * wider, near, spacing / 2
+    return size * (wider if small > 0 else max(1.0, wider)), near, spacing / 2
 
 
 def _near(body: Body, k: int, one: Meeting, depth: float, points: np.ndarray) -> np.ndarray:
@@ -369,7 +371,7 @@ def data_file(scene: Multibody, disc: dict[str, Value], centres: np.ndarray, rou
         bodies N       name law young nu density  centreX centreY  placeX placeY angle  vx vy spin     a line a body
         circles C      body x y radius                                                                  in the mesh
         files F        body                                                                             whose mesh is that of a file
-        obstacles M    kind count p1 ... pcount vx vy
+        obstacles M    name kind count p1 ... pcount vx vy
         pairs K        a b penalty friction_static friction_dynamic                                     a, b: body, or -1 - obstacle
     centre: of the area in the mesh; place: where it is at the start; the angle of the disc in degrees. In three dimensions
         ffimpact-bodies-3d 1
@@ -389,7 +391,7 @@ def data_file(scene: Multibody, disc: dict[str, Value], centres: np.ndarray, rou
     lines += rounds
     lines += [("files", len(files := [k for k, given in enumerate(scene.given["body"]) if "file" in given])), *((k,) for k in files)]
     lines += [("obstacles", len(scene.obstacles))]
-    lines += [("circle" if one.kind == "sphere" and scene.dimension is not SOLID else one.kind, len(one.numbers), *one.numbers, *one.velocity) for one in scene.obstacles]
+    lines += [(one.name, "circle" if one.kind == "sphere" and scene.dimension is not SOLID else one.kind, len(one.numbers), *one.numbers, *one.velocity) for one in scene.obstacles]
     lines += [("pairs", len(pairs)), *((pair.first, pair.second, *own.values()) for pair, own in zip(scene.pairs, pairs))]
     return "".join(" ".join(map(_token, line)) + "\n" for line in lines)
 

@@ -51,10 +51,11 @@ class Obstacle:
         outside = np.linalg.norm(from_point, axis=1) - self.numbers[axes]
         return -outside if self.kind == "bowl" else outside
 
-    def radius_at(self, point: np.ndarray) -> float:
-        """The radius [m] of its surface where that is nearest to a point (axes,), 0 at a sharp corner, infinite where it is flat or hollow."""
+    def radius_at(self, point: np.ndarray, within: float) -> float:
+        """The radius [m] of its surface where that is nearest to a point (axes,), 0 if a sharp corner is `within` [m] as near, infinite where it is flat or
+        hollow."""
         if self.kind == "polyline":
-            return polyline.radius_at(point, self.numbers)
+            return polyline.radius_at(point, within, self.numbers)
         return self.numbers[len(point)] if self.kind in ("circle", "sphere") else np.inf
 
     def gap_in_plane(self, points: np.ndarray, t: float) -> np.ndarray:

@@ -5,12 +5,14 @@ and closed it is a block, counter-clockwise a container. Open, it goes straight 
 `rounding` [m] from the chain on the free side: convex corners become arcs of that radius, concave ones stay corners (edp/core/contact/shapes.idp).
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from .failure import BadInput
 
+CORNER = math.radians(30)    # what turns by less at a vertex is no corner (edp/core/contact/shapes.idp)
 NEAR = 1e-12                 # of the chain's size: what round-off cannot tell apart
 
 
@@ -80,13 +82,14 @@ def sides_of(numbers: tuple[float, ...]) -> Sides:
     return _sides(np.reshape(numbers[2:], (-1, 2)), bool(numbers[0]))
 
 
-def radius_at(point: np.ndarray, numbers: tuple[float, ...]) -> float:
-    """The radius [m] of the surface where that is nearest to a point (2,) in front of it: the rounding at a convex vertex, else infinite."""
+def radius_at(point: np.ndarray, within: float, numbers: tuple[float, ...]) -> float:
+    """The rounding [m] where a convex corner is as near to a point (2,) as any of the chain, or by `within` [m] less; infinite where none is."""
     sides = sides_of(numbers)
-    at = np.sum((point - sides.start) * sides.along, axis=1)
-    foot = np.clip(at, sides.low, sides.high)
-    nearest = np.linalg.norm(point - sides.start - foot[:, None] * sides.along, axis=1).argmin()
-    return numbers[1] if at[nearest] != foot[nearest] else np.inf
+    before, after = (np.roll(sides.along, 1, axis=0), sides.along) if sides.closed else (sides.along[:-1], sides.along[1:])
+    turn = np.arctan2(-_cross(before, after), np.sum(before * after, axis=1))       # clockwise: the solid is to the right
+    corners = (sides.start if sides.closed else sides.start[1:])[turn > CORNER]
+    near = np.linalg.norm(point - corners, axis=1) <= abs(gap(point[None], numbers)[0] + numbers[1]) + within
+    return numbers[1] if near.any() else np.inf
 
 
 def _sides(vertices: np.ndarray, closed: bool) -> Sides:

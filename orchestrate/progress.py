@@ -1,14 +1,14 @@
 """Progress: one line on a terminal or in a notebook: what is being done, the share of it that is done, the time left.
 
 Work in parts has one line. What its parts say of themselves, each a line of its own where it stands alone, goes into that one: those of a part in this
-process (part, each), and those of a process beside others (forward, in study.side_by_side).
+process (part, in_turn), and those of a process beside others (forward, in study.side_by_side).
 """
 
+import contextlib
 import math
 import multiprocessing
 import sys
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
 
 FORMAT = "{desc} {percentage:3.0f}% |{bar}| {elapsed}, {remaining} left"
 Tell = Callable[[float, str], None]     # the share that is done, in [0, 1], and what is being done
@@ -38,7 +38,11 @@ class Line:
                 from tqdm.auto import tqdm
             else:
                 from tqdm import tqdm
+            from tqdm.contrib import DummyTqdmFile
             tqdm.monitor_interval = 0                  # no thread beside us: studies fork
+            self.leaving = contextlib.ExitStack()
+            if sys.stdout.isatty():                    # what is printed stands above the line
+                self.leaving.enter_context(contextlib.redirect_stdout(DummyTqdmFile(sys.stdout)))
             self.bar = tqdm(total=1.0, desc=self._words(words), leave=False, bar_format=FORMAT)
 
     def __enter__(self) -> "Line":
@@ -50,6 +54,7 @@ class Line:
     def close(self) -> None:
         if self.bar is not None:
             self.bar.close()
+            self.leaving.close()
 
     def at(self, part: Hashable, share: float, words: str = "", cost: float = 1.0) -> None:
         """A part has come that far; one that was not foreseen joins the rest with its cost."""
@@ -71,7 +76,7 @@ class Line:
             from tqdm import tqdm
             tqdm.write(sentence, file=sys.stderr)
 
-    @contextmanager
+    @contextlib.contextmanager
     def part(self, part: Hashable, words: str) -> Iterator[None]:
         """What is done in here is that part: lines in it are words of this one."""
         self.at(part, 0.0, words)
@@ -83,7 +88,7 @@ class Line:
             self.at(part, 1.0, words)
 
 
-def each(name: str, items: Iterable, watched: bool | None = None) -> Iterator:
+def in_turn(name: str, items: Iterable, watched: bool | None = None) -> Iterator:
     """The items, one after another, with a line that says which of how many."""
     items = list(items)
     with Line(name, dict.fromkeys(range(len(items)), 1.0), watched) as line:

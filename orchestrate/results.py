@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame   # takes longer to load than a run: only where a table is wanted
 
 WRITTEN = ("scene.toml", "history.csv", "contacts.csv", "modes.csv", "fields.pvd", "fields/*.vtu", "fields/contact.csv")   # what is read again
-AGAIN = "run it again with --force"
+AGAIN = "delete its folder, or run it again with --force"
 
 
 @dataclass(frozen=True)
@@ -110,6 +110,16 @@ def read_table(path: Path, columns: Iterable[str] = ()) -> "DataFrame":
         table = pd.read_csv(io.StringIO(text), skip_blank_lines=False)
         if words := [name for name in table if not pd.api.types.is_numeric_dtype(table[name]) and len(table)]:
             raise ValueError(f"there is more than numbers in {', '.join(words)}")
+        if lacks := [name for name in columns if name not in table]:
+            raise ValueError(f"it lacks the columns {', '.join(lacks)}")
+        return table
+
+
+def read_frame(path: Path, columns: Iterable[str] = (), **options) -> "DataFrame":
+    """A table that a study or a sweep has written, words too."""
+    import pandas as pd
+    with reading(path):
+        table = pd.read_csv(path, **options)
         if lacks := [name for name in columns if name not in table]:
             raise ValueError(f"it lacks the columns {', '.join(lacks)}")
         return table

@@ -114,6 +114,8 @@ def _key(key: str) -> str:
 def _written(value) -> str:
     """A value as TOML writes it: text as JSON does, but DEL; times and dates as Python does."""
     if isinstance(value, str):
+        if re.search("[\ud800-\udfff]", value):             # a path of other bytes
+            raise BadInput(f"'{brief(value)}': is no text in UTF-8, in which scenes are written down (accepted: names and paths that are)")
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, list | tuple):
         return f"[{', '.join(map(_written, value))}]"

@@ -1,4 +1,4 @@
-"""What is told of the runs of a scene while they go on: which of them, what it is at; in the first seconds of a main run that will take long about how
+"""What is told of the runs of a scene while they go on: which of them, what it is at; in the first seconds of one that will take long about how
 long, and which entry makes it so."""
 
 import time
@@ -30,7 +30,7 @@ class Told:
         self.words = f"{kind} {number} of {max(number, len(line.costs))}"
         self.part = kind if kind in line.costs else self.words
         self.first: tuple[float, At] | None = None
-        self.judged = number > 1
+        self.judged = kind == "coarser run"
 
     def at(self, what: str, share: float = 0.0) -> None:
         """It is at this, and so far."""
@@ -44,7 +44,7 @@ class Told:
         seconds, share = now - self.first[0], at.share - self.first[1].share
         if self.judged or seconds < FIRST or share <= 0:
             return
-        whole = seconds / share * sum(self.line.costs.values())
+        whole = seconds / share * sum(self.line.costs.values()) / self.line.costs[self.part]
         if whole > LONG:
             self.line.say(f"{self.scene.name}: about {whole / 60:.0f} min, for some {at.steps / at.share:.0f} steps of {at.unknowns} unknowns: "
                           f"{entry(self.scene, at, self.mesh_file)}")

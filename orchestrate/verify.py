@@ -26,6 +26,7 @@ from .folder import result_folder
 from .places import COMMAND, RESULTS, ROOT, shown
 from .report.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE
 from .report.report import REFERENCE
+from .results import read_frame
 from .studies import study
 
 COLUMNS = ["case", "what", "size", "value", "expected", "error", "tolerance"]   # of verify.csv; a row with a tolerance is judged
@@ -44,7 +45,7 @@ def main(argv: list[str]) -> int:
         raise BadInput(f"--cores: {options.cores} (accepted: from 1)")
     out = result_folder(options.out)
     reused = there(out) and not options.force
-    frame = pd.read_csv(out / "verify.csv", keep_default_na=False, na_values=[""]) if reused else run_all(out, options.cores)
+    frame = read_frame(out / "verify.csv", COLUMNS, keep_default_na=False, na_values=[""]) if reused else run_all(out, options.cores)
     passed = bool(judged(frame)["pass"].all())
     print(study.table(overview(frame), FORMATS))
     for failed in judged(frame).query("not `pass`").itertuples():

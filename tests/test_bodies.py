@@ -254,8 +254,9 @@ file >> word >> n; cout << word << " " << n << endl;
 for (int k = 0; k < n; k++) {{ real[int] v(11); file >> name >> law; for (int i = 0; i < 11; i++) file >> v[i]; cout << name << " " << law << " "; for (int i = 0; i < 11; i++) cout << v[i] << " "; cout << endl; }}
 file >> word >> n; cout << word << " " << n << " ";
 for (int k = 0; k < n; k++) {{ int b; real x, y, r; file >> b >> x >> y >> r; cout << b << " " << x << " " << y << " " << r << endl; }}
+file >> word >> n; cout << word << " " << n << endl;
 file >> word >> n; cout << word << " " << n << " ";
-for (int k = 0; k < n; k++) {{ int m; file >> word >> m; real[int] v(m + 2); for (int i = 0; i < m + 2; i++) file >> v[i]; cout << word << " " << m << " "; for (int i = 0; i < m + 2; i++) cout << v[i] << " "; cout << endl; }}
+for (int k = 0; k < n; k++) {{ int m; file >> name >> word >> m; cout << name << " "; real[int] v(m + 2); for (int i = 0; i < m + 2; i++) file >> v[i]; cout << word << " " << m << " "; for (int i = 0; i < m + 2; i++) cout << v[i] << " "; cout << endl; }}
 file >> word >> n; cout << word << " " << n << endl;
 for (int k = 0; k < n; k++) {{ int a, b; real[int] v(3); file >> a >> b; for (int i = 0; i < 3; i++) file >> v[i]; cout << a << " " << b << " " << v[1] << " " << v[2] << endl; }}
 ''')
@@ -269,8 +270,8 @@ for (int k = 0; k < n; k++) {{ int a, b; real[int] v(3); file >> a >> b; for (in
     assert lines[3].split() == "disc svk 7000000 0.45 1722 0 0 0 1.5 0 0 -10 0".split()
     assert lines[4].split()[:2] == ["block", "svk"] and float(lines[4].split()[5]) == pytest.approx(built.centres[1, 0])
     assert lines[5].split() == ["circles", "1", "0", "0", "0", "0.5"]
-    assert lines[6].split() == "obstacles 1 plane 4 0 -1 0 1 0 0".split()
-    assert lines[7] == "pairs 2" and lines[8:10] == ["0 -1 0.2 0.2", "1 -1 0.2 0.2"]
+    assert lines[6] == "files 0" and lines[7].split() == "obstacles 1 floor plane 4 0 -1 0 1 0 0".split()
+    assert lines[8] == "pairs 2" and lines[9:11] == ["0 -1 0.2 0.2", "1 -1 0.2 0.2"]
 
 
 def test_open_values_follow_the_scripts_rule():
@@ -507,7 +508,7 @@ def test_obstacles_are_their_numbers_and_gaps(entries, words, points, gaps):
     """An obstacle's line in scene.dat, its velocity behind its numbers; its gap is the signed distance, negative inside."""
     far = with_body(shape="disc", radius=0.01, position=[0.5, 5] if entries["kind"] != "bowl" else [1, 0]) | {"obstacle": [entries | {"velocity": [0.5, -0.25]}]}
     scene = read(far)
-    assert f"\n{words} 0.5 -0.25\n" in assembly.assemble(scene).data
+    assert f"\nobstacle1 {words} 0.5 -0.25\n" in assembly.assemble(scene).data
     assert scene.obstacles[0].gap(np.array(points, dtype=float)) == pytest.approx(gaps)
 
 

@@ -244,7 +244,7 @@ def test_one_body_and_nothing_else(inputs, tmp_path):
     with pytest.raises(BadInput, match="^obstacle: is missing, and a second body too"):
         multibody.read(alone, tmp_path, "alone").prepare(tmp_path)
     lines = (inputs / "scene.dat").read_text().split("\n")
-    kept = [*lines[:2], "bodies 1", lines[3], "circles 0", "obstacles 0", "pairs 0", ""]
+    kept = [*lines[:2], "bodies 1", lines[3], "circles 0", "files 0", "obstacles 0", "pairs 0", ""]
     (tmp_path / "scene.dat").write_text("\n".join(kept))
     done = freefem_run("-mesh", str(inputs / "mesh.msh"), "-bodies", str(tmp_path / "scene.dat"), "-out", str(tmp_path / "out"))
     assert done.returncode == 10 and "nothing could ever touch" in done.stderr and done.stderr.count("\n") == 1, done.stderr
@@ -285,9 +285,9 @@ def inputs(tmp_path_factory):
     ("scene.dat", "neohookean 7000000.0", "neohookean -7000000.0", "left has young -7e+06"),
     ("scene.dat", " -0.06 0.0 ", " 0.0 0.0 ", "overlap by 0.0"),
     ("scene.dat", "circles 2\n0", "circles 2\n9", "circle 1 of body 9, of 0 to 1"),
-    ("scene.dat", "obstacles 0", "obstacles 1\nplane 3 0 0 1 0 0", "an obstacle 'plane' of 3 numbers (a plane has 4"),
-    ("scene.dat", "obstacles 0", "obstacles 1\nplane 4 0 0 0 0 0 0", "an obstacle 'plane' whose normal is 0"),
-    ("scene.dat", "obstacles 0", "obstacles 1\npolyline 6 0 0 1 1 1 1 0 0", "with two vertices at one place"),
+    ("scene.dat", "obstacles 0", "obstacles 1\nfloor plane 3 0 0 1 0 0", "an obstacle 'plane' of 3 numbers (a plane has 4"),
+    ("scene.dat", "obstacles 0", "obstacles 1\nfloor plane 4 0 0 0 0 0 0", "an obstacle 'plane' whose normal is 0"),
+    ("scene.dat", "obstacles 0", "obstacles 1\nwall polyline 6 0 0 1 1 1 1 0 0", "with two vertices at one place"),
     ("scene.dat", "pairs 0", "pairs 1\n0 -2 1e9 0 0", "pair 1 is of 0 and -2, not of a body, 0 to 1"),
     ("scene.dat", "pairs 0", "pairs 1\n0 1 -5 0 0", "pair 1 has penalty -5"),
     ("scene.dat", "disc 0.05", "disc 0", "the disc has radius 0"),

@@ -29,7 +29,7 @@ def main(argv: list[str]) -> int:
     if len({each.name for each in scenes}) < max(2, len(scenes)):
         raise BadInput("compare: two or more different scenes are needed")
     results, failed = {}, None
-    for each in progress.each("compare", scenes):
+    for each in progress.in_turn("compare", scenes):
         try:
             result = run(each, overrides(options.set), folder / each.name)
             results[each.name] = result
@@ -50,7 +50,8 @@ def main(argv: list[str]) -> int:
 def draw(results: dict[str, RunResult], path: Path) -> None:
     """Normal force, friction force, total energy and velocities (of each body) over time, a colour a run; friction only where there is any.
 
-    Of discs, per metre, and balls together: the acceleration of the centre of mass (figure 11) for the force, energies over that at the start.
+    Of discs, per metre, and balls together: the acceleration of the centre of mass (figure 11), of several bodies the first one's, for the force, energies over
+    that at the start.
     """
     mixed = len({per_metre(result.scene) for result in results.values()}) > 1
     rubs = any(result.history["friction_force"].any() for result in results.values())
@@ -60,8 +61,8 @@ def draw(results: dict[str, RunResult], path: Path) -> None:
         for k, ((name, result), colour) in enumerate(zip(results.items(), (BLUE, ORANGE, GREEN, PURPLE) * len(results))):
             h, used = result.history, result.scene
             t, per = 1e3 * h["t"], per_metre(used)
-            heavy, start = (_mass(h), result.summary["energy_initial"]) if mixed else (1.0, 1.0)
-            force.plot(t, 1e-3 * h["normal_force"] / heavy, color=colour,
+            heavy, start = (_mass(result), result.summary["energy_initial"]) if mixed else (1.0, 1.0)
+            force.plot(t, 1e-3 * (_push(h) if mixed else h["normal_force"]) / heavy, color=colour,
                        label=f"{name}: {_material(used)}{result.summary['dofs']} dofs{_doubts(result.summary)}")
             _contact(force, result, colour)
             drag.plot(t, 1e-3 * h["friction_force"] / heavy if rubs else h["max_penetration"] * 1e3, color=colour)
@@ -99,10 +100,18 @@ def _contact(axes: plt.Axes, result: RunResult, colour: str) -> None:
         axes.axvline(1e3 * (when[0] + seconds), color=colour, linestyle="-.", linewidth=0.9)
 
 
-def _mass(history: dict[str, np.ndarray]) -> float:
-    """Of all bodies [kg, in plane strain kg/m]."""
-    moves = int(np.argmax(np.abs(history["vy"])))
-    return float(history["momentum_y"][moves] / history["vy"][moves])
+def _push(history: dict[str, np.ndarray]) -> np.ndarray:
+    """Force on the body by its contacts: normal to the plane; of several bodies the size of all that acts on the first."""
+    on_first = [history[name] for name in ("force_x_1", "force_y_1", "force_z_1") if name in history]
+    return np.linalg.norm(on_first, axis=0) if on_first else history["normal_force"]
+
+
+def _mass(result: RunResult) -> float:
+    """Of the body, of several the first [kg, in plane strain kg/m]."""
+    if "mass_1" in result.summary:
+        return result.summary["mass_1"]
+    moves = int(np.argmax(np.abs(result.history["vy"])))
+    return float(result.history["momentum_y"][moves] / result.history["vy"][moves])
 
 
 def _material(used: dict) -> str:

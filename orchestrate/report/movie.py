@@ -64,7 +64,7 @@ def write(film: Path, result: RunResult, frames: int) -> None:
         try:
             writer.setup(stage.figure, part, DPI)
             writer.colours = stage.colours
-            for t in progress.each(film.name, np.linspace(stage.times[0], stage.times[-1], frames)):
+            for t in progress.in_turn(film.name, np.linspace(stage.times[0], stage.times[-1], frames)):
                 stage.show(t)
                 writer.grab_frame()
             writer.finish()

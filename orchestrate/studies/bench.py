@@ -15,6 +15,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 from .. import mesh, scene
 from ..folder import result_folder
 from ..places import COMMAND, RESULTS, shown
+from ..progress import in_turn
 from ..report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE
 from ..results import read_history
 from ..sweeps.sweep_figures import distance
@@ -89,7 +90,7 @@ def main(argv: list[str]) -> int:
             parser.error(f"'{name}' is not known (accepted: {', '.join(CASES)})")
     out, tables, pages = result_folder(options.out), [], []
     cases = options.cases[:1] if options.quick else options.cases
-    for name in cases:
+    for name in in_turn("bench", cases):
         rows, bars = measure(name, out, options.quick)
         draw(name, rows, bars, out / f"{name}.png")
         tables.append(rows)
@@ -206,7 +207,7 @@ def _peers(case: Case, others: list[tuple], best: pd.Series, force: tuple[np.nda
     """The same rows for the settings `others` of other programs: one with the reason for each that is not installed or failed. force_from_ours: of the
     force history against that of our run with the same sizes and step, where `folder` has it among `ours`."""
     rows = []
-    for program, form, factor, dt in others:
+    for program, form, factor, dt in in_turn("others", others):
         sizes = sized(factor)
         history = out / f"{case.scene}-{program}-{form}-{factor:g}-{dt:g}.csv"
         history.parent.mkdir(parents=True, exist_ok=True)
@@ -232,7 +233,7 @@ def _peers(case: Case, others: list[tuple], best: pd.Series, force: tuple[np.nda
 def _two_bodies(case: Case, best: pd.Series, force: tuple[np.ndarray, np.ndarray], out: Path, quick: bool) -> pd.DataFrame:
     """The same rows for NGSolve's disc on a block, a row a refinement of its own mesh; one with the reason where there is no answer."""
     rows = []
-    for refine in REFINEMENTS_QUICK if quick else REFINEMENTS:
+    for refine in in_turn("NGSolve", REFINEMENTS_QUICK if quick else REFINEMENTS):
         history = out / f"two-bodies-{refine:g}.csv"
         history.parent.mkdir(parents=True, exist_ok=True)
         found, reason = peers.two_bodies(LIMIT, refine=refine, history=str(history), **case.base)

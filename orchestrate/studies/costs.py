@@ -16,6 +16,7 @@ from .. import results, run, scene
 from ..failure import Failure
 from ..folder import result_folder
 from ..places import COMMAND, RESULTS, shown
+from ..progress import in_turn
 from ..report.figures import BLUE, GREY, ORANGE, STYLE
 from . import study
 
@@ -68,7 +69,7 @@ def bandwidth() -> float:
 def profile(out: Path, rate: float, quick: bool) -> pd.DataFrame:
     """A row a case: seconds by phase, their sum (the wall time), and a step beside its floor; rate: bytes a second."""
     rows = []
-    for name, (wanted, point) in list(CASES.items())[:2 if quick else None]:
+    for name, (wanted, point) in in_turn("costs", list(CASES.items())[:2 if quick else None]):
         result = run.run(scene.load(wanted), {"fields": 0} | point, out / "runs" / name.replace(",", "").replace(" ", "-"), force=True)
         end = result.summary
         phases = end["phase_seconds"]

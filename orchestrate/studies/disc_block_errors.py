@@ -11,6 +11,7 @@ from .. import estimate
 from ..folder import result_folder
 from ..parameters import Value, whole
 from ..places import COMMAND, RESULTS, shown
+from ..progress import in_turn
 from ..results import read_scene
 from . import peers, study
 
@@ -89,7 +90,7 @@ def answers(disc: tuple[float, float], block: tuple[float, float], vibration: tu
 def ask_peer(cases: list[study.Point]) -> tuple[pd.DataFrame, str]:
     """A row a case and refinement of NGSolve's (verification/peers/ngsolve_two_bodies.py), and why it was not run, if so."""
     rows, reason = [], "none of its cases is among these" if not cases else ""
-    for case, refine in itertools.product(cases, REFINEMENTS):
+    for case, refine in in_turn("NGSolve", itertools.product(cases, REFINEMENTS)):
         found, reason = peers.two_bodies(LIMIT, refine=refine, speed=SPEED, **case)
         if not found:
             break

@@ -6,6 +6,7 @@ same with v_s after it. Error bars: what elements and steps 1.4 times larger cha
 """
 
 import argparse
+import itertools
 import math
 from pathlib import Path
 
@@ -22,6 +23,7 @@ from .. import estimate
 from ..failure import BadInput
 from ..folder import result_folder
 from ..places import COMMAND, RESULTS, shown
+from ..progress import in_turn
 from ..report.figures import BLACK, BLUE, DASHED, GREEN, ORANGE, STYLE
 from ..results import read_scene
 from . import study
@@ -62,7 +64,8 @@ def main(argv: list[str]) -> int:
         raise BadInput(f"--friction: {options.friction} (accepted: one number, as static and dynamic coefficient are the same here)")
     bodies, kinds = words("--bodies", options.bodies, list(INERTIA)), words("--kinds", options.kinds, list(KINDS))
     out = result_folder(options.out)
-    table = judge(pd.concat([impacts(body, kind, friction[0], angles, out) for body in bodies for kind in kinds], ignore_index=True))
+    cases = in_turn("oblique-angles", itertools.product(bodies, kinds))
+    table = judge(pd.concat([impacts(body, kind, friction[0], angles, out) for body, kind in cases], ignore_index=True))
     study.save(table, out / "oblique-angles.csv")
     draw(table, out / "oblique-angles.png")
     text = report(table)

@@ -9,6 +9,7 @@ from .. import estimate
 from ..folder import result_folder
 from ..parameters import defaults
 from ..places import COMMAND, RESULTS, shown
+from ..progress import in_turn
 from ..results import read_scene
 from . import draws, study
 
@@ -62,7 +63,7 @@ def compare(out: Path, accuracy: float) -> pd.DataFrame:
     """A row a case and world: the largest difference of each answer from the paper's disc; the scatter of the nudged runs and the
     estimated error beside it; holds: equal to EQUAL, or to ten times the scatter where a nudge shows that and the estimate covers it."""
     rows = []
-    for case in CASES:
+    for case in in_turn("scaling", CASES):
         worlds = points(case, accuracy)
         runs = study.study(list(worlds.values()), out / case, {"fields": 0, "penalty": "auto"}, 900.0, estimate=True)
         if runs.exit.any():

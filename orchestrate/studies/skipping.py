@@ -8,6 +8,7 @@ import pandas as pd
 from ..failure import Failure
 from ..folder import result_folder
 from ..places import COMMAND, RESULTS, shown
+from ..progress import in_turn
 from ..results import read_history
 from . import study
 
@@ -53,7 +54,7 @@ def measure(out: Path, accuracy: float) -> pd.DataFrame:
     history = read_history(study.place(out / "0", {"fields": 0}))
     smallest = float(history["dt"][history["normal_force"] > 0].min())
     rows = [{"left out": "nothing", "instead": "", "seconds": full.cpu_seconds, "times": 1.0} | {f"{answer} %": 0.0 for answer in ANSWERS}]
-    for name, (instead, point) in SAVINGS.items():
+    for name, (instead, point) in in_turn("skipping", SAVINGS.items()):
         run = _fastest(point or {"dt": smallest}, out, base)
         rows.append({"left out": name, "instead": instead, "seconds": run.cpu_seconds, "times": run.cpu_seconds / full.cpu_seconds}
                     | {f"{answer} %": 100 * (run[answer] / full[answer] - 1) for answer in ANSWERS})

@@ -48,7 +48,7 @@ def study(points: list[Point], folder: Path, base: Point, limit: float, name: st
         freefem.find()
         (folder / "runs").mkdir(parents=True, exist_ok=True)   # here: a run takes away what it had to make if it is interrupted
     acts = {where: partial(_limited, limit, where, wanted, estimate) for where, wanted in tasks.items()}
-    for where, outcome in side_by_side(acts, cores, folder.name, len(found)):
+    for where, outcome in side_by_side(acts, cores, "/".join(folder.parts[-2:]), len(found)):
         found[where] = _row(1, str(outcome), False, {}) if isinstance(outcome, Failure) else outcome
     return pd.DataFrame([point | found[where] for where, point in zip(places, points)])
 

@@ -12,6 +12,7 @@ from ..failure import Failure
 from ..folder import result_folder
 from ..parameters import whole
 from ..places import COMMAND, RESULTS, shown
+from ..progress import in_turn
 from . import study
 
 DT = 2e-5                   # s
@@ -43,7 +44,7 @@ def main(argv: list[str]) -> int:
     options = parser.parse_args(argv)
     out = result_folder(options.out)
     runs = max(1, options.runs)
-    rows = pd.DataFrame([compare(case, out, runs) for case in (QUICK if options.quick else CASES[:1] if options.small else CASES)])
+    rows = pd.DataFrame([compare(case, out, runs) for case in in_turn("textbook", QUICK if options.quick else CASES[:1] if options.small else CASES)])
     study.save(rows, out / "textbook.csv")
     print(report(rows, runs))
     print(f"\n{shown(out)}/textbook.csv")
