@@ -19,14 +19,13 @@ from .bodies import MATERIAL, Body
 from .describe import describe
 from .dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID
 from .failure import BadInput
-from .mesh import AXIS, FREE, GROWTH, Sizes, nearest
+from .mesh import AXIS, FREE, GROWTH, ROUND, Sizes, nearest
 from .mirror import COPIES, FOLDED, copies
 from .multibody import OWN, Multibody, Pair
 from .outlines import Loop
 from .parameters import Value
 
 NEVER = 3                    # the label of what nothing reaches
-ROUND = 0.5                  # largest element size on a circle or ellipse, over its smaller semi-axis
 SAMPLED = 0.25               # a step between points at which an element size is asked for, over that size
 LIKE = ("radius", "young", "nu", "density", "speed", "angle", "spin")
 NARROW = 0.6                 # of the contact of a disc on a plane: where less of an outline is near, elements are smaller; of two equal discs it is 0.71
@@ -69,19 +68,22 @@ def assemble(scene: Multibody, rule: Rule | None = None, met: list[Meeting] | No
     scene = replace(scene, pairs=_with_small_obstacles(scene, ask))
     pairs = [pair_values(pair, ask, values) for pair in scene.pairs]
     sizes = [None if body.mesh else _sizes(k, ask) for k, body in enumerate(scene.bodies)]
-    together, regions, centres = (_solids if scene.dimension is SOLID else _sections)(scene, sizes)
+    together, regions, centres, rounds = (_solids if scene.dimension is SOLID else _sections)(scene, sizes)
     disc = ask.disc(scene.bodies, min(body.outline.half_thickness for body in scene.bodies), slides=True)
-    return Assembly(together, regions, centres, data_file(scene, disc, centres, pairs), values, used_tables(scene, sizes, values, pairs))
+    return Assembly(together, regions, centres, data_file(scene, disc, centres, rounds, pairs), values, used_tables(scene, sizes, values, pairs))
 
 
-def _sections(scene: Multibody, sizes: list[Sizes | None]) -> tuple[mesh.Mesh, np.ndarray, np.ndarray]:
-    """The mesh of bodies in the plane, the body of each triangle, the centres in it."""
+def _sections(scene: Multibody, sizes: list[Sizes | None]) -> tuple[mesh.Mesh, np.ndarray, np.ndarray, list[tuple]]:
+    """The mesh of bodies in the plane, the body of each triangle, the centres in it, the lines of circles in scene.dat (of sections those that are not
+    another's mirror image)."""
     meshes = [body.mesh or mesh_body(_boundary(scene, k), sizes[k], body.outline.half_thickness) for k, body in enumerate(scene.bodies)]
     centres = side_by_side(meshes, 1 if scene.dimension is AXISYMMETRIC else 0)
-    return *stack(meshes, centres), centres
+    circles = [(k, *(centre + at), radius) for k, (body, centre) in enumerate(zip(scene.bodies, centres)) for loop in body.outline.loops
+               for at, radius in loop.circles if scene.dimension is not AXISYMMETRIC or at[0] >= 0]
+    return *stack(meshes, centres), centres, [("circles", len(circles)), *circles]
 
 
-def _solids(scene: Multibody, sizes: list[Sizes | None]) -> tuple[solid_mesh.SolidMesh, np.ndarray, np.ndarray]:
+def _solids(scene: Multibody, sizes: list[Sizes | None]) -> tuple[solid_mesh.SolidMesh, np.ndarray, np.ndarray, list[tuple]]:
     """The same in three dimensions: bodies turned as they are at the start, one above the other; half or a quarter of them where that is enough."""
     folded = FOLDED[copies(scene)]
     meshes = [solids.mesh_of(body, one, folded) for body, one in zip(scene.bodies, sizes)]
@@ -89,7 +91,9 @@ def _solids(scene: Multibody, sizes: list[Sizes | None]) -> tuple[solid_mesh.Sol
     if count > solid_mesh.MOST_UNKNOWNS:
         raise BadInput(f"mesh_size: the bodies have {count} unknowns (accepted: up to {solid_mesh.MOST_UNKNOWNS}; larger mesh_size, contact_mesh_size or accuracy, coarser files, degree = 1)")
     centres = side_by_side(meshes, 1)
-    return *solid_mesh.stack(meshes, centres), centres
+    surfaces = [(k, *(centre + one.centre), *one.axis, one.radius) for k, (made, centre) in enumerate(zip(meshes, centres)) for one in made.curved]
+    spheres, cylinders = ([one for one in surfaces if len(one) == size] for size in (5, 8))
+    return *solid_mesh.stack(meshes, centres), centres, [("spheres", len(spheres)), *spheres, ("cylinders", len(cylinders)), *cylinders]
 
 
 # ---- what the scene leaves open
@@ -118,7 +122,7 @@ class Asker:
 
     def disc(self, bodies: list[Body], radius: float, slides: bool) -> dict[str, Value]:
         """A disc of this radius [m] and the softer body's material; straight on unless it `slides`."""
-        along, across, pressing, pulling = (max((getattr(one, name) for one in self.met), default=0.0)
+        along, across, pressing, pulling = (float(f"{max((getattr(one, name) for one in self.met), default=0.0):.6g}")    # no round-off: a mesh follows every digit
                                             for name in ("closing", "sliding", "pressing", "pulling"))
         soft = min(bodies, key=lambda body: body.young)
         asked = {name: self.scene.values[name] for name in ("accuracy", "accuracy_of", "end_time")}
@@ -150,7 +154,8 @@ def pair_values(pair: Pair, ask: Asker, values: dict[str, Value]) -> dict[str, V
     """All that a pair may have of its own: what it does not say is as settled for the scene, and open again where it depends on what
     the pair says."""
     bodies = [ask.scene.bodies[k] for k in (pair.first, pair.second) if k >= 0]
-    inherited = {name: values[name] for name in ask.scene.contact} | {"friction_dynamic": ask.scene.contact["friction_dynamic"]}
+    alone = "friction_static" in pair.values                    # sets both
+    inherited = {name: values[name] for name in ask.scene.contact} | {"friction_dynamic": "auto" if alone else ask.scene.contact["friction_dynamic"]}
     small = ask.small(pair.first, pair.second)
     if 0 < small < math.inf:
         inherited["penalty"] = ask.scene.contact["penalty"]
@@ -359,12 +364,13 @@ def write_mesh(together: mesh.Mesh, regions: np.ndarray, path: Path) -> None:
 
 # ---- scene.dat
 
-def data_file(scene: Multibody, disc: dict[str, Value], centres: np.ndarray, pairs: list[dict[str, Value]]) -> str:
+def data_file(scene: Multibody, disc: dict[str, Value], centres: np.ndarray, rounds: list[tuple], pairs: list[dict[str, Value]]) -> str:
     """The text of scene.dat, words and numbers (SI, radians):
         ffimpact-bodies 1
         disc radius young nu density speed angle spin                                                   that the rules stand for
         bodies N       name law young nu density  centreX centreY  placeX placeY angle  vx vy spin     a line a body
         circles C      body x y radius                                                                  in the mesh
+        files F        body                                                                             whose mesh is that of a file
         obstacles M    name kind count p1 ... pcount vx vy
         pairs K        a b penalty friction_static friction_dynamic                                     a, b: body, or -1 - obstacle
     centre: of the area in the mesh; place: where it is at the start; the angle of the disc in degrees. In three dimensions
@@ -372,27 +378,22 @@ def data_file(scene: Multibody, disc: dict[str, Value], centres: np.ndarray, pai
         copies 1, 2 or 4                                                                                how often the mesh makes the whole bodies
         bodies N       name law young nu density  centreX Y Z  shiftX Y Z  vx vy vz  spinX Y Z         shift: from the mesh to the start
         spheres C      body x y z radius
-    and the rest alike."""
-    surfaces = [(k, *(centre + at), radius) for k, (body, centre) in enumerate(zip(scene.bodies, centres)) for at, radius in _round(scene, body)]
+        cylinders C    body x y z axisX Y Z radius
+    and the rest alike. `rounds` are the lines of circles, or of spheres and cylinders."""
     if scene.dimension is SOLID:
-        head, round_ones = [("ffimpact-bodies-3d", 1), ("copies", copies(scene))], "spheres"
+        head = [("ffimpact-bodies-3d", 1), ("copies", copies(scene))]
         starts = [(*(body.position - centre), *body.velocity, *body.spin) for body, centre in zip(scene.bodies, centres)]
     else:
-        head, round_ones = [("ffimpact-bodies", 1)], "circles"
+        head = [("ffimpact-bodies", 1)]
         starts = [(*body.position, body.angle, *body.velocity, body.spin) for body in scene.bodies]
     lines = [*head, ("disc", *(float(disc[name]) for name in LIKE)), ("bodies", len(scene.bodies))]
     lines += [(body.name, body.law, body.young, body.nu, body.density, *centre, *start) for body, centre, start in zip(scene.bodies, centres, starts)]
-    lines += [(round_ones, len(surfaces)), *surfaces, ("obstacles", len(scene.obstacles))]
+    lines += rounds
+    lines += [("files", len(files := [k for k, given in enumerate(scene.given["body"]) if "file" in given])), *((k,) for k in files)]
+    lines += [("obstacles", len(scene.obstacles))]
     lines += [(one.name, "circle" if one.kind == "sphere" and scene.dimension is not SOLID else one.kind, len(one.numbers), *one.numbers, *one.velocity) for one in scene.obstacles]
     lines += [("pairs", len(pairs)), *((pair.first, pair.second, *own.values()) for pair, own in zip(scene.pairs, pairs))]
     return "".join(" ".join(map(_token, line)) + "\n" for line in lines)
-
-
-def _round(scene: Multibody, body: Body) -> list[tuple[np.ndarray, float]]:
-    """Centres and radii of the circles of an outline (of a section those that are not another's mirror image), or of a ball."""
-    if scene.dimension is SOLID:
-        return [(np.zeros(3), body.outline.radius)] if body.outline.radius else []
-    return [(loop.centre, loop.radius) for loop in body.outline.loops if loop.radius and (scene.dimension is not AXISYMMETRIC or loop.centre[0] >= 0)]
 
 
 def _token(value) -> str:

@@ -62,7 +62,7 @@ def numbers(vertices: np.ndarray, closed: bool, rounding: float) -> tuple[float,
 
 def gap(points: np.ndarray, numbers: tuple[float, ...]) -> np.ndarray:
     """Signed distances (n,) of points (n, 2) from the surface of the chain `numbers`, negative inside the solid."""
-    sides = _sides(np.reshape(numbers[2:], (-1, 2)), bool(numbers[0]))
+    sides = sides_of(numbers)
     from_start = points[:, None] - sides.start                                       # (n, m, 2)
     at = np.sum(from_start * sides.along, axis=2)
     away = from_start - np.clip(at, sides.low, sides.high)[..., None] * sides.along  # from the nearest point of each side
@@ -77,9 +77,14 @@ def gap(points: np.ndarray, numbers: tuple[float, ...]) -> np.ndarray:
     return np.where(side < 0, -1, 1) * distance[row, nearest] - numbers[1]
 
 
+def sides_of(numbers: tuple[float, ...]) -> Sides:
+    """Those of the chain `numbers`."""
+    return _sides(np.reshape(numbers[2:], (-1, 2)), bool(numbers[0]))
+
+
 def radius_at(point: np.ndarray, within: float, numbers: tuple[float, ...]) -> float:
     """The rounding [m] where a convex corner is as near to a point (2,) as any of the chain, or by `within` [m] less; infinite where none is."""
-    sides = _sides(np.reshape(numbers[2:], (-1, 2)), bool(numbers[0]))
+    sides = sides_of(numbers)
     before, after = (np.roll(sides.along, 1, axis=0), sides.along) if sides.closed else (sides.along[:-1], sides.along[1:])
     turn = np.arctan2(-_cross(before, after), np.sum(before * after, axis=1))       # clockwise: the solid is to the right
     corners = (sides.start if sides.closed else sides.start[1:])[turn > CORNER]

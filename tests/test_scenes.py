@@ -244,7 +244,7 @@ def test_one_body_and_nothing_else(inputs, tmp_path):
     with pytest.raises(BadInput, match="^obstacle: is missing, and a second body too"):
         multibody.read(alone, tmp_path, "alone").prepare(tmp_path)
     lines = (inputs / "scene.dat").read_text().split("\n")
-    kept = [*lines[:2], "bodies 1", lines[3], "circles 0", "obstacles 0", "pairs 0", ""]
+    kept = [*lines[:2], "bodies 1", lines[3], "circles 0", "files 0", "obstacles 0", "pairs 0", ""]
     (tmp_path / "scene.dat").write_text("\n".join(kept))
     done = freefem_run("-mesh", str(inputs / "mesh.msh"), "-bodies", str(tmp_path / "scene.dat"), "-out", str(tmp_path / "out"))
     assert done.returncode == 10 and "nothing could ever touch" in done.stderr and done.stderr.count("\n") == 1, done.stderr
@@ -346,3 +346,52 @@ def test_scripts_describe_themselves():
     """The scripts that there are, and of two bodies the columns of each."""
     assert describe()["scripts"] == "disc-plane|disc-block|ball-axisymmetric|ball-plane|bodies|bodies-axisymmetric|bodies-3d" and describe(script="disc-block")["bodies"] == 2
     assert set(multibody.built_in()) == {"two-discs", "three-in-a-row", "disc-bowl", "disc-corner", "disc-step", "two-balls", "ball-cylinder", "ball-block", "balls-3d"} < set(scene.built_in())
+
+
+# ---- what is set is what runs
+
+@pytest.mark.parametrize("name, given, opened, kept", [
+    ("disc-oblique", {"friction_static": "0.3"}, {"friction_dynamic": 0.3}, {"penalty": 1e10, "slip_velocity": 0.1}),
+    ("disc-oblique", {"friction_static": 0.8}, {"friction_dynamic": 0.8}, {"penalty": 1e10}),
+    ("disc-oblique", {"friction_static": 0.8, "friction_dynamic": 0.6}, {"friction_dynamic": 0.6}, {}),
+    ("disc-oblique", {"speed": 4, "nu": 0.3, "law": "svk", "accuracy": 0.1}, {}, {"penalty": 1e10, "friction_dynamic": 0.5, "slip_velocity": 0.1}),
+    ("disc-normal", {"young": 5e6, "density": 1100}, {"penalty": "auto"}, {}), ("disc-normal", {"exponent": 1.5}, {"penalty": "auto"}, {}),
+    ("disc-normal", {"young": 5e6, "penalty": 3e9}, {"penalty": 3e9}, {}), ("ball", {"young": 5e6}, {"penalty": "auto"}, {}),
+    ("disc-rolling", {"radius": 0.5}, {"mesh_size": "open", "contact_mesh_size": "open", "penalty": "auto"}, {"end_time": 0.2}),
+    ("disc-block", {"radius": 0.1}, {"block_width": 2.0, "block_height": 0.4}, {})])
+def test_what_a_scene_fixed_for_its_own_follows(name, given, opened, kept):
+    """What a built-in scene fixes for its material, size or static friction is open again where that is set alone, and a sentence says so; all else stays."""
+    before = scene.load(name)
+    after = before.override(given)
+    used, alone = after.description()["used"], before.override(dict.fromkeys(set(opened) - set(given), "auto") | given
+                                                               if "open" not in opened.values() else {"mesh_size": 0, "contact_mesh_size": 0, "penalty": "auto"} | given)
+    assert all(used[entry] == alone.description()["used"][entry] for entry in opened)
+    assert all(used[entry] == value for entry, value in opened.items() if not isinstance(value, str))
+    assert all(used[entry] == value == before.description()["used"][entry] for entry, value in kept.items())
+    freed = set(opened) - set(given)
+    assert len(after.released) == len(freed) and all(any(said.startswith(f"{entry} is open again") for said in after.released) for entry in freed)
+
+
+def test_what_a_scene_of_bodies_fixed_follows():
+    """The same of dotted names: coefficients in their table, sizes in their body, the penalty of any material; a pair's friction_static alone sets both, too."""
+    bowl = scene.load("disc-bowl")
+    after = bowl.override({"contact.friction_static": "0.3"})
+    assert after.contact["friction_dynamic"] == "auto" and after.released == ("contact.friction_dynamic is open again: the scene's 0.4 was for its own contact.friction_static",)
+    stiff = bowl.override({"contact.penalty": 1e9, "dt": 1e-4})
+    assert not stiff.released and stiff.override({"body.1.velocity": [0, -1], "gravity": 1}).contact["penalty"] == 1e9
+    for name, value in (("body.1.young", 1e6), ("young", 1e6), ("contact.exponent", 1.5)):
+        assert stiff.override({name: value}).contact["penalty"] == "auto"
+    assert (stiff.override({"young": 1e6}).values["dt"], stiff.override({"contact.exponent": 2}).values["dt"]) == (0, 1e-4)
+    larger = bowl.override({"body.1.radius": 0.04})
+    assert larger.bodies[0].mesh_size == larger.bodies[0].contact_mesh_size == 0 and len(larger.released) == 2
+    assert bowl.override({"body.1.radius": 0.04, "body.1.mesh_size": 0.01, "body.1.contact_mesh_size": 0.01}).released == ()
+    own = multibody.read(bowl.given | {"obstacle": [bowl.given["obstacle"][0] | {"friction_static": 0.2}]}, bowl.folder, "bowl")
+    assert assembly.assemble(own).used["contact"]["pair"][0]["friction_dynamic"] == 0.2
+
+
+def test_a_sweep_over_friction_sets_both(tmp_path):
+    """Every point of an axis friction_static is of one coefficient where the dynamic one is not set; with it set, of two."""
+    for more, wanted in (("", [0.7, 0.3]), ("[set]\nfriction_dynamic = 0.2\n", [0.2, 0.2])):
+        (tmp_path / "friction.toml").write_text(f'scene = "disc-oblique"\n{more}[product]\nfriction_static = [0.7, 0.3]\n')
+        found = sweep.load(str(tmp_path / "friction.toml"))
+        assert [scene.load(found.scene).override(found.base | point).description()["used"]["friction_dynamic"] for point in found.points] == wanted
