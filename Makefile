@@ -2,13 +2,14 @@
 # ARGS is handed on:  make disc-normal ARGS="--set speed=4 --out results/slow"
 PYTHON := .venv/bin/python
 READY := .venv/.ready
+SWEEPS := oblique friction-jump friction-steps slip-limit contact-time-svk law-comparison contact-time-neohookean pairing calibrate calibrate-oblique calibrate-ball calibrate-ball-3d conservation
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws oblique friction-jump contact-time-svk law-comparison contact-time-neohookean calibrate calibrate-ball conservation stick-slip verify paper movie pictures test robustness bench bench-quick textbook skipping costs promise scaling materials disc-block-errors pairing-comparison oblique-angles refine refine-oblique clean
+.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws $(SWEEPS) stick-slip verify paper movie pictures test robustness bench bench-quick textbook skipping costs promise scaling materials disc-block-errors pairing-comparison oblique-angles refine refine-oblique clean
 
 help: ## list the targets
-	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
+	@sed -n 's/^\([a-z0-9-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
 
 setup: $(READY) ## install what is missing: FreeFem++, system libraries, .venv with the packages of requirements.lock
 $(READY): requirements.lock orchestrate/setup.sh orchestrate/probe.edp
@@ -42,16 +43,20 @@ disc-block: $(READY) ## a disc falls on a free block of the same material: with 
 friction-laws: $(READY) ## draw the friction laws (figure 3)
 	@$(PYTHON) -m orchestrate $@ $(ARGS)
 
-SWEEPS := oblique friction-jump contact-time-svk law-comparison contact-time-neohookean calibrate calibrate-ball conservation
 $(SWEEPS): $(READY)
 	@$(PYTHON) -m orchestrate sweep $@ $(ARGS)
 oblique: ## the oblique impact over nu, with error bars (section 3.1)
 friction-jump: ## the oblique impact with both laws, and with equal friction coefficients as its control (figures 5, 6a)
+friction-steps: ## the friction force with two steps: whether the acceleration jumps (figure 5b)
+slip-limit: ## the oblique impact as epsilon goes to 0 (equation 12)
 contact-time-svk: ## sweep the speed with St. Venant-Kirchhoff (figure 6b)
 law-comparison: ## the force histories of both laws at 1 and 10 m/s (figure 7)
 contact-time-neohookean: ## sweep the speed with the neo-Hookean law (figure 8)
+pairing: ## closest points (9) beside pairs of points (14), (15)
 calibrate: ## for which nu and k the paper's 0.0048 s at 8 m/s is met
+calibrate-oblique: ## for which nu, k and coarse mesh the paper's 0.0045 s of the oblique disc is met
 calibrate-ball: ## for which nu, k and coarse mesh the paper's 0.00603 s of the ball is met
+calibrate-ball-3d: ## the same in three dimensions
 conservation: ## the energy's drift over the step, with BDF2 and energy-momentum
 
 stick-slip: $(READY) ## search for the paper's order of sliding and sticking over epsilon, k and nu
@@ -60,7 +65,7 @@ stick-slip: $(READY) ## search for the paper's order of sliding and sticking ove
 verify: $(READY) ## exact solutions with convergence: bar, rod, Hertz, rigid bodies, friction, manufactured motions
 	@$(PYTHON) -m orchestrate $@ $(ARGS)
 
-PAPER := disc-normal disc-oblique disc-rolling disc-block ball-axisymmetric friction-laws $(SWEEPS) stick-slip verify ball-comparison
+PAPER := disc-normal disc-oblique disc-rolling disc-block ball-axisymmetric ball friction-laws $(SWEEPS) stick-slip verify ball-comparison
 paper: $(READY) ## all of the above, and results/paper/report.html
 	@$(PYTHON) -m orchestrate $@ --make $(PAPER)
 
@@ -95,7 +100,7 @@ bench-quick: $(READY) ## the same for one case, coarse
 textbook: ## seconds a step beside a plain textbook script
 skipping: ## what each saving saves, and that it does not change the answer
 costs: ## where the time goes, its floor, and how it grows with the mesh
-promise: ## whether accuracy means what it says, over forty scenes drawn at random
+promise: ## whether accuracy means what it says, and stated errors hold, over sixty scenes drawn at random
 scaling: ## one impact in many units and materials has one dimensionless answer
 materials: ## twelve materials at three speeds, against a stiffer contact on a finer mesh
 disc-block-errors: ## the disc on the free block (section 3.2) over law, nu, stiffness and mesh, with error bars; NGSolve beside it

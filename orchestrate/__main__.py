@@ -15,8 +15,8 @@ from .places import COMMAND, from_source, shown
 PACKAGES = {"sweeps": ("sweep",), "report": ("friction-laws", "compare", "movie", "paper"),
             "studies": ("stick-slip", "oblique-angles", "stress", "stress-map", "bench", "textbook", "skipping", "costs", "promise", "refine", "scaling", "materials",
                         "pairing-comparison", "disc-block-errors")}
-FROM_SOURCE = ("verify", "paper", "bench", "textbook", "oblique-angles")   # these need verification/
-OWN_MAIN = {"verify": "verify"} | {name: f"{package}.{name.replace('-', '_')}" for package, names in PACKAGES.items() for name in names}
+FROM_SOURCE = ("verify", "pages", "paper", "bench", "textbook", "oblique-angles")   # these need the source folder
+OWN_MAIN = {"verify": "verify", "pages": "pages"} | {name: f"{package}.{name.replace('-', '_')}" for package, names in PACKAGES.items() for name in names}
 
 
 def main(argv: list[str]) -> int:

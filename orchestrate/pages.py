@@ -90,7 +90,7 @@ def warnings() -> str:
 
 def _literal(expression: str) -> str:
     """The string literals of an expression of FreeFEM's, what stands between them as an ellipsis."""
-    parts = re.split(r'"((?:[^"\\]|\\.)*)"', expression)
+    parts = re.split(r'"((?:[^"\\]|\\.)*)"', expression.replace("string(", "("))
     text = "".join(part if k % 2 else ("…" if part.strip(" +()\n") else "") for k, part in enumerate(parts))
     return re.sub(r"(…\s*)+", "… ", text).replace("… )", "…)").replace("… :", "…:").replace("… ,", "…,").strip()
 

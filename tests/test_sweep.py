@@ -117,7 +117,7 @@ def test_bad_files_are_one_line(tmp_path, text, words):
 def test_unknown_sweep_and_run():
     """Exit code 10, one line, what there is."""
     code, _, err = call("sweep", "nothing")
-    assert code == 10 and "built in: calibrate, calibrate-ball, conservation, contact-time-neohookean" in err and err.count("\n") == 1
+    assert code == 10 and "built in: calibrate, calibrate-ball, calibrate-ball-3d, calibrate-oblique, conservation, contact-time-neohookean" in err and err.count("\n") == 1
     code, _, err = call("sweep", "law-comparison", "--run", "speed=3")
     assert code == 10 and "--run: 'speed=3' is no run of law-comparison (accepted: see --list)" in err
 
@@ -388,9 +388,9 @@ def test_words_as_axes(fake, tmp_path, capsys):
     assert "| neohookean |" in capsys.readouterr().out and (tmp_path / "out/sweep.png").exists()
 
 
-def test_the_sweep_of_the_readme_is_sound(tmp_path):
-    """What the README shows is accepted as it stands."""
-    text = (parameters.ROOT / "README.md").read_text()
+def test_the_sweep_of_the_docs_is_sound(tmp_path):
+    """What docs/sweeps.md shows is accepted as it stands."""
+    text = (parameters.ROOT / "docs/sweeps.md").read_text()
     example = re.search(r"```\n(scene = \"disc-normal\".*?)```", text, re.S)[1]
     wanted = sweep.load(str(write(tmp_path, example)))
     assert len(wanted.points) == 32 and wanted.refine and wanted.figure

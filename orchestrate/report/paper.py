@@ -14,12 +14,12 @@ from ..folder import result_folder
 from ..places import COMMAND, RESULTS, ROOT, shown
 from ..studies import stick_slip, study
 from ..sweeps import sweep
-from . import paper_judging as judging, paper_friction, paper_impacts, paper_making, paper_bodies   # noqa: F401: these register the statements, in this order
+from . import paper_judging as judging, paper_limits, paper_friction, paper_impacts, paper_making, paper_pairs, paper_bodies, paper_times   # noqa: F401: these register the statements, in this order
 from .paper_page import COLOURS, page, verification
 
 RUNS = {"disc-normal": ("force",), "disc-normal-neohookean": (), "disc-oblique": ("flight", "force", "energies"), "disc-oblique-svk": ("flight", "force", "rolling", "energies"),
         "disc-rolling": ("rolling",), "disc-block": ("velocity", "shapes", "energies"), "disc-block-neohookean": ("velocity",),
-        "ball-axisymmetric": (), "ball-axisymmetric-svk": ("energies", "force")}   # and the pictures of them on the page
+        "ball": ("shapes", "force"), "ball-axisymmetric": (), "ball-axisymmetric-svk": ("energies", "force")}   # and the pictures of them on the page
 TARGETS = {"disc-oblique-svk": "disc-oblique", "disc-block-neohookean": "disc-block", "ball-axisymmetric-svk": "ball-axisymmetric",
            "disc-normal-neohookean": "ball-comparison"}   # the make target of a case, where it is not its own name
 

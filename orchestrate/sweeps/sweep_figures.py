@@ -1,7 +1,7 @@
 """The figure of a sweep, and what it shows in words. [figure] of a sweep file is one of
 
     kind = "lines"      x, y (one name or several), by: y over x, a line for each value of `by`, with error bars (default)
-    kind = "map"        x, y, colour, by: a panel for each value of `by`; level, band: where colour = level +- band
+    kind = "map"        x, y, colour, by, panel: a column of maps for each value of `by`, a row for each of `panel`; level, band: where colour = level +- band
     kind = "histories"  y (a column of history.csv), panel, by: y over time, a panel a value of `panel`, a line a value of `by`
 
 x, y of a map, by and panel are parameters that vary and together tell all points apart; the y of lines and colour are numbers
@@ -26,7 +26,7 @@ from ..report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, SMA
 from ..results import read_history
 from ..studies import study
 
-KINDS = {"lines": ("x", "y", "by"), "map": ("x", "y", "colour", "by", "level", "band"), "histories": ("y", "panel", "by")}
+KINDS = {"lines": ("x", "y", "by"), "map": ("x", "y", "colour", "by", "panel", "level", "band"), "histories": ("y", "panel", "by")}
 WORDS = {"nu": "ν", "penalty": "k"}
 SPAN = 1e3       # of the values over an axis from which it is logarithmic
 COLOURS, MARKERS = (BLUE, ORANGE, GREEN, PURPLE, GREY), "osd^v"
@@ -117,7 +117,8 @@ def findings(sweep, rows: pd.DataFrame, out: Path) -> list[str]:
         return [trend(group, sweep.figure["x"], y, words, sweep.figure["per"]) for y in sweep.figure["y"]
                 for words, group in _groups(sweep, rows, "by")]
     if kind == "map":
-        return [line for words, group in _groups(sweep, rows, "by") for line in _set(sweep.figure, words, group)]
+        return [line for panel, part in _groups(sweep, rows, "panel") for words, group in _groups(sweep, part, "by")
+                for line in _set(sweep.figure, ", ".join(filter(None, (panel, words))), group)]
     return [f"{panel}: ".removeprefix(": ") + f"relative L2 difference of {y.replace('_', ' ')}, {a} and {b}: {100 * value:.1f} %"
             + (f" (mesh and step change {100 * bar:.1f} %)" if sweep.refine else "")
             for panel, y, a, b, value, bar in distances(sweep, rows, out)]
@@ -295,11 +296,11 @@ def trend(group: pd.DataFrame, x: str, y: str, words: str, per: str = "/m") -> s
 def _map(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
     wanted = sweep.figure
     x, y, colour = (wanted[key] for key in ("x", "y", "colour"))
-    groups = list(_groups(sweep, rows, "by"))
-    figure, grid = plt.subplots(1, len(groups), figsize=(1.2 + 3.4 * len(groups), 3.6), sharey=True, squeeze=False)
+    parts = [(panel, list(_groups(sweep, part, "by"))) for panel, part in _groups(sweep, rows, "panel")]
+    figure, grid = plt.subplots(len(parts), len(parts[0][1]), figsize=(1.2 + 3.4 * len(parts[0][1]), 0.8 + 2.8 * len(parts)), sharex=True, sharey=True, squeeze=False)
     values = _factor(colour) * rows[colour]
     low, high = values.min(), values.max()
-    for axes, (words, group) in zip(grid[0], groups):
+    for axes, (words, group) in zip(grid.flat, [(", ".join(filter(None, (panel, words))), group) for panel, groups in parts for words, group in groups]):
         table = group.pivot(index=y, columns=x, values=colour) * _factor(colour)
         cells = np.where(group.pivot(index=y, columns=x, values="exit") == 0, table, np.nan)   # evenly spaced, whatever the values
         picture = axes.imshow(cells, origin="lower", aspect="auto", cmap="viridis", vmin=low, vmax=high)
@@ -315,9 +316,12 @@ def _map(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
                 axes.contour(cells, levels=[level - band, level + band], colors=[ORANGE], linewidths=1, linestyles="--")
         axes.set_xticks(range(len(table.columns)), [f"{value:g}" for value in table.columns])
         axes.set_yticks(range(len(table.index)), [_tick(value) for value in table.index])
-        axes.set(title=words, xlabel=label(x))
+        axes.set_title(words)
         axes.spines[:].set_visible(False)
-    grid[0, 0].set_ylabel(label(y))
+    for axes in grid[-1]:
+        axes.set_xlabel(label(x))
+    for axes in grid[:, 0]:
+        axes.set_ylabel(label(y))
     figure.colorbar(picture, ax=grid, label=label(colour, wanted["per"]))
     return figure
 
