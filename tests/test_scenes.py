@@ -425,3 +425,16 @@ def test_a_sweep_over_friction_sets_both(tmp_path):
         (tmp_path / "friction.toml").write_text(f'scene = "disc-oblique"\n{more}[product]\nfriction_static = [0.7, 0.3]\n')
         found = sweep.load(str(tmp_path / "friction.toml"))
         assert [scene.load(found.scene).override(found.base | point).description()["used"]["friction_dynamic"] for point in found.points] == wanted
+
+
+def test_nonsense_that_is_set_is_refused_in_words():
+    """Whatever stands in the place of a table or an entry, beside entries that others follow: accepted, or BadInput; nothing else."""
+    bowl, refused = scene.load("disc-bowl"), 0
+    for name in ("body", "body.1", "obstacle", "obstacle.1", "contact", "contact.pair", "body.1.radius", "contact.penalty", "dt", "contact.friction_dynamic"):
+        for text in ("3", "x", "[3]", "[]", "{}", "[{}]", "{pair = 3}", "{pair = [3]}", "{penalty = {a = 1}}", "true", "1979-05-27", "[[[1]]]", "nan"):
+            try:
+                bowl.override({name: text, "young": 3e6, "contact.exponent" if name != "contact" else "gravity": 2, "contact.friction_static" if name != "contact" else "density": 0.1})
+            except BadInput as error:
+                refused += 1
+                assert len(str(error)) < 800
+    assert refused > 100
