@@ -2,16 +2,17 @@
 # ARGS is handed on:  make disc-normal ARGS="--set speed=4 --out results/slow"
 PYTHON := .venv/bin/python
 READY := .venv/.ready
+SWEEPS := oblique friction-jump friction-steps slip-limit contact-time-svk law-comparison contact-time-neohookean pairing calibrate calibrate-oblique calibrate-ball calibrate-ball-3d conservation
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws oblique friction-jump contact-time-svk law-comparison contact-time-neohookean calibrate calibrate-ball conservation stick-slip verify paper movie pictures test robustness bench bench-quick textbook skipping costs promise scaling materials disc-block-errors pairing-comparison oblique-angles refine refine-oblique clean
+.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws $(SWEEPS) stick-slip verify paper movie pictures test robustness bench bench-quick textbook skipping costs promise scaling materials disc-block-errors pairing-comparison oblique-angles refine refine-oblique clean
 
 help: ## list the targets
-	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
+	@sed -n 's/^\([a-z0-9-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
 
-setup: $(READY) ## install what is missing: FreeFem++, system libraries, .venv with the pinned packages
-$(READY): pyproject.toml orchestrate/setup.sh orchestrate/probe.edp
+setup: $(READY) ## install what is missing: FreeFem++, system libraries, .venv with the packages of requirements.lock
+$(READY): requirements.lock orchestrate/setup.sh orchestrate/probe.edp
 	@orchestrate/setup.sh
 	@touch $@
 
@@ -42,16 +43,20 @@ disc-block: $(READY) ## a disc falls on a free block of the same material: with 
 friction-laws: $(READY) ## draw the friction laws (figure 3)
 	@$(PYTHON) -m orchestrate $@ $(ARGS)
 
-SWEEPS := oblique friction-jump contact-time-svk law-comparison contact-time-neohookean calibrate calibrate-ball conservation
 $(SWEEPS): $(READY)
 	@$(PYTHON) -m orchestrate sweep $@ $(ARGS)
 oblique: ## the oblique impact over nu, with error bars (section 3.1)
 friction-jump: ## the oblique impact with both laws, and with equal friction coefficients as its control (figures 5, 6a)
+friction-steps: ## the friction force with two steps: whether the acceleration jumps (figure 5b)
+slip-limit: ## the oblique impact as epsilon goes to 0 (equation 12)
 contact-time-svk: ## sweep the speed with St. Venant-Kirchhoff (figure 6b)
 law-comparison: ## the force histories of both laws at 1 and 10 m/s (figure 7)
 contact-time-neohookean: ## sweep the speed with the neo-Hookean law (figure 8)
+pairing: ## closest points (9) beside pairs of points (14), (15)
 calibrate: ## for which nu and k the paper's 0.0048 s at 8 m/s is met
+calibrate-oblique: ## for which nu, k and coarse mesh the paper's 0.0045 s of the oblique disc is met
 calibrate-ball: ## for which nu, k and coarse mesh the paper's 0.00603 s of the ball is met
+calibrate-ball-3d: ## the same in three dimensions
 conservation: ## the energy's drift over the step, with BDF2 and energy-momentum
 
 stick-slip: $(READY) ## search for the paper's order of sliding and sticking over epsilon, k and nu
@@ -60,10 +65,9 @@ stick-slip: $(READY) ## search for the paper's order of sliding and sticking ove
 verify: $(READY) ## exact solutions with convergence: bar, rod, Hertz, rigid bodies, friction, manufactured motions
 	@$(PYTHON) -m orchestrate $@ $(ARGS)
 
-paper: override ARGS :=
-paper: disc-normal disc-oblique disc-rolling disc-block ball-axisymmetric friction-laws $(SWEEPS) stick-slip verify ## all of the above, and results/paper/report.html
-	@$(PYTHON) -m orchestrate compare disc-normal disc-normal-neohookean ball-axisymmetric-svk ball-axisymmetric
-	@$(PYTHON) -m orchestrate $@
+PAPER := disc-normal disc-oblique disc-rolling disc-block ball-axisymmetric ball friction-laws $(SWEEPS) stick-slip verify ball-comparison
+paper: $(READY) ## all of the above, and results/paper/report.html
+	@$(PYTHON) -m orchestrate $@ --make $(PAPER)
 
 movie: CASE := disc-oblique
 movie: $(READY) ## a film of a scene, built in or a file: make movie CASE=disc-oblique
@@ -78,7 +82,7 @@ test: $(READY) ## run all tests: the program's, and beside them on the other cor
 	$(PYTHON) -m pytest -q tests $(ARGS); code=$$?; wait $$beside || code=$$?; cat $$log; exit $$code
 
 robustness: $(READY) ## malformed input, kills, hard runs drawn at random, and every combination of hard parameters: nothing is silently wrong, lost or left behind
-	@$(PYTHON) -m pytest -q -m "robustness or not robustness" tests/test_malformed.py tests/test_direct.py tests/test_kills.py
+	@$(PYTHON) -m pytest -q -m "robustness or not robustness" tests/test_malformed.py tests/test_direct.py tests/test_kills.py tests/test_damaged.py tests/test_package.py
 	@$(PYTHON) -m orchestrate promise --hard --scenes 200 --seed 201 --out results/robustness --page docs/robustness.md $(ARGS)
 	@$(PYTHON) -m orchestrate promise --hard --of disc-block --scenes 20 --seed 202 --out results/robustness-block --page docs/robustness-block.md $(ARGS)
 	@$(PYTHON) -m orchestrate promise --hard --of ball-axisymmetric --scenes 20 --seed 203 --out results/robustness-ball --page docs/robustness-ball.md $(ARGS)

@@ -1,25 +1,30 @@
-"""Command line: python -m orchestrate COMMAND; the commands are listed by --help."""
+"""Command line: ffimpact COMMAND, in the source folder python -m orchestrate COMMAND; the commands are listed by --help."""
 
 import argparse
 import importlib
+import locale
 import os
 import sys
 from pathlib import Path
 
-from . import stopping
-from .failure import BadInput, Failure, Unreadable
+from . import __version__, stopping
+from .failure import BadInput, Failure, Unreadable, brief
+from .places import COMMAND, from_source, shown
 
 # the commands with a module of their own, which has a main(argv), by its package
 PACKAGES = {"sweeps": ("sweep",), "report": ("friction-laws", "compare", "movie", "paper"),
             "studies": ("stick-slip", "oblique-angles", "stress", "stress-map", "bench", "textbook", "skipping", "costs", "promise", "refine", "scaling", "materials",
                         "pairing-comparison", "disc-block-errors")}
-OWN_MAIN = {"verify": "verify"} | {name: f"{package}.{name.replace('-', '_')}" for package, names in PACKAGES.items() for name in names}
+FROM_SOURCE = ("verify", "pages", "paper", "bench", "textbook", "oblique-angles")   # these need the source folder
+OWN_MAIN = {"verify": "verify", "pages": "pages"} | {name: f"{package}.{name.replace('-', '_')}" for package, names in PACKAGES.items() for name in names}
 
 
 def main(argv: list[str]) -> int:
     """The exit code of the command; see the table in the run contract."""
     argparse.ArgumentParser.error = _bad_usage   # one line and exit code 10 as for any bad input
     try:
+        if argv[:1] and argv[0] in FROM_SOURCE:
+            from_source(argv)
         if argv[:1] and argv[0] in OWN_MAIN:
             return importlib.import_module(f"{__package__}.{OWN_MAIN[argv[0]]}").main(argv[1:]) or 0
         options = _parser().parse_args(argv)
@@ -28,7 +33,6 @@ def main(argv: list[str]) -> int:
     except Failure as failure:
         print(f"ffimpact: {failure}", file=sys.stderr)
         if failure.folder:
-            from .places import shown
             print(f"files of the failed run: {shown(failure.folder)}")
         return failure.code
     except BrokenPipeError:   # the reader of our output left
@@ -44,12 +48,13 @@ def main(argv: list[str]) -> int:
 
 
 def _bad_usage(parser: argparse.ArgumentParser, message: str) -> None:
-    raise BadInput(f"{message} (see {parser.prog} --help)")
+    raise BadInput(f"{brief(message)} (see {parser.prog} --help)")
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="python -m orchestrate", description="Impact of nonlinear deformable bodies.",
+    parser = argparse.ArgumentParser(prog=f"{COMMAND}", description="Impact of nonlinear deformable bodies.",
                                      epilog="More commands, each with its own --help: " + ", ".join(OWN_MAIN))
+    parser.add_argument("--version", action="version", version=f"ffimpact {__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
     command = commands.add_parser("run", help="run a scene, or reuse its finished result")
@@ -82,7 +87,7 @@ def _run(options: argparse.Namespace) -> None:
     if options.checkpoint_every:
         given["checkpoint_every"] = options.checkpoint_every
     result = run.run(scene.load(options.scene), given, options.out, mesh_file=options.mesh,
-                     force=options.force, progress=not options.quiet and sys.stderr.isatty())
+                     force=options.force, progress=False if options.quiet else None)
     report.draw(result)
     if not options.quiet:
         print(report.report(result))
@@ -90,8 +95,9 @@ def _run(options: argparse.Namespace) -> None:
 
 def _list(options: argparse.Namespace) -> None:
     from . import scene
-    for name in scene.built_in():
-        print(f"{name:<20}{scene.load(name).title}")
+    names = scene.built_in()
+    for name in names:
+        print(f"{name:<{2 + max(map(len, names))}}{scene.load(name).title}")
 
 
 def _parameters(options: argparse.Namespace) -> None:
@@ -113,10 +119,17 @@ def _figures(options: argparse.Namespace) -> None:
         print(f"ffimpact: without figures/solid.png: {reason}", file=sys.stderr)
 
 
-if __name__ == "__main__":
+def start() -> int:
+    """main() as a program: the command ffimpact, and python -m."""
+    if locale.getencoding().lower() not in ("utf-8", "utf8") and not sys.flags.utf8_mode:   # files are UTF-8 whatever the locale is
+        os.execv(sys.executable, [sys.executable, "-X", "utf8", *sys.orig_argv[1:]])
     stopping.obey()
     for name in ("stdout", "stderr"):                  # closed by who started us
         if getattr(sys, name) is None:
             setattr(sys, name, open(os.devnull, "w"))
     sys.stdout.reconfigure(errors="surrogateescape")   # paths are bytes, not all of them text
-    sys.exit(main(sys.argv[1:]))
+    return main(sys.argv[1:])
+
+
+if __name__ == "__main__":
+    sys.exit(start())

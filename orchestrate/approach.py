@@ -1,10 +1,16 @@
-"""Where bodies of a scene first touch: they fly as rigid bodies, r = r0 + v t + b t^2 / 2, angle = angle0 + spin t, until the gap closes."""
+"""Where bodies of a scene first touch: they fly as rigid bodies, r = r0 + v t + b t^2 / 2, angle = angle0 + spin t, until the gap closes.
 
+While the spheres around them are apart time is skipped at once, between roots of polynomials (as edp/core/run/reach.idp has it)."""
+
+import itertools
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.polynomial import Polynomial
 
+from . import polyline
 from .bodies import Body
 from .dimension import PLANE_STRAIN
 from .failure import BadInput
@@ -14,8 +20,10 @@ from .outlines import Outline
 from .solids import Solid
 
 Shape = Outline | Solid
-STEPS = 200                  # what has not met by then does not
-FAR = 1e6                    # of the smaller thickness: a gap that does not close again
+STEPS = 2000                 # of bodies within reach of each other: what has not met by then is not known to
+RESTITUTION = 0.5            # of a hit that turns bodies: much of it goes to vibration, and they turn while it lasts
+ECCENTRIC = 1e-2             # lever of a hit over the reach of the body that it turns
+MORE = 3                     # touches of two bodies that follow the first one
 MET, CLOSED = 1e-3, 1e-9     # of the smaller thickness: a gap that counts as met, and one that is followed no further
 
 
@@ -44,33 +52,71 @@ class Meeting:
 
 
 def meetings(scene: Multibody) -> list[Meeting]:
-    """One for each two bodies and each body with each obstacle."""
+    """One for each two bodies and each body with each obstacle, and those that follow as a hit turns them."""
     bodies = len(scene.bodies)
-    return [_meeting(scene, i, j) for i in range(bodies) for j in [*range(i + 1, bodies), *(-1 - k for k in range(len(scene.obstacles)))]]
+    pairs = [(i, j) for i in range(bodies) for j in [*range(i + 1, bodies), *(-1 - k for k in range(len(scene.obstacles)))]]
+    return [one for pair in pairs for one in _in_turn(scene, _meeting(scene, *pair))]
+
+
+def _fall(scene: Multibody) -> np.ndarray:
+    """The acceleration of free bodies [m/s2]."""
+    fall = np.zeros(scene.dimension.axes)
+    fall[:2] = scene.values.get("body_force_x", 0.0), scene.values["body_force_y"] - scene.values["gravity"]
+    return fall
+
+
+def _in_turn(scene: Multibody, one: Meeting) -> list[Meeting]:
+    """A meeting, and in the plane those of the same two that follow, where rigid bodies without friction are turned by it: other corners strike."""
+    found = [one]
+    while scene.dimension is PLANE_STRAIN and len(found) <= MORE and math.isfinite(one.time):
+        scene = _rebound(scene, one)
+        if scene is None:
+            break
+        one = _meeting(scene, one.first, one.second)
+        found += [one] if math.isfinite(one.time) else []
+    return found
+
+
+def _rebound(scene: Multibody, one: Meeting) -> Multibody | None:
+    """The bodies of a meeting a little later, when they have parted and nothing pulls them on. None where the hit does not turn
+    them."""
+    n = one.normal
+    point = min((shape.points[other.gap(shape.points).argmin()] for shape, other in (one.outlines, one.outlines[::-1]) if isinstance(shape, Outline)),
+                key=lambda at: max(abs(shape.gap(at[None])[0]) for shape in one.outlines))
+    fall = _fall(scene) * one.time
+    hit, yields, closing = [], 0.0, 0.0
+    for sign, k in ((1, one.first), (-1, one.second)):
+        if k < 0:
+            closing += scene.obstacles[-1 - k].velocity @ n
+            continue
+        body = scene.bodies[k]
+        shape = one.outlines[0 if k == one.first else 1]
+        arm = point - shape.area_centre
+        lever, mass = arm[0] * n[1] - arm[1] * n[0], body.density * shape.area
+        yields += (1 + lever**2 / shape.gyration) / mass
+        closing -= sign * ((body.velocity + fall) @ n + body.spin * lever)
+        hit.append((sign, k, shape, lever, mass))
+    turning = max(abs(lever) / shape.reach for _, _, shape, lever, _ in hit)
+    if closing <= 0 or turning < ECCENTRIC:
+        return None
+    soon, bodies = 4 * MET * one.radius / (RESTITUTION * closing), list(scene.bodies)
+    for sign, k, shape, lever, mass in hit:
+        body, push = bodies[k], sign * (1 + RESTITUTION) * closing / yields / mass
+        velocity, spin = body.velocity + fall + push * n, body.spin + push * lever / shape.gyration
+        bodies[k] = replace(body, position=shape.area_centre + velocity * soon, angle=body.angle + body.spin * one.time + spin * soon, velocity=velocity, spin=spin)
+    still = {name: 0.0 for name in ("gravity", "body_force_x", "body_force_y") if name in scene.values}
+    return replace(scene, bodies=bodies, values=scene.values | still)
 
 
 def _meeting(scene: Multibody, first: int, second: int) -> Meeting:
-    """Conservative advancement: in each step no point can come nearer than the gap."""
     body = scene.bodies[first]
     other = scene.bodies[second] if second >= 0 else scene.obstacles[-1 - second]
-    pull = np.zeros(scene.dimension.axes)
-    if second < 0:                                             # two bodies fall alike
-        pull[:2] = scene.values.get("body_force_x", 0.0), scene.values["body_force_y"] - scene.values["gravity"]
+    pull = _fall(scene) if second < 0 else np.zeros(scene.dimension.axes)    # two bodies fall alike
     start = body.velocity - other.velocity
     radius = min([body.outline.half_thickness, *([other.outline.half_thickness] if second >= 0 else [])])
     turning = sum(one.outline.fastest(one.angle, one.spin) * one.outline.reach for one in (body, other) if isinstance(one, Body))
-    t, met, before = 0.0, False, math.inf
-    for _ in range(STEPS):
-        gap = _gap(*_at(body, other, t, pull))
-        met = met or gap <= MET * radius
-        if met and (gap <= CLOSED * radius or gap >= before):    # closed, or passing by
-            break
-        before = gap
-        speed, rate = np.linalg.norm(start + pull * t) + turning, np.linalg.norm(pull)
-        never = not met and (speed + rate == 0 or gap > FAR * radius)
-        if never:
-            break
-        t += 2 * gap / (speed + math.sqrt(speed**2 + 2 * rate * gap))       # speed t + rate t^2 / 2 = gap
+    t, never = _first_touch(body, other, start, pull, turning, radius)
+    met = not math.isinf(t)
     t = t if met else 0.0
     outlines, velocity = _at(body, other, t, pull), start + pull * t
     normal = outlines[0].normal_from(outlines[1])
@@ -106,6 +152,11 @@ def refuse_nothing(scene: Multibody, met: list[Meeting]) -> None:
     if scene.values["end_time"] == 0 and all(one.never for one in met):
         raise BadInput("end_time: 0 is the end of the contact, but nothing ever touches: the bodies miss each other and every obstacle "
                        "(accepted: an end_time > 0, or velocities and positions that lead them together)")
+    for one in met if scene.values["end_time"] == 0 else []:
+        body = scene.bodies[one.first]
+        if one.second < 0 and one.time == 0 and one.closing == 0 and not np.any(body.spin) and _fall(scene) @ one.normal < 0:
+            raise BadInput(f"end_time: 0 is the end of the contact, but '{body.name}' is set down on '{scene.obstacles[-1 - one.second].name}' and does not leave it "
+                           "(accepted: an end_time > 0)")
 
 
 def _parts(vector: np.ndarray, normal: np.ndarray) -> tuple[float, float]:
@@ -121,6 +172,60 @@ def _at(body: Body, other: Body | Obstacle, t: float, pull: np.ndarray) -> tuple
     if isinstance(other, Body):
         return flown(body, body.velocity), flown(other, other.velocity)
     return flown(body, body.velocity - other.velocity), other
+
+
+def _first_touch(body: Body, other: Body | Obstacle, start: np.ndarray, pull: np.ndarray, turning: float, radius: float) -> tuple[float, bool]:
+    """When the gap is closed [s], infinite where it is not known to, and whether it never is. By conservative advancement where they are within
+    reach of each other: in each step no point can come nearer than the gap."""
+    rate, steps, met, before = np.linalg.norm(pull), 0, False, math.inf
+    for t, end in _within_reach(body, other, start, pull):
+        while t < end:
+            gap, speed = _gap(*_at(body, other, t, pull)), np.linalg.norm(start + pull * t) + turning
+            met = met or gap <= MET * radius
+            if met and (gap <= CLOSED * radius or gap >= before):               # closed, or passing by
+                return t, False
+            steps, before = steps + 1, gap
+            if steps > STEPS:
+                return math.inf, False
+            if speed + rate == 0:
+                return math.inf, True
+            t += 2 * gap / (speed + math.sqrt(speed**2 + 2 * rate * gap))       # speed t + rate t^2 / 2 = gap
+    return math.inf, True
+
+
+def _within_reach(body: Body, other: Body | Obstacle, start: np.ndarray, pull: np.ndarray) -> Iterator[tuple[float, float]]:
+    """From when to when the sphere around the body touches that around the other one, or some part of the obstacle."""
+    parts = [[gate.trim() for gate in gates] for gates in _gates(body, other, start, pull)]
+    roots = np.concatenate([gate.roots() for gates in parts for gate in gates if gate.degree() > 0] or [np.empty(0)])
+    times = [0.0, *sorted(set(roots.real[(abs(roots.imag) <= 1e-6 * abs(roots)) & (roots.real > 0)].tolist())), math.inf]
+    for begin, end in itertools.pairwise(times):
+        middle = (begin + end) / 2 if end < math.inf else 2 * begin + 1
+        if any(all(gate(middle) <= 0 for gate in gates) for gates in parts):
+            yield begin, end
+
+
+def _gates(body: Body, other: Body | Obstacle, start: np.ndarray, pull: np.ndarray) -> Iterator[list[Polynomial]]:
+    """Of each part of the other one polynomials of time that are all <= 0 within reach of it."""
+    reach = 1.01 * body.outline.reach
+    def seen_from(point: np.ndarray) -> np.ndarray:
+        return np.array([Polynomial([x, v, a / 2]) for x, v, a in zip(body.position - point, start, pull)])
+    if isinstance(other, Body):
+        yield [(seen_from(other.position)**2).sum() - (reach + 1.01 * other.outline.reach)**2]
+    elif other.kind == "polyline":
+        sides, reach = polyline.sides_of(other.numbers), reach + other.numbers[1]
+        for point, along, low, high in zip(sides.start, sides.along, sides.low, sides.high):
+            r = seen_from(point)
+            above, at = r @ np.array([-along[1], along[0]]), r @ along
+            yield [above - reach, -above - reach, *([low - reach - at] if np.isfinite(low) else []), *([at - high - reach] if np.isfinite(high) else [])]
+    else:
+        axes = len(start)
+        r, more = seen_from(np.array(other.numbers[:axes])), other.numbers[axes:]
+        if other.kind == "plane":
+            yield [r @ np.array(more) - reach]
+        elif other.kind != "bowl":
+            yield [(r**2).sum() - (more[0] + reach)**2]
+        else:
+            yield [max(0.0, more[0] - reach)**2 - (r**2).sum()]
 
 
 def _gap(first: Shape, second: Shape | Obstacle) -> float:

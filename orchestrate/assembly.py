@@ -7,7 +7,7 @@ revolution it is the half x >= 0 of their sections, the axis with the label 2, o
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
@@ -19,16 +19,19 @@ from .bodies import MATERIAL, Body
 from .describe import describe
 from .dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID
 from .failure import BadInput
-from .mesh import AXIS, FREE, GROWTH, Sizes, nearest
+from .mesh import AXIS, FREE, GROWTH, ROUND, Sizes, nearest
 from .mirror import COPIES, FOLDED, copies
 from .multibody import OWN, Multibody, Pair
 from .outlines import Loop
 from .parameters import Value
 
 NEVER = 3                    # the label of what nothing reaches
-ROUND = 0.5                  # largest element size on a circle or ellipse, over its smaller semi-axis
 SAMPLED = 0.25               # a step between points at which an element size is asked for, over that size
 LIKE = ("radius", "young", "nu", "density", "speed", "angle", "spin")
+NARROW = 0.6                 # of the contact of a disc on a plane: where less of an outline is near, elements are smaller; of two equal discs it is 0.71
+POINTED = 0.5                # largest half-width of a contact over the radius of the obstacle, as over that of a disc on a plane (sizes.idp)
+ASIDE = 0.02                 # of the pair's radius: as near to a corner of an obstacle is on it
+SMALLEST = 1e-3              # element in a contact over the pair's radius, however small the obstacle is
 BETWEEN = 0.2                # from body to body in the reference configuration, over the largest extent
 
 Rule = Callable[[dict[str, Value]], dict]    # describe: what the scripts make of a disc or a ball on a plane
@@ -62,21 +65,25 @@ def assemble(scene: Multibody, rule: Rule | None = None, met: list[Meeting] | No
     asked for a disc, or a ball, of the pair's radius that hits a plane. `met`: the scene's meetings, where they are known already."""
     ask = Asker(scene, meetings(scene) if met is None else met, rule or partial(describe, script=scene.dimension.like))
     values = scene.values | contact_values(scene.bodies, scene.contact, ask, "contact")
+    scene = replace(scene, pairs=_with_small_obstacles(scene, ask))
     pairs = [pair_values(pair, ask, values) for pair in scene.pairs]
     sizes = [None if body.mesh else _sizes(k, ask) for k, body in enumerate(scene.bodies)]
-    together, regions, centres = (_solids if scene.dimension is SOLID else _sections)(scene, sizes)
+    together, regions, centres, rounds = (_solids if scene.dimension is SOLID else _sections)(scene, sizes)
     disc = ask.disc(scene.bodies, min(body.outline.half_thickness for body in scene.bodies), slides=True)
-    return Assembly(together, regions, centres, data_file(scene, disc, centres, pairs), values, used_tables(scene, sizes, values, pairs))
+    return Assembly(together, regions, centres, data_file(scene, disc, centres, rounds, pairs), values, used_tables(scene, sizes, values, pairs))
 
 
-def _sections(scene: Multibody, sizes: list[Sizes | None]) -> tuple[mesh.Mesh, np.ndarray, np.ndarray]:
-    """The mesh of bodies in the plane, the body of each triangle, the centres in it."""
+def _sections(scene: Multibody, sizes: list[Sizes | None]) -> tuple[mesh.Mesh, np.ndarray, np.ndarray, list[tuple]]:
+    """The mesh of bodies in the plane, the body of each triangle, the centres in it, the lines of circles in scene.dat (of sections those that are not
+    another's mirror image)."""
     meshes = [body.mesh or mesh_body(_boundary(scene, k), sizes[k], body.outline.half_thickness) for k, body in enumerate(scene.bodies)]
     centres = side_by_side(meshes, 1 if scene.dimension is AXISYMMETRIC else 0)
-    return *stack(meshes, centres), centres
+    circles = [(k, *(centre + at), radius) for k, (body, centre) in enumerate(zip(scene.bodies, centres)) for loop in body.outline.loops
+               for at, radius in loop.circles if scene.dimension is not AXISYMMETRIC or at[0] >= 0]
+    return *stack(meshes, centres), centres, [("circles", len(circles)), *circles]
 
 
-def _solids(scene: Multibody, sizes: list[Sizes | None]) -> tuple[solid_mesh.SolidMesh, np.ndarray, np.ndarray]:
+def _solids(scene: Multibody, sizes: list[Sizes | None]) -> tuple[solid_mesh.SolidMesh, np.ndarray, np.ndarray, list[tuple]]:
     """The same in three dimensions: bodies turned as they are at the start, one above the other; half or a quarter of them where that is enough."""
     folded = FOLDED[copies(scene)]
     meshes = [solids.mesh_of(body, one, folded) for body, one in zip(scene.bodies, sizes)]
@@ -84,7 +91,9 @@ def _solids(scene: Multibody, sizes: list[Sizes | None]) -> tuple[solid_mesh.Sol
     if count > solid_mesh.MOST_UNKNOWNS:
         raise BadInput(f"mesh_size: the bodies have {count} unknowns (accepted: up to {solid_mesh.MOST_UNKNOWNS}; larger mesh_size, contact_mesh_size or accuracy, coarser files, degree = 1)")
     centres = side_by_side(meshes, 1)
-    return *solid_mesh.stack(meshes, centres), centres
+    surfaces = [(k, *(centre + one.centre), *one.axis, one.radius) for k, (made, centre) in enumerate(zip(meshes, centres)) for one in made.curved]
+    spheres, cylinders = ([one for one in surfaces if len(one) == size] for size in (5, 8))
+    return *solid_mesh.stack(meshes, centres), centres, [("spheres", len(spheres)), *spheres, ("cylinders", len(cylinders)), *cylinders]
 
 
 # ---- what the scene leaves open
@@ -102,6 +111,15 @@ class Asker:
         """Of the rule, for such a disc."""
         return self.rule(self.disc(bodies, radius, slides) | more)
 
+    def small(self, first: int, second: int) -> float:
+        """The radius [m] of an obstacle where a body meets it, if that is less than half of the body's own, 0 at a sharp corner; else infinite."""
+        for one in self.met:
+            if (one.first, one.second) == (first, second) and second < 0 and not one.never:
+                body, obstacle = one.outlines
+                radius = obstacle.radius_at(body.points[obstacle.gap(body.points).argmin()], ASIDE * one.radius)
+                return radius if radius < one.radius / 2 else math.inf
+        return math.inf
+
     def disc(self, bodies: list[Body], radius: float, slides: bool) -> dict[str, Value]:
         """A disc of this radius [m] and the softer body's material; straight on unless it `slides`."""
         along, across, pressing, pulling = (float(f"{max((getattr(one, name) for one in self.met), default=0.0):.6g}")    # no round-off: a mesh follows every digit
@@ -116,9 +134,10 @@ class Asker:
         return asked
 
 
-def contact_values(bodies: list[Body], contact: dict[str, Value], ask: Asker, path: str) -> dict[str, Value]:
-    """`contact` with penalty, friction_dynamic and slip_velocity as numbers: for the softest of the bodies and the smallest radius."""
-    radius = min(body.outline.half_thickness for body in bodies)
+def contact_values(bodies: list[Body], contact: dict[str, Value], ask: Asker, path: str, least: float = math.inf) -> dict[str, Value]:
+    """`contact` with penalty, friction_dynamic and slip_velocity as numbers: for the softest of the bodies and the smallest radius, `least` [m] that of an
+    obstacle."""
+    radius = min([least, *(body.outline.half_thickness for body in bodies)])
     given = [body.contact_mesh_size for body in bodies]
     more = {"contact_mesh_size": min(*given, radius)} if min(given) > 0 else {}
     used = ask.answer(bodies, radius, slides=True, exponent=contact["exponent"], **more)["used"]
@@ -135,9 +154,21 @@ def pair_values(pair: Pair, ask: Asker, values: dict[str, Value]) -> dict[str, V
     """All that a pair may have of its own: what it does not say is as settled for the scene, and open again where it depends on what
     the pair says."""
     bodies = [ask.scene.bodies[k] for k in (pair.first, pair.second) if k >= 0]
-    inherited = {name: values[name] for name in ask.scene.contact} | {"friction_dynamic": ask.scene.contact["friction_dynamic"]}
-    own = contact_values(bodies, inherited | pair.values, ask, pair.path)
+    alone = "friction_static" in pair.values                    # sets both
+    inherited = {name: values[name] for name in ask.scene.contact} | {"friction_dynamic": "auto" if alone else ask.scene.contact["friction_dynamic"]}
+    small = ask.small(pair.first, pair.second)
+    if 0 < small < math.inf:
+        inherited["penalty"] = ask.scene.contact["penalty"]
+    own = contact_values(bodies, inherited | pair.values, ask, pair.path, small or math.inf)
     return {name: own[name] for name in OWN}
+
+
+def _with_small_obstacles(scene: Multibody, ask: "Asker") -> list[Pair]:
+    """The scene's pairs, and those that an open penalty makes differ: a body and an obstacle that is smaller than its contact on a plane would be."""
+    said = {(pair.first, pair.second) for pair in scene.pairs}
+    small = [(one.first, one.second) for one in ask.met if 0 < ask.small(one.first, one.second) < math.inf] if scene.contact["penalty"] == "auto" else []
+    pairs = scene.pairs + [Pair(*both, {}, f"obstacle.{-both[1]}") for both in small if both not in said]
+    return sorted(pairs, key=lambda pair: (pair.first, pair.second))
 
 
 def used_tables(scene: Multibody, sizes: list[Sizes | None], values: dict[str, Value], pairs: list[dict[str, Value]]) -> dict:
@@ -180,20 +211,27 @@ def _hit(body: Body, k: int, one: Meeting, ask: Asker) -> tuple[float, np.ndarra
     bodies = [ask.scene.bodies[j] for j in (one.first, one.second) if j >= 0]
     straight = ask.answer(bodies, one.radius)
     arc, size = straight["touch_arc"], float(straight["used"]["contact_mesh_size"])
+    depth, small = one.radius * (1 - math.cos(min(arc, math.pi / 2))), ask.small(one.first, one.second)
     points, spacing = body.outline.samples(size)
-    near = _near(body, k, one, arc, points)
-    wider = body.outline.width(len(near), spacing) / (2 * arc * one.radius)    # than the contact of a disc: flat faces
+    near = _near(body, k, one, depth, points)
+    wider = body.outline.width(max(2, len(near)), spacing) / (2 * arc * one.radius)    # than the contact of a disc: flat faces; or less wide: corners, pegs
+    if small > 0:                              # a sharp corner no elements resolve
+        wider = min(max(1.0, wider), wider / NARROW, POINTED * small / (2 / math.pi * arc * one.radius))
+    if small > 0 and wider < 1:
+        size = max(SMALLEST * one.radius / wider, size)
+        points, spacing = body.outline.samples(size * wider)
+        near = _near(body, k, one, min(depth, small), points)
     slide = (ask.answer(bodies, one.radius, slides=True)["touch_arc"] - arc) * one.radius
     if slide > 0:
         near = points[nearest(points, near) <= slide]
-    return size * max(1.0, wider), near, spacing / 2
+    return size * (wider if small > 0 else max(1.0, wider)), near, spacing / 2
 
 
-def _near(body: Body, k: int, one: Meeting, touch_arc: float, points: np.ndarray) -> np.ndarray:
-    """Those of the points of body k where the gap at the meeting is no larger than that of a disc of the pair's radius at touch_arc
-    from its lowest point."""
+def _near(body: Body, k: int, one: Meeting, depth: float, points: np.ndarray) -> np.ndarray:
+    """Those of the points of body k where the gap at the meeting is larger than the least by `depth` [m] at most, which of a disc on a plane is that at
+    touch_arc from its lowest point."""
     gaps = one.gaps(k, body.outline.carried(one.outlines[0 if k == one.first else 1], points))
-    return points[gaps <= gaps.min() + one.radius * (1 - math.cos(min(touch_arc, math.pi / 2)))]
+    return points[gaps <= gaps.min() + depth]
 
 
 def _boundary(scene: Multibody, k: int) -> list[list[tuple[Curve, float, int]]]:
@@ -326,40 +364,36 @@ def write_mesh(together: mesh.Mesh, regions: np.ndarray, path: Path) -> None:
 
 # ---- scene.dat
 
-def data_file(scene: Multibody, disc: dict[str, Value], centres: np.ndarray, pairs: list[dict[str, Value]]) -> str:
+def data_file(scene: Multibody, disc: dict[str, Value], centres: np.ndarray, rounds: list[tuple], pairs: list[dict[str, Value]]) -> str:
     """The text of scene.dat, words and numbers (SI, radians):
         ffimpact-bodies 1
         disc radius young nu density speed angle spin                                                   that the rules stand for
         bodies N       name law young nu density  centreX centreY  placeX placeY angle  vx vy spin     a line a body
         circles C      body x y radius                                                                  in the mesh
-        obstacles M    kind count p1 ... pcount vx vy
+        files F        body                                                                             whose mesh is that of a file
+        obstacles M    name kind count p1 ... pcount vx vy
         pairs K        a b penalty friction_static friction_dynamic                                     a, b: body, or -1 - obstacle
     centre: of the area in the mesh; place: where it is at the start; the angle of the disc in degrees. In three dimensions
         ffimpact-bodies-3d 1
         copies 1, 2 or 4                                                                                how often the mesh makes the whole bodies
         bodies N       name law young nu density  centreX Y Z  shiftX Y Z  vx vy vz  spinX Y Z         shift: from the mesh to the start
         spheres C      body x y z radius
-    and the rest alike."""
-    surfaces = [(k, *(centre + at), radius) for k, (body, centre) in enumerate(zip(scene.bodies, centres)) for at, radius in _round(scene, body)]
+        cylinders C    body x y z axisX Y Z radius
+    and the rest alike. `rounds` are the lines of circles, or of spheres and cylinders."""
     if scene.dimension is SOLID:
-        head, round_ones = [("ffimpact-bodies-3d", 1), ("copies", copies(scene))], "spheres"
+        head = [("ffimpact-bodies-3d", 1), ("copies", copies(scene))]
         starts = [(*(body.position - centre), *body.velocity, *body.spin) for body, centre in zip(scene.bodies, centres)]
     else:
-        head, round_ones = [("ffimpact-bodies", 1)], "circles"
+        head = [("ffimpact-bodies", 1)]
         starts = [(*body.position, body.angle, *body.velocity, body.spin) for body in scene.bodies]
     lines = [*head, ("disc", *(float(disc[name]) for name in LIKE)), ("bodies", len(scene.bodies))]
     lines += [(body.name, body.law, body.young, body.nu, body.density, *centre, *start) for body, centre, start in zip(scene.bodies, centres, starts)]
-    lines += [(round_ones, len(surfaces)), *surfaces, ("obstacles", len(scene.obstacles))]
-    lines += [("circle" if one.kind == "sphere" and scene.dimension is not SOLID else one.kind, len(one.numbers), *one.numbers, *one.velocity) for one in scene.obstacles]
+    lines += rounds
+    lines += [("files", len(files := [k for k, given in enumerate(scene.given["body"]) if "file" in given])), *((k,) for k in files)]
+    lines += [("obstacles", len(scene.obstacles))]
+    lines += [(one.name, "circle" if one.kind == "sphere" and scene.dimension is not SOLID else one.kind, len(one.numbers), *one.numbers, *one.velocity) for one in scene.obstacles]
     lines += [("pairs", len(pairs)), *((pair.first, pair.second, *own.values()) for pair, own in zip(scene.pairs, pairs))]
     return "".join(" ".join(map(_token, line)) + "\n" for line in lines)
-
-
-def _round(scene: Multibody, body: Body) -> list[tuple[np.ndarray, float]]:
-    """Centres and radii of the circles of an outline (of a section those that are not another's mirror image), or of a ball."""
-    if scene.dimension is SOLID:
-        return [(np.zeros(3), body.outline.radius)] if body.outline.radius else []
-    return [(loop.centre, loop.radius) for loop in body.outline.loops if loop.radius and (scene.dimension is not AXISYMMETRIC or loop.centre[0] >= 0)]
 
 
 def _token(value) -> str:

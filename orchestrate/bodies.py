@@ -24,7 +24,7 @@ import numpy as np
 
 from . import flat, mesh, parameters, revolution, solids
 from .dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
-from .failure import BadInput
+from .failure import BadInput, brief
 from .outlines import Outline
 from .solid_mesh import SolidMesh
 from .solids import Solid
@@ -76,7 +76,7 @@ def _body(path: str, given: dict, top: dict, folder: Path, geometry: ModuleType)
     if "shape" not in given:
         raise BadInput(f"{path}.shape: is missing (accepted: {shapes})")
     if not isinstance(given["shape"], str) or given["shape"] not in geometry.SHAPES:
-        raise BadInput(f"{path}.shape: '{given['shape']}' is not known (accepted: {shapes})")
+        raise BadInput(f"{path}.shape: '{brief(given['shape'])}' is not known (accepted: {shapes})")
     table = Table(path, given, (*COMMON, *geometry.MOTION, *geometry.SHAPES[given["shape"]]))
     outline, body_mesh = geometry.shape(table, folder)
     if not outline.half_thickness >= SHORTEST:
@@ -90,7 +90,7 @@ def _body(path: str, given: dict, top: dict, folder: Path, geometry: ModuleType)
 def checked_name(path: str, name) -> str:
     """A name that is one word in a data file; BadInput where it is none."""
     if not isinstance(name, str) or not NAME.fullmatch(name):
-        raise BadInput(f"{path}.name: '{name}' is no name (accepted: letters, digits, _ - . without blanks, a letter first)")
+        raise BadInput(f"{path}.name: '{brief(name)}' is no name (accepted: letters, digits, _ - . without blanks, a letter first)")
     return name
 
 

@@ -3,6 +3,8 @@
 
 from pathlib import Path
 
+MOST = 200   # characters of a value that a message repeats
+
 
 class Failure(Exception):
     """A failure that the user can act on. `code` is the exit code: 11 step, 12 material, 1 anything else.
@@ -15,6 +17,12 @@ class Failure(Exception):
     def __init__(self, message: str, code: int = 1):
         super().__init__(" ".join(message.splitlines()))   # one line, whatever the user's text had in it
         self.code = code
+
+
+def brief(value) -> str:
+    """A value as a message repeats it, however long it is."""
+    text = str(value)
+    return text if len(text) <= MOST else f"{text[:MOST]} ..."
 
 
 class TooLong(Failure):

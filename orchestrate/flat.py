@@ -2,20 +2,20 @@
 
 import math
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from . import gmsh_file, mesh, parameters
 from .describe import describe
-from .failure import BadInput
+from .failure import BadInput, brief
 from .outlines import Loop, Outline, crossing_sides, ellipse_loop, polygon_loop, self_crossing
 from .tables import LONGEST, SHORTEST, Table
 
 SHAPES = {"disc": ("radius",), "ellipse": ("semi_axes",), "rectangle": ("width", "height"), "ring": ("radius", "inner_radius"),
           "polygon": ("vertices", "holes"), "mesh": ("file",)}
 MOTION = ("angle", "speed", "direction", "spin")      # entries beside position and velocity
-LEAST_SIDES = 12             # of a circle of a mesh file: with fewer it is meant as a polygon
 
 
 def shape(table: Table, folder: Path) -> tuple[Outline, mesh.Mesh | None]:
@@ -34,7 +34,7 @@ def motion(table: Table) -> dict:
 
 def _velocity(table: Table) -> np.ndarray:
     if "velocity" in table and ("speed" in table or "direction" in table):
-        raise BadInput(f"{table.path}.velocity: '{table.given['velocity']}' stands beside speed or direction (accepted: velocity, or speed with direction)")
+        raise BadInput(f"{table.path}.velocity: '{brief(table.given['velocity'])}' stands beside speed or direction (accepted: velocity, or speed with direction)")
     if ("speed" in table) != ("direction" in table):
         missing = "direction" if "speed" in table else "speed"
         raise BadInput(f"{table.path}.{missing}: is missing (accepted: speed [m/s] with direction [deg], counter-clockwise from x)")
@@ -98,10 +98,11 @@ def check_simple(path: str, corners: np.ndarray) -> None:
 # ---- mesh files
 
 def mesh_file(table: Table, folder: Path, script: str) -> mesh.Mesh:
-    """The mesh of a body's file, checked as any mesh file of edp/<script>.edp is: a whole body in the plane, or half a meridian plane."""
+    """The mesh of a body's file, checked as any mesh file of edp/<script>.edp is, which also says what lies on circles: a whole body in the plane, or half
+    a meridian plane."""
     name, file = table.text("file", ""), None
     if "\0" in name or not _may_be_read(folder / name):
-        raise BadInput(f"{table.path}.file: {name!r} is no file (accepted: FreeFEM's or gmsh's .msh)")
+        raise BadInput(f"{table.path}.file: {brief(repr(name))} is no file (accepted: FreeFEM's or gmsh's .msh)")
     try:
         text = mesh.load(folder / name)
         with tempfile.NamedTemporaryFile(suffix=".msh") as file:
@@ -109,13 +110,13 @@ def mesh_file(table: Table, folder: Path, script: str) -> mesh.Mesh:
             file.flush()
             found = mesh.read(Path(file.name))
             if script == "disc-plane" and (found.labels == mesh.AXIS).any():
-                raise BadInput(f"mesh: '{name}' has edges with the label {mesh.AXIS} of a symmetry axis (accepted: whole bodies, "
+                raise BadInput(f"mesh: '{brief(name)}' has edges with the label {mesh.AXIS} of a symmetry axis (accepted: whole bodies, "
                                f"labels {mesh.FREE}: may touch, 3 and more: never touch)")
             size = float(np.ptp(found.points, axis=0).max()) if len(found.points) else 0.0
-            describe({"mesh": file.name, "radius": size / 2 if SHORTEST < size < LONGEST else 1.0}, script)
+            said = describe({"mesh": file.name, "radius": size / 2 if SHORTEST < size < LONGEST else 1.0}, script)
     except BadInput as error:
         raise BadInput(f"{table.path}.file: {str(error).removeprefix('mesh: ').replace(file.name if file else name, name)}") from None
-    return found
+    return replace(found, hubs=np.array([*said["circles"], [math.nan] * 3])[said["circle_of"], :2])
 
 
 def _may_be_read(path: Path) -> bool:
@@ -127,27 +128,23 @@ def _may_be_read(path: Path) -> bool:
 
 
 def mesh_outline(found: mesh.Mesh) -> Outline:
-    """The boundary of a mesh as loops, that of the largest area first; where the vertices of one lie on a circle (to 1e-9 of its
-    radius) it is that circle."""
-    edges = gmsh_file.boundary(found.triangles)
-    following = dict(edges.tolist())
+    """The boundary of a mesh as loops, that of the largest area first; edges on circles are arcs, and a loop on one circle is that circle."""
+    hub = {tuple(sorted(edge)): at for edge, at in zip(found.edges.tolist(), found.hubs)}
+    following = dict(gmsh_file.boundary(found.triangles).tolist())
     loops = []
     while following:
         first, v = (chain := list(following.popitem()))
         while v != first:
             v = following.pop(v)
             chain.append(v)
-        loops.append(_circle_or_polygon(found.points[chain[:-1]]))
+        loops.append(_loop(found.points[chain[:-1]], np.array([hub[tuple(sorted(edge))] for edge in zip(chain, chain[1:])])))
     return Outline(tuple(sorted(loops, key=lambda loop: -loop.area)))
 
 
-def _circle_or_polygon(corners: np.ndarray) -> Loop:
-    middle = corners.mean(axis=0)
-    scale = np.ptp(corners, axis=0).max()
-    local = (corners - middle) / scale
-    (x, y, rest), *_ = np.linalg.lstsq(np.column_stack([2 * local, np.ones(len(local))]), (local**2).sum(axis=1), rcond=None)
-    radius = math.sqrt(max(rest + x**2 + y**2, 0.0))        # x^2 + y^2 - 2 (x x_c + y y_c) = r^2 - x_c^2 - y_c^2
-    off = abs(np.hypot(*(local - [x, y]).T) - radius).max()
-    if len(corners) < LEAST_SIDES or off > 1e-9 * radius:
+def _loop(corners: np.ndarray, hubs: np.ndarray) -> Loop:
+    if np.isnan(hubs).all():
         return polygon_loop(corners)
-    return ellipse_loop(scale * radius, scale * radius).placed(middle + scale * np.array([x, y]), 0.0)
+    if (hubs == hubs[0]).all():
+        radius = float(np.linalg.norm(corners[0] - hubs[0]))
+        return ellipse_loop(radius, radius).placed(hubs[0], 0.0)
+    return polygon_loop(corners, hubs)

@@ -55,10 +55,10 @@ def finished_in(folder: Path, force: bool) -> dict | None:
         return None
     try:
         return read_summary(folder)
-    except Unreadable as error:
+    except Unreadable:
         if force:
             return None
-        raise Unreadable(f"{error}; delete the folder, or run again with --force") from None
+        raise
 
 
 # ---- made beside its place

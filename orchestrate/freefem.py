@@ -6,20 +6,36 @@ import re
 import shutil
 import signal
 import subprocess
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache, partial
 from pathlib import Path
+from typing import NamedTuple
 
 from .failure import NotInstalled
-from .places import ROOT
+from .places import INSTALLED, PACKAGE, ROOT
 
 OLDEST = (4, 9)                          # the version in the banner; Debian's 4.11 calls itself 4.9
 DEBIAN_PLUGINS = "/usr/lib/freefem++"    # where Debian puts the plugins, and its FreeFem++ does not look
-PROBE = ROOT / "orchestrate/probe.edp"
-HOW = "run: make setup   (or: apt-get install freefem++ libfreefem++)"
+PROBE = PACKAGE / "probe.edp"
+CLOCK = ROOT / "edp/clock.c"
+SAYS = re.compile(r"progress (\S+) t=(\S+) steps=(\S+)(?: unknowns=(\S+) apart=(\S+))?$")
+WAYS = ("apt-get install freefem++ libfreefem++; conda install -c conda-forge freefem; a package of https://github.com/FreeFem/FreeFem-sources/releases; "
+        "or set FREEFEM to where it is")
+HOW = f"install it: {WAYS}" if INSTALLED else f"run: make setup   (or: {WAYS})"
 
-Progress = Callable[[float, str, str], None]   # fraction in [0, 1], t, steps
+
+class At(NamedTuple):
+    """How far a run is."""
+
+    share: float                # of its steps, in [0, 1], as far as one can see
+    t: float                    # s
+    steps: int
+    unknowns: int = 0
+    apart: float = 1.0          # the times that a wave takes across the slowest body, over those of the quickest
+
+
+Progress = Callable[[At], None]
 
 
 @dataclass(frozen=True)
@@ -45,7 +61,7 @@ def _find(variables: tuple[tuple[str, str], ...]) -> FreeFem:
     if not command:
         raise NotInstalled(f"{wanted} not found; {HOW}")
     environment |= {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}   # one process a core
-    environment = _blas_kernels() | environment
+    environment = _blas_kernels() | environment | _quick_clock(environment)
     version = _probe(command, environment)
     if not version and "FF_LOADPATH" not in environment:
         environment["FF_LOADPATH"] = DEBIAN_PLUGINS
@@ -70,6 +86,24 @@ def _blas_kernels() -> dict[str, str]:
     return {"OPENBLAS_CORETYPE": "Haswell"} if unknown and flags and {"avx2", "fma"} <= set(flags[1].split()) else {}
 
 
+def _quick_clock(environment: Mapping[str, str]) -> dict[str, str]:
+    """The preloaded clock() of edp/clock.c, built where it is missing or older; nothing without a compiler, a folder to write in, or on a path that
+    LD_PRELOAD cannot name."""
+    library = CLOCK.with_name("libclock.so")
+    if re.search(r"[\s:]", str(library)):
+        return {}
+    if not library.exists() or library.stat().st_mtime < CLOCK.stat().st_mtime:
+        part = library.with_name(f"{library.name}.{os.getpid()}.part")
+        try:
+            subprocess.run(["cc", "-O2", "-shared", "-fPIC", "-o", part, CLOCK], env=environment, check=True, timeout=60,
+                           stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            os.replace(part, library)
+        except (OSError, subprocess.SubprocessError):
+            part.unlink(missing_ok=True)
+            return {}
+    return {"LD_PRELOAD": ":".join([str(library), *environment.get("LD_PRELOAD", "").split()])}
+
+
 def _probe(command: str, environment: dict[str, str]) -> str | None:
     """The version, if the plugins load."""
     try:
@@ -85,7 +119,7 @@ def run(freefem: FreeFem, script: str, flags: list[str], log: Path, progress: Pr
     """Runs edp/<script>.edp with its output in `log`; the exit code, negative for a signal, and the script's line for the user, or "".
 
     The child has a process group of its own, is killed when this function is left in any way, and by the kernel
-    when this process dies. Lines "progress <fraction> t=<time> steps=<n>" go to `progress` as well. It shares the open file
+    when this process dies. Lines "progress <share> t=<time> steps=<n> ..." go to `progress` as well. It shares the open file
     `lock`, and so what is locked stays locked until it has ended.
     """
     command = [freefem.command, "-nw", "-ne", "-v", "0", f"edp/{script}.edp", *flags]
@@ -96,8 +130,8 @@ def run(freefem: FreeFem, script: str, flags: list[str], log: Path, progress: Pr
         try:
             for line in child.stdout:
                 file.write(line)
-                if progress and (match := re.match(r"progress (\S+) t=(\S+) steps=(\S+)", line)):
-                    progress(float(match[1]), match[2], match[3])
+                if progress and (match := SAYS.match(line)):
+                    progress(At(*(kind(text) for kind, text in zip(At.__annotations__.values(), match.groups()) if text)))
             code = child.wait()
         finally:
             if child.poll() is None:

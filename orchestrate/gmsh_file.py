@@ -75,6 +75,9 @@ def taken(model) -> mesh.Mesh:
         number = {int(tag): k for k, tag in enumerate(used)}
         labelled = {frozenset((number.get(a, -1), number.get(b, -1))): label for a, b, label in curves}
         labels = np.array([labelled.get(frozenset(edge), OTHER) for edge in edges.tolist()], dtype=int)
+        if not (labels == mesh.FREE).any():
+            raise BadInput(f"none of its physical curves ({_names(model)}) has the name 'contact', or without a name the number {mesh.FREE}, on its boundary: nothing "
+                           "of it could touch (accepted: such a one, or no physical curve)")
     return mesh.Mesh(points, triangles, edges, labels)
 
 
@@ -92,6 +95,10 @@ def _physical_curves(model) -> list[tuple[int, int, int]] | None:
                     raise BadInput(f"it has elements '{model.mesh.getElementProperties(kind)[0]}' (accepted: lines of 2 or 3 nodes)")
                 lines += [(int(a), int(b), label) for a, b, *_ in nodes.reshape(-1, LINES[kind])]
     return lines if groups else None
+
+
+def _names(model) -> str:
+    return ", ".join(model.getPhysicalName(1, number) or str(number) for _, number in model.getPhysicalGroups(1))
 
 
 def boundary(triangles: np.ndarray) -> np.ndarray:

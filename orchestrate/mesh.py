@@ -19,23 +19,28 @@ from types import ModuleType
 import numpy as np
 
 from .failure import BadInput, NotInstalled
+from .places import INSTALLED
 
 FREE, AXIS = 1, 2          # boundary labels
+LIBRARIES = "apt-get install libglu1-mesa libxcursor1 libxft2 libxinerama1 libgomp1"   # that gmsh's wheel needs, with what they need
 GROWTH = 0.3               # element size gained per length of distance from the contact arc
+ROUND = 0.5                # largest element size on a circle or ellipse, over its smaller semi-axis: an edge spans at most 30 degrees
 
 
 @dataclass(frozen=True)
 class Mesh:
-    """points (n, 2) in m, triangles (t, 3) counter-clockwise, edges (e, 2) of the boundary, their labels (e,)."""
+    """points (n, 2) in m, triangles (t, 3) counter-clockwise, edges (e, 2) of the boundary, their labels (e,); `hubs` (e, 2) are the centres of the
+    circles that the edges of a file lie on, nan of straight ones."""
 
     points: np.ndarray
     triangles: np.ndarray
     edges: np.ndarray
     labels: np.ndarray
+    hubs: np.ndarray | None = None
 
     def moved(self, by: np.ndarray) -> "Mesh":
         """The same mesh, `by` [m] elsewhere."""
-        return replace(self, points=self.points + by)
+        return replace(self, points=self.points + by, hubs=None if self.hubs is None else self.hubs + by)
 
 
 @dataclass(frozen=True)
@@ -82,7 +87,7 @@ def disc(radius: float, mesh_size: float, contact_mesh_size: float, half: bool, 
         gmsh.model.geo.addPlaneSurface([gmsh.model.geo.addCurveLoop(arcs + axis)])
         gmsh.model.geo.synchronize()
         contact_arcs = arcs[:1] if half else [arcs[0], arcs[-1]]
-        _grade(gmsh.model.mesh.field, contact_arcs, mesh_size * unit, contact_mesh_size * unit, contact_arc)
+        _grade(gmsh.model.mesh.field, contact_arcs, arcs, mesh_size * unit, contact_mesh_size * unit, contact_arc)
         gmsh.model.mesh.generate(2)
         tags, coordinates, _ = gmsh.model.mesh.getNodes()
         _, triangle_tags = gmsh.model.mesh.getElementsByType(2)
@@ -113,7 +118,7 @@ def start_gmsh() -> ModuleType:
     try:
         import gmsh
     except OSError as error:
-        raise NotInstalled(f"gmsh does not load ({error}); run: make setup") from None
+        raise NotInstalled(f"gmsh does not load ({error}); run: {LIBRARIES if INSTALLED else 'make setup'}") from None
     handlers = {number: signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGPIPE)}
     gmsh.initialize([], readConfigFiles=False, interruptible=False)
     if threading.current_thread() is threading.main_thread():
@@ -149,14 +154,21 @@ def _outline(geo, half: bool, contact_arc: float) -> tuple[list[int], list[int]]
     return arcs, [geo.addLine(top, bottom)] if half else []
 
 
-def _grade(field, contact_arcs: list[int], bulk: float, contact: float, contact_arc: float) -> None:
-    """Element size `contact` on the arcs, growing linearly with the distance from them up to `bulk`."""
+def _grade(field, contact_arcs: list[int], arcs: list[int], bulk: float, contact: float, contact_arc: float) -> None:
+    """Element size `contact` on the contact arcs, growing linearly with the distance from them up to `bulk`, on all arcs to ROUND."""
     distance, size = field.add("Distance"), field.add("Threshold")
     field.setNumbers(distance, "CurvesList", contact_arcs)
     field.setNumber(distance, "Sampling", math.ceil(2 * contact_arc / contact))
     for name, value in dict(InField=distance, SizeMin=contact, SizeMax=bulk, DistMin=0,
                             DistMax=max(bulk - contact, 1e-9) / GROWTH).items():
         field.setNumber(size, name, value)
+    if bulk > ROUND:
+        round_, on_arcs, whole = field.add("MathEval"), field.add("Restrict"), size
+        field.setString(round_, "F", f"{ROUND}")
+        field.setNumber(on_arcs, "InField", round_)
+        field.setNumbers(on_arcs, "CurvesList", arcs)
+        size = field.add("Min")
+        field.setNumbers(size, "FieldsList", [whole, on_arcs])
     field.setAsBackgroundMesh(size)
 
 

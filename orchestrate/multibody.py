@@ -27,7 +27,7 @@ from . import bodies, dimension, mirror, obstacles, parameters, scene
 from .bodies import MATERIAL, SIZES, Body
 from .describe import describe
 from .dimension import SOLID, Dimension
-from .failure import BadInput
+from .failure import BadInput, brief
 from .obstacles import Obstacle
 from .estimate import LARGEST
 from .parameters import Value
@@ -40,6 +40,8 @@ RUN = ("gravity", "body_force_x", "body_force_y", "degree", "integrator", "dt", 
        "chatter", "end_time", "fields", "modes", "checkpoint_every", "without")
 OWN = ("penalty", "friction_static", "friction_dynamic")                                  # a pair may have its own
 CONTACT = (*OWN, "exponent", "slip_velocity", "regularization", "friction_transition", "pairing", "pairing_range")
+SHAPE = ("shape", "semi_axes", "width", "height", "depth", "inner_radius", "vertices", "file")     # sizes of a body, beside radius
+EVERYWHERE = ("penalty", "dt")
 TOUCHING = 1e-9              # of a body's thickness: an overlap up to it is round-off
 
 
@@ -68,6 +70,7 @@ class Multibody:
     contact: dict[str, Value]
     pairs: list[Pair]
     values: dict[str, Value]
+    released: tuple[str, ...] = ()      # sentences: what was fixed for others that are set now
 
     @property
     def script(self) -> str:
@@ -75,11 +78,14 @@ class Multibody:
         return self.dimension.script
 
     def override(self, given: dict[str, Value]) -> "Multibody":
-        """The same scene with some entries set by their dotted names, and read again."""
+        """The same scene with some entries set by their dotted names, open again what it had fixed for them (release), and read again."""
+        if not given:
+            return self
         changed = self.given
         for name, value in given.items():
             changed = set_entry(changed, name, value)
-        return read(changed, self.folder, self.name) if given else self
+        said = release(changed, list(given))
+        return replace(read(changed, self.folder, self.name), released=self.released + said)
 
     def check(self, given: dict[str, Value]) -> dict[str, Value]:
         """The given entries of such a scene, by dotted names, text as TOML reads it; BadInput where there is no such place."""
@@ -172,7 +178,7 @@ def read(given: dict, folder: Path, name: str) -> Multibody:
     all_obstacles = obstacles.read([{key: value for key, value in one.items() if key not in OWN} for one in rigid], of)
     script = table.text("script", of.script)
     if script != of.script:
-        raise BadInput(f"script: '{script}' is not that of [[body]] tables in dimension = '{of.name}' (accepted: {of.script})")
+        raise BadInput(f"script: '{brief(script)}' is not that of [[body]] tables in dimension = '{of.name}' (accepted: {of.script})")
     index = _names(all_bodies, all_obstacles)
     contact_table = Table("contact", given.get("contact", {}), (*CONTACT, "pair"))
     contact = _parameters(contact_table, CONTACT, of)
@@ -201,7 +207,7 @@ def _names(all_bodies: list[Body], all_obstacles: list[Obstacle]) -> dict[str, i
     for path, number, one in [*((f"body.{k + 1}", k, one) for k, one in enumerate(all_bodies)),
                               *((f"obstacle.{k + 1}", -1 - k, one) for k, one in enumerate(all_obstacles))]:
         if one.name in index:
-            raise BadInput(f"{path}.name: '{one.name}' is the name of {where[one.name]} too (accepted: each name once)")
+            raise BadInput(f"{path}.name: '{brief(one.name)}' is the name of {where[one.name]} too (accepted: each name once)")
         index[one.name], where[one.name] = number, path
     return index
 
@@ -227,7 +233,7 @@ def _exceptions(contact: Table, index: dict[str, int]) -> dict[tuple[int, int], 
         table = Table(path, given, ("bodies", *OWN))
         both = _partners(path, table.given.get("bodies"), index)
         if both in pairs:
-            raise BadInput(f"{path}.bodies: '{table.given['bodies']}' has a table already (accepted: one a pair)")
+            raise BadInput(f"{path}.bodies: '{brief(table.given['bodies'])}' has a table already (accepted: one a pair)")
         pairs[both] = Pair(*both, {key: table.parameter(key, parameters.table()[key]) for key in OWN if key in table}, path)
     return pairs
 
@@ -236,20 +242,20 @@ def _of_the_scene(path: str, given: dict) -> None:
     """BadInput where a table has of its own what the contact of a scene has one of."""
     for key in CONTACT:
         if key in given and key not in OWN:
-            raise BadInput(f"{path}.{key}: '{given[key]}' holds for the whole scene (accepted: in [contact]; here {', '.join(OWN)})")
+            raise BadInput(f"{path}.{key}: '{brief(given[key])}' holds for the whole scene (accepted: in [contact]; here {', '.join(OWN)})")
 
 
 def _partners(path: str, given, index: dict[str, int]) -> tuple[int, int]:
     """The two of a pair, the body or the first body first."""
     accepted = f"accepted: two names, one at least of a body, of {', '.join(index)}"
     if not isinstance(given, list) or len(given) != 2 or not all(isinstance(name, str) for name in given):
-        raise BadInput(f"{path}.bodies: '{'' if given is None else given}' is no pair ({accepted})")
+        raise BadInput(f"{path}.bodies: '{'' if given is None else brief(given)}' is no pair ({accepted})")
     for name in given:
         if name not in index:
-            raise BadInput(f"{path}.bodies: '{name}' is not in the scene ({accepted})")
+            raise BadInput(f"{path}.bodies: '{brief(name)}' is not in the scene ({accepted})")
     first, second = sorted((index[name] for name in given), key=lambda k: (k < 0, abs(k)))
     if first == second or first < 0:
-        raise BadInput(f"{path}.bodies: '{given}' cannot touch each other ({accepted})")
+        raise BadInput(f"{path}.bodies: '{brief(given)}' cannot touch each other ({accepted})")
     return first, second
 
 
@@ -296,24 +302,48 @@ def set_entry(given: dict, name: str, value: Value | list) -> dict:
             place[step] = {}
         key = _key(place, step, path, name)
         if key not in place if isinstance(place, dict) else False:
-            raise BadInput(f"{name}: there is no {path} in the scene (accepted: {', '.join(place)})")
+            raise BadInput(f"{brief(name)}: there is no {brief(path)} in the scene (accepted: {', '.join(place)})")
         place = place[key]
         if not isinstance(place, dict | list):
-            raise BadInput(f"{name}: {path} is '{place}' and has no entry {following}")
+            raise BadInput(f"{brief(name)}: {path} is '{brief(place)}' and has no entry {brief(following)}")
     place[_key(place, last, name, name)] = toml_value(value)
     return changed
+
+
+def release(given: dict, names: list[str]) -> tuple[str, ...]:
+    """Takes out of the tables of a file what FOLLOWS says that the entries `names`, which were set, leave open; the sentences about it. What is of one table
+    (coefficients of friction, sizes of a body) follows what is set there, penalty and step whatever body it is of."""
+    places = [_table_of(name) for name in names]
+    tables = {"": given, "contact": given.get("contact", {})}
+    for key, listed_in in (("body", given), ("obstacle", given), ("contact.pair", tables["contact"])):
+        tables |= {f"{key}.{k}": one for k, one in enumerate(listed_in.get(key.rpartition(".")[2], []), 1)}
+    said = []
+    for path, table in tables.items():
+        for key in [key for key in parameters.FOLLOWS if key in table and (path, key) not in places]:
+            causes = parameters.FOLLOWS[key] + (SHAPE if "radius" in parameters.FOLLOWS[key] else ())
+            found = [name for name, (where, entry) in zip(names, places) if entry in causes and (where == path or key in EVERYWHERE)]
+            if found and table[key] not in ("auto", 0):
+                said.append(parameters.release(f"{path}.{key}".lstrip("."), table.pop(key), found))
+    return tuple(said)
+
+
+def _table_of(name: str) -> tuple[str, str]:
+    """Of a dotted name that of its table, and the entry in it."""
+    parts = name.split(".")
+    depth = 3 if parts[:2] == ["contact", "pair"] else {"body": 2, "obstacle": 2, "contact": 1}.get(parts[0], 0)
+    return ".".join(parts[:depth]), ".".join(parts[depth:depth + 1])
 
 
 def _key(place: dict | list, step: str, path: str, name: str) -> str | int:
     """The key of one step, from 0 in lists."""
     if not step:
-        raise BadInput(f"{name}: has an empty part (accepted: names and numbers with single dots between them)")
+        raise BadInput(f"{brief(name)}: has an empty part (accepted: names and numbers with single dots between them)")
     if isinstance(place, dict):
         return step
     if not re.fullmatch("[0-9]{1,6}", step) or not 1 <= int(step) <= len(place):
         before = path.removesuffix(f".{step}")
         numbers = f"{before}.1 to {before}.{len(place)}" if len(place) > 1 else f"{before}.1"
-        raise BadInput(f"{name}: there is no {path} in the scene (accepted: {numbers})")
+        raise BadInput(f"{brief(name)}: there is no {brief(path)} in the scene (accepted: {numbers})")
     return int(step) - 1
 
 

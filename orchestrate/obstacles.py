@@ -18,7 +18,7 @@ import numpy as np
 from . import polyline
 from .bodies import checked_name
 from .dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
-from .failure import BadInput
+from .failure import BadInput, brief
 from .revolution import mirrored, on_axis
 from .tables import LONGEST, SHORTEST, Table
 
@@ -51,6 +51,13 @@ class Obstacle:
         outside = np.linalg.norm(from_point, axis=1) - self.numbers[axes]
         return -outside if self.kind == "bowl" else outside
 
+    def radius_at(self, point: np.ndarray, within: float) -> float:
+        """The radius [m] of its surface where that is nearest to a point (axes,), 0 if a sharp corner is `within` [m] as near, infinite where it is flat or
+        hollow."""
+        if self.kind == "polyline":
+            return polyline.radius_at(point, within, self.numbers)
+        return self.numbers[len(point)] if self.kind in ("circle", "sphere") else np.inf
+
     def gap_in_plane(self, points: np.ndarray, t: float) -> np.ndarray:
         """The same of points (n, 2) of the plane z = 0 at the time t [s]."""
         whole = np.pad(points, [(0, 0), (0, len(self.velocity) - 2)])
@@ -65,7 +72,7 @@ def read(tables: list[dict], dimension: Dimension = PLANE_STRAIN) -> list[Obstac
 def _obstacle(path: str, given: dict, dimension: Dimension) -> Obstacle:
     kind, kinds = given.get("kind"), KINDS[dimension]
     if kind not in tuple(kinds):
-        missing = "is missing" if kind is None else f"'{kind}' is not known"
+        missing = "is missing" if kind is None else f"'{brief(kind)}' is not known"
         raise BadInput(f"{path}.kind: {missing} (accepted: {'|'.join(kinds)})")
     table = Table(path, given, ("name", "kind", "velocity", *kinds[kind]))
     shape = {"plane": _plane, "polyline": _polyline}.get(kind, _circle)
@@ -80,9 +87,9 @@ def _velocity(table: Table, dimension: Dimension) -> np.ndarray:
 def _plane(table: Table, dimension: Dimension) -> tuple[float, ...]:
     point, normal = (table.numbers(key, -LONGEST, LONGEST, count=dimension.axes) for key in ("point", "normal"))
     if not normal.any():
-        raise BadInput(f"{table.path}.normal: '{table.given['normal']}' has no direction (accepted: {dimension.placeholder} other than 0)")
+        raise BadInput(f"{table.path}.normal: '{brief(table.given['normal'])}' has no direction (accepted: {dimension.placeholder} other than 0)")
     if dimension is AXISYMMETRIC and normal[0] != 0:
-        raise BadInput(f"{table.path}.normal: '{table.given['normal']}' is not along the axis of revolution (accepted: [0, 1] or [0, -1])")
+        raise BadInput(f"{table.path}.normal: '{brief(table.given['normal'])}' is not along the axis of revolution (accepted: [0, 1] or [0, -1])")
     normal = normal / abs(normal).max()                    # so that no square of it underflows
     return *map(float, point), *map(float, normal / np.linalg.norm(normal))
 

@@ -17,10 +17,12 @@ COARSEST = 400
 @dataclass(frozen=True)
 class Loop:
     """A closed curve, counter-clockwise: the polygon through `corners`, or, where `semi_axes` are given, the ellipse whose four
-    extreme points (right, top, left, bottom) the corners are. Piece k leads from corner k to the next."""
+    extreme points (right, top, left, bottom) the corners are. Piece k leads from corner k to the next, straight or, where `hubs` (n, 2)
+    has a centre for it and not nan, along a circle."""
 
     corners: np.ndarray
     semi_axes: np.ndarray | None = None
+    hubs: np.ndarray | None = None
 
     @property
     def centre(self) -> np.ndarray:
@@ -33,9 +35,31 @@ class Loop:
         is_circle = self.semi_axes is not None and self.semi_axes[0] == self.semi_axes[1]
         return float(self.semi_axes[0]) if is_circle else None
 
+    @property
+    def circles(self) -> list[tuple[np.ndarray, float]]:
+        """Centres and radii of the circles that it is, or that pieces of it lie on."""
+        if self.hubs is None:
+            return [(self.centre, self.radius)] if self.radius else []
+        which, first, *_ = self._arcs
+        radii = np.linalg.norm(first, axis=1)
+        _, once = np.unique(np.column_stack([self.hubs[which], np.round(radii / radii.max(), 6)]), axis=0, return_index=True)
+        return [(self.hubs[which[k]], float(radii[k])) for k in once]
+
+    @cached_property
+    def _arcs(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Pieces along circles: which, the radius vectors of their ends, and the angles [rad] between these, positive counter-clockwise."""
+        which = np.flatnonzero(~np.isnan(self.hubs[:, 0])) if self.hubs is not None else np.array([], dtype=int)
+        a, b = (ends[which] - self.hubs[which] if len(which) else np.empty((0, 2)) for ends in (self.corners, np.roll(self.corners, -1, axis=0)))
+        return which, a, b, np.arctan2(cross(a, b), (a * b).sum(axis=1))
+
     def at(self, piece: int, s: np.ndarray) -> np.ndarray:
-        """Points of a piece at the parameters s in [0, 1]; s = 0 is the corner itself, to the last digit."""
+        """Points of a piece at the parameters s in [0, 1]; s = 0 is the corner itself, where there are no hubs to the last digit."""
         a, b = self.corners[piece], self.corners[(piece + 1) % len(self.corners)]
+        which, first, last, angles = self._arcs
+        if len(k := np.flatnonzero(which == piece)):
+            turn = angles[k[0]]
+            along = np.sin(np.outer(1 - s, turn)) * first[k] + np.sin(np.outer(s, turn)) * last[k]
+            return self.hubs[piece] + along / np.sin(turn)
         if self.semi_axes is None:
             return a + s[:, None] * (b - a)
         turn = np.pi / 2 * s[:, None]                # the ellipse is an affine circle: conjugate radii a - c and b - c
@@ -49,7 +73,7 @@ class Loop:
     @cached_property
     def lengths(self) -> np.ndarray:
         """Lengths of the pieces; of an ellipse to a millionth."""
-        s = np.linspace(0, 1, 2 if self.semi_axes is None else 1001)
+        s = np.linspace(0, 1, 2 if self.semi_axes is None and self.hubs is None else 1001)
         return np.array([np.linalg.norm(np.diff(self.at(k, s), axis=0), axis=1).sum() for k in range(len(self.corners))])
 
     @cached_property
@@ -60,21 +84,38 @@ class Loop:
     @property
     def sides(self) -> np.ndarray:
         """The polygon with as few corners as tell its shape."""
-        return self.corners if self.semi_axes is None else self.polygon
+        return self.corners if self.semi_axes is None and self.hubs is None else self.polygon
 
     @property
     def area(self) -> float:
         """Area inside, positive."""
-        return float(np.pi * np.prod(self.semi_axes)) if self.semi_axes is not None else signed_area(self.corners)
+        if self.semi_axes is not None:
+            return float(np.pi * np.prod(self.semi_axes))
+        return signed_area(self.corners) + float(self._segments[0].sum())
+
+    @property
+    def _segments(self) -> tuple[np.ndarray, np.ndarray]:
+        """Areas between arcs and their chords (arcs,), and first moments (arcs, 2) of these about the hubs: of a sector a x b (a + b)/(3 (1 + cos)), of
+        its triangle a x b (a + b)/6."""
+        _, a, b, turn = self._arcs
+        square = cross(a, b)
+        return (turn * (a**2).sum(axis=1) - square) / 2, (square * (1 / (3 + 3 * np.cos(turn)) - 1 / 6))[:, None] * (a + b)
 
     @property
     def area_centre(self) -> np.ndarray:
         """Centre of the area inside."""
-        return self.centre if self.semi_axes is not None else polygon_centre(self.corners)
+        if self.semi_axes is not None:
+            return self.centre
+        areas, moments = self._segments
+        if not len(areas):
+            return polygon_centre(self.corners)
+        moment = signed_area(self.corners) * polygon_centre(self.corners) + moments.sum(axis=0) + areas @ self.hubs[self._arcs[0]]
+        return moment / self.area
 
     def placed(self, centre: np.ndarray, angle: float) -> "Loop":
         """The loop turned about the origin by angle [rad], counter-clockwise, and moved by `centre`. A turned ellipse stays one."""
-        return replace(self, corners=self.corners @ rotation(angle).T + centre)
+        turn = rotation(angle).T
+        return replace(self, corners=self.corners @ turn + centre, hubs=None if self.hubs is None else self.hubs @ turn + centre)
 
     def gap(self, points: np.ndarray) -> np.ndarray:
         """Signed distances (n,) of points from the loop, negative inside."""
@@ -84,9 +125,11 @@ class Loop:
         return np.where(inside_polygon(points, self.sides), -distance, distance)
 
 
-def polygon_loop(corners: np.ndarray) -> Loop:
-    """The polygon through the corners, turned counter-clockwise."""
-    return Loop(corners if signed_area(corners) > 0 else corners[::-1])
+def polygon_loop(corners: np.ndarray, hubs: np.ndarray | None = None) -> Loop:
+    """The polygon through the corners, or along the circles about hubs, turned counter-clockwise."""
+    if signed_area(corners) > 0:
+        return Loop(corners, hubs=hubs)
+    return Loop(corners[::-1], hubs=None if hubs is None else np.roll(hubs[::-1], -1, axis=0))
 
 
 def ellipse_loop(a: float, b: float) -> Loop:
@@ -127,6 +170,15 @@ class Outline:
     def reach(self) -> float:
         """Distance of its farthest point from the centre of its area."""
         return float(np.linalg.norm(self.loops[0].polygon - self.area_centre, axis=1).max())
+
+    @cached_property
+    def gyration(self) -> float:
+        """The square [m2] of its radius of gyration about the centre of its area, of polygons of some hundreds of sides."""
+        first, moments, areas = [loop.polygon - self.area_centre for loop in self.loops], [], []
+        for a, b in ((one, np.roll(one, -1, axis=0)) for one in first):
+            areas.append(cross(a, b).sum() / 2)
+            moments.append((cross(a, b) * (a * a + a * b + b * b).sum(axis=1)).sum() / 12)
+        return float((moments[0] - sum(moments[1:])) / (areas[0] - sum(areas[1:])))
 
     @property
     def half_thickness(self) -> float:

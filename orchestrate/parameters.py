@@ -3,13 +3,19 @@
 import difflib
 import math
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 
-from .failure import BadInput
+from .failure import BadInput, brief
 from .places import ROOT as ROOT
 
 Value = float | int | str
+
+# What a scene fixes for others of its entries: where one of those is set and it is not, it is open again, as by default (auto, 0). friction_static alone sets
+# both coefficients; a penalty is of a material, a size and an exponent; a step and meshes are of a size. slip_velocity and end_time stay, with their warnings.
+FOLLOWS = {"friction_dynamic": ("friction_static",), "penalty": ("young", "density", "radius", "exponent"), "dt": ("young", "density", "radius"),
+           **dict.fromkeys(("mesh_size", "contact_mesh_size", "block_width", "block_height"), ("radius",))}
 
 NOT_DECISIVE = ("checkpoint_every",)   # parameters that do not change the answer
 
@@ -41,17 +47,17 @@ class Parameter:
         if isinstance(given, str) and given in self.words:
             return given
         if self.kind == "word":
-            raise BadInput(f"{self.name}: '{given}' is not known (accepted: {self.accepted})")
+            raise BadInput(f"{self.name}: '{brief(given)}' is not known (accepted: {self.accepted})")
         wanted = "a whole number" if self.kind == "int" else "a number"
         is_number = _NUMBER.fullmatch(given) if isinstance(given, str) else type(given) in (int, float)
         if not is_number or (self.kind == "int" and not isinstance(given, int) and float(given) % 1 != 0):
-            raise BadInput(f"{self.name}: '{given}' is not {wanted} (accepted: {self.accepted})")
+            raise BadInput(f"{self.name}: '{brief(given)}' is not {wanted} (accepted: {self.accepted})")
         try:
             value = float(given)
         except OverflowError:
             value = math.inf
         if not self.low <= value <= self.high:
-            raise BadInput(f"{self.name}: {given} is out of range (accepted: {self.accepted})")
+            raise BadInput(f"{self.name}: {brief(given)} is out of range (accepted: {self.accepted})")
         return int(value) if self.kind == "int" else value
 
 
@@ -78,7 +84,7 @@ def names(script: str = "") -> list[str]:
 def taken(name: str, script: str) -> None:
     """BadInput where a script does not take a parameter of the table."""
     if script not in table()[name].scripts:
-        raise BadInput(f"{name}: {script} takes no such parameter (accepted: in {'|'.join(table()[name].scripts)})")
+        raise BadInput(f"{brief(name)}: {script} takes no such parameter (accepted: in {'|'.join(table()[name].scripts)})")
 
 
 def decisive(values: dict[str, Value]) -> dict[str, Value]:
@@ -95,8 +101,20 @@ def check(given: dict[str, Value], script: str = "") -> dict[str, Value]:
         if name not in names():
             close = difflib.get_close_matches(name, names(), n=2)
             hint = f"; did you mean {' or '.join(close)}?" if close else ""
-            raise BadInput(f"{name}: no such parameter{hint} (accepted: {', '.join(names(script))})")
+            raise BadInput(f"{brief(name)}: no such parameter{hint} (accepted: {', '.join(names(script))})")
     return {name: table()[name].check(value) for name, value in given.items()}
+
+
+def released(values: dict[str, Value], given: Iterable[str]) -> dict[str, Value]:
+    """Those of a scene's values that are open again where `given` are set, at their defaults."""
+    return {name: table()[name].default for name, causes in FOLLOWS.items()
+            if name in values and name not in given and set(causes) & set(given) and values[name] != table()[name].default}
+
+
+def release(name: str, value: Value, causes: Iterable[str]) -> str:
+    """What is said of an entry that is open again."""
+    fixed = f"{value:g}" if isinstance(value, float) else brief(value)
+    return f"{name} is open again: the scene's {fixed} was for its own {', '.join(causes)}"
 
 
 def defaults(script: str = "disc-plane") -> dict[str, Value]:
@@ -116,9 +134,9 @@ def overrides(texts: list[str]) -> dict[str, str]:
     pairs = [text.partition("=") for text in texts]
     for name, equals, value in pairs:
         if not (name and equals and value):
-            raise BadInput(f"--set: '{name}{equals}{value}' is not of the form name=value")
+            raise BadInput(f"--set: '{brief(name + equals + value)}' is not of the form name=value")
     names = [name.strip() for name, _, _ in pairs]
     for name in names:
         if names.count(name) > 1:
-            raise BadInput(f"--set: {name} is given {names.count(name)} times (accepted: once)")
+            raise BadInput(f"--set: {brief(name)} is given {names.count(name)} times (accepted: once)")
     return {name.strip(): value.strip() for name, _, value in pairs}

@@ -5,12 +5,14 @@ and closed it is a block, counter-clockwise a container. Open, it goes straight 
 `rounding` [m] from the chain on the free side: convex corners become arcs of that radius, concave ones stay corners (edp/core/contact/shapes.idp).
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from .failure import BadInput
 
+CORNER = math.radians(30)    # what turns by less at a vertex is no corner (edp/core/contact/shapes.idp)
 NEAR = 1e-12                 # of the chain's size: what round-off cannot tell apart
 
 
@@ -60,7 +62,7 @@ def numbers(vertices: np.ndarray, closed: bool, rounding: float) -> tuple[float,
 
 def gap(points: np.ndarray, numbers: tuple[float, ...]) -> np.ndarray:
     """Signed distances (n,) of points (n, 2) from the surface of the chain `numbers`, negative inside the solid."""
-    sides = _sides(np.reshape(numbers[2:], (-1, 2)), bool(numbers[0]))
+    sides = sides_of(numbers)
     from_start = points[:, None] - sides.start                                       # (n, m, 2)
     at = np.sum(from_start * sides.along, axis=2)
     away = from_start - np.clip(at, sides.low, sides.high)[..., None] * sides.along  # from the nearest point of each side
@@ -73,6 +75,21 @@ def gap(points: np.ndarray, numbers: tuple[float, ...]) -> np.ndarray:
     beyond = (at > sides.high[nearest])[:, None] * after + (at < sides.low[nearest])[:, None] * before
     side = np.sum(away * (normal[nearest] + beyond), axis=1)
     return np.where(side < 0, -1, 1) * distance[row, nearest] - numbers[1]
+
+
+def sides_of(numbers: tuple[float, ...]) -> Sides:
+    """Those of the chain `numbers`."""
+    return _sides(np.reshape(numbers[2:], (-1, 2)), bool(numbers[0]))
+
+
+def radius_at(point: np.ndarray, within: float, numbers: tuple[float, ...]) -> float:
+    """The rounding [m] where a convex corner is as near to a point (2,) as any of the chain, or by `within` [m] less; infinite where none is."""
+    sides = sides_of(numbers)
+    before, after = (np.roll(sides.along, 1, axis=0), sides.along) if sides.closed else (sides.along[:-1], sides.along[1:])
+    turn = np.arctan2(-_cross(before, after), np.sum(before * after, axis=1))       # clockwise: the solid is to the right
+    corners = (sides.start if sides.closed else sides.start[1:])[turn > CORNER]
+    near = np.linalg.norm(point - corners, axis=1) <= abs(gap(point[None], numbers)[0] + numbers[1]) + within
+    return numbers[1] if near.any() else np.inf
 
 
 def _sides(vertices: np.ndarray, closed: bool) -> Sides:

@@ -1,19 +1,28 @@
-"""What is in the folder of a finished run: its history, its scene as used, its summary."""
+"""What is in the folder of a finished run: its history, its scene as used, its summary. Whatever is wrong with a file of it is Unreadable, in one line: where
+it is not there, makes no sense or lacks what is asked of it, or is another than the run has written (`files` of the provenance)."""
 
+import hashlib
+import io
 import json
 import re
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import pandas as pd
 
-from .failure import Unreadable
+from .failure import Unreadable, brief
 from .parameters import Value
+
+if TYPE_CHECKING:
+    from pandas import DataFrame   # takes longer to load than a run: only where a table is wanted
+
+WRITTEN = ("scene.toml", "history.csv", "contacts.csv", "modes.csv", "fields.pvd", "fields/*.vtu", "fields/contact.csv")   # what is read again
+AGAIN = "delete its folder, or run it again with --force"
 
 
 @dataclass(frozen=True)
@@ -35,35 +44,110 @@ class RunResult:
         return read_scene(self.folder)
 
 
+# ---- files
+
+class Contents(dict):
+    """What the file `path` of a run says by name; Unreadable where a name that is asked for is not there."""
+
+    def __init__(self, said: dict, path: Path):
+        super().__init__({name: _contents(value, path) for name, value in said.items()})
+        self.path = path
+
+    def __missing__(self, name: str):
+        raise Unreadable(f"{self.path} cannot be read: it lacks {name}; {AGAIN}")
+
+    def __reduce__(self):
+        return Contents, (dict(self), self.path)
+
+
+def _contents(value, path: Path):
+    """A value of a file, the tables in it as Contents."""
+    if isinstance(value, list):
+        return [_contents(one, path) for one in value]
+    return Contents(value, path) if isinstance(value, dict) else value
+
+
+@contextmanager
+def reading(path: Path) -> Iterator[None]:
+    """Unreadable where something fails over what is in the file `path` of a run."""
+    try:
+        if path.exists() and not path.is_file():              # reading a pipe or a device might never end
+            raise ValueError("it is no file")
+        yield
+    except (FileNotFoundError, NotADirectoryError) as error:
+        raise Unreadable(f"{path} cannot be read: {error.strerror} (accepted: the folder of a finished run)") from None
+    except (OSError, ValueError, ArithmeticError, LookupError, TypeError, AttributeError, RecursionError, SyntaxError) as error:
+        raise Unreadable(f"{path} cannot be read: {brief(why(error))}; {AGAIN}") from None
+
+
+def content(path: Path) -> str:
+    """The text of the file `path` of a run; Unreadable where there is none, and where the run has written another one."""
+    folder = path.parent.parent if path.parent.name == "fields" else path.parent
+    with reading(path):
+        found = path.read_bytes()
+        files = (read_json(folder / "summary.json").get("provenance") or {}).get("files", {})
+        if hashlib.sha256(found).hexdigest() != files.get(path.relative_to(folder).as_posix(), hashlib.sha256(found).hexdigest()):
+            raise ValueError("it is not as the run has written it")
+        return found.decode()
+
+
+def files_of(folder: Path) -> dict[str, str]:
+    """sha256 by name of what a run has written into `folder` to be read."""
+    return {path.relative_to(folder).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest() for pattern in WRITTEN for path in sorted(folder.glob(pattern))}
+
+
+def check_files(folder: Path) -> None:
+    """Unreadable where one of the files of a finished run is not as the run has written it; one that was taken away is not missed."""
+    for name in (read_json(folder / "summary.json").get("provenance") or {}).get("files", {}):
+        if (folder / name).exists():
+            content(folder / name)
+
+
+def read_table(path: Path, columns: Iterable[str] = ()) -> "DataFrame":
+    """A table of a run, all numbers; Unreadable where it is not one that has these columns, and where it is cut off."""
+    import pandas as pd
+    text = content(path)
+    with reading(path):
+        lines = text.split("\n")
+        if lines.pop() or len({line.count(",") for line in lines}) != 1:
+            raise ValueError("it is empty, cut off, or has rows of several lengths")
+        table = pd.read_csv(io.StringIO(text), skip_blank_lines=False)
+        if words := [name for name in table if not pd.api.types.is_numeric_dtype(table[name]) and len(table)]:
+            raise ValueError(f"there is more than numbers in {', '.join(words)}")
+        if lacks := [name for name in columns if name not in table]:
+            raise ValueError(f"it lacks the columns {', '.join(lacks)}")
+        return table
+
+
+def read_frame(path: Path, columns: Iterable[str] = (), **options) -> "DataFrame":
+    """A table that a study or a sweep has written, words too."""
+    import pandas as pd
+    with reading(path):
+        table = pd.read_csv(path, **options)
+        if lacks := [name for name in columns if name not in table]:
+            raise ValueError(f"it lacks the columns {', '.join(lacks)}")
+        return table
+
+
 def read_history(folder: Path) -> dict[str, np.ndarray]:
-    """The columns of history.csv by name, each (steps,); Unreadable when it is missing or no table of numbers."""
+    """The columns of history.csv by name, each (steps,)."""
     path = folder / "history.csv"
-    try:
-        with open(path) as file:
-            columns = file.readline().strip().split(",")
-            rows = np.loadtxt(file, delimiter=",", ndmin=2)
-        return dict(zip(columns, rows.T, strict=True))
-    except (OSError, ValueError) as error:
-        raise Unreadable(f"{path} cannot be read: {why(error)}") from None
-
-
-def read_table(path: Path, columns: Iterable[str]) -> pd.DataFrame:
-    """A table of a run; Unreadable where it is not one that has these columns."""
-    try:
-        table = pd.read_csv(path)
-    except (OSError, ValueError) as error:
-        raise Unreadable(f"{path} cannot be read: {error}; run with --force") from None
-    if lacks := [name for name in columns if name not in table]:
-        raise Unreadable(f"{path} lacks the columns {', '.join(lacks)}; run with --force")
-    return table
+    head, _, rows = content(path).partition("\n")
+    with reading(path):
+        if not rows.endswith("\n"):
+            raise ValueError("it is empty or cut off")
+        table = np.loadtxt(rows.splitlines(), delimiter=",", ndmin=2)
+        if len(table) <= (steps := read_json(folder / "summary.json").get("steps", 0)):   # one more, of the start
+            raise ValueError(f"it has {len(table)} rows of {steps + 1}")
+        return Contents(dict(zip(head.split(","), table.T, strict=True)), path)
 
 
 def read_scene(folder: Path) -> dict[str, Value]:
     """scene.toml: every parameter as used."""
-    try:
-        return tomllib.loads((folder / "scene.toml").read_text())
-    except (OSError, ValueError) as error:
-        raise Unreadable(f"{folder / 'scene.toml'} cannot be read: {why(error)}") from None
+    path = folder / "scene.toml"
+    text = content(path)
+    with reading(path):
+        return Contents(tomllib.loads(text), path)
 
 
 class Answers(NamedTuple):
@@ -110,24 +194,24 @@ def suffixes(columns: Iterable[str]) -> list[str]:
 
 def read_summary(folder: Path) -> dict:
     """summary.json of a finished run."""
-    try:
-        summary = json.loads((folder / "summary.json").read_text())
+    path = folder / "summary.json"
+    with reading(path):
+        summary = json.loads(path.read_text("utf-8"))
         if summary["status"] != "ok":
             raise ValueError(f"status is {summary['status']!r}")
-        if not isinstance(summary.get("provenance", {}), dict):
-            raise ValueError("provenance is no table")
-        return summary
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise Unreadable(f"{folder / 'summary.json'} cannot be read: {why(error)}") from None
+        for name, kind in (("provenance", dict), ("warnings", list)):
+            if not isinstance(summary.get(name, kind()), kind):
+                raise ValueError(f"{name} is no {kind.__name__}")
+        return Contents(summary, path)
 
 
 def read_json(path: Path) -> dict:
     """What is in a file, {} where there is none or it makes no sense."""
     try:
-        content = json.loads(path.read_text())
-    except (OSError, ValueError):
+        said = json.loads(path.read_text("utf-8")) if path.is_file() else {}
+    except (OSError, ValueError, RecursionError):
         return {}
-    return content if isinstance(content, dict) else {}
+    return said if isinstance(said, dict) else {}
 
 
 def write_json(path: Path, content: dict) -> None:
@@ -135,4 +219,5 @@ def write_json(path: Path, content: dict) -> None:
 
 
 def why(error: Exception) -> str:
-    return getattr(error, "strerror", None) or f"{type(error).__name__}: {error}"
+    said = str(error) if isinstance(error, ValueError) else f"{type(error).__name__}: {error}"
+    return getattr(error, "strerror", None) or said

@@ -111,7 +111,8 @@ def whole(half: mesh.Mesh) -> mesh.Mesh:
     mirrored = np.where(off, n + np.cumsum(off) - 1, np.arange(n))
     outer = half.labels != mesh.AXIS
     return mesh.Mesh(np.vstack([half.points, half.points[off] * [-1, 1]]), np.vstack([half.triangles, mirrored[half.triangles][:, ::-1]]),
-                     np.vstack([half.edges[outer], mirrored[half.edges[outer]][:, ::-1]]), np.tile(half.labels[outer], 2))
+                     np.vstack([half.edges[outer], mirrored[half.edges[outer]][:, ::-1]]), np.tile(half.labels[outer], 2),
+                     np.vstack([half.hubs[outer], half.hubs[outer] * [-1, 1]]))
 
 
 def mirrored(path: str, chain: np.ndarray) -> tuple[np.ndarray, bool]:

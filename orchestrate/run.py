@@ -8,40 +8,44 @@ import hashlib
 import json
 import math
 import os
+import re
 import signal
 import subprocess
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager, nullcontext
+from collections.abc import Iterable
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 
-from . import estimate as estimates, freefem, mesh
+from . import __version__, estimate as estimates, freefem, mesh
 from .failure import BadInput, Failure, TooLong, Unreadable
 from .folder import checkpoints, clear, failed_beside, finished_in, replace, result_folder, staging, unfinished
 from .multibody import Multibody
-from .parameters import ROOT, Value
-from .places import shown
-from .results import RunResult, read_answers, read_history, read_json, read_scene, read_summary, write_json
+from .parameters import Value
+from .places import INSTALLED, PACKAGE, RESULTS, ROOT, shown
+from .progress import Line
+from .results import RunResult, check_files, files_of, read_answers, read_history, read_json, read_scene, read_summary, write_json
 from .scene import Scene
 from .tables import to_toml
+from .told import Told, runs
 
-DECISIVE = ("approach", "assembly", "bodies", "dimension", "flat", "gmsh_file", "mesh", "mirror", "multibody", "obstacles", "outlines", "polyline", "revolution",
-            "solid_file", "solid_mesh", "solids", "tables", "tumbling")
+ENTRANCE = "scene"                     # the module that makes flags, mesh and scene.dat, with all that it imports
+HARMLESS = {"describe", "estimate", "failure", "freefem", "places", "results"}     # of these: what asks, starts, says and reads, and does not decide a result
 ESTIMATING = ("estimate", "results")   # what decides the stated errors besides
 FAILURES = {10: "bad input", 11: "step failed", 12: "material broke down", 13: "not installed", 14: "unreadable"}
 
 
 def run(scene: Scene | Multibody, overrides: dict[str, Value] | None = None, out: Path | None = None, *,
-        mesh_file: Path | None = None, force: bool = False, progress: bool = False, estimate: bool = True) -> RunResult:
+        mesh_file: Path | None = None, force: bool = False, progress: bool | None = None, estimate: bool = True) -> RunResult:
     """Runs `scene` with some parameters overridden in the folder `out` (default results/<scene>), or reuses it.
 
     Raises Failure with the exit code of the run contract. `force` runs again, from the start, even if the folder is up to
     date. With a checkpoint_every > 0 a run that is killed goes on from its last checkpoint when it is asked for again.
+    `progress` says whether a line shows how far it is (None: on a terminal and in a notebook).
     With `estimate` a second, coarser run estimates the error, and finer ones follow until it is below the accuracy (estimate.py).
     """
     scene = scene.override(overrides or {})
-    folder = result_folder(out or ROOT / "results" / scene.name)
+    folder = result_folder(out or RESULTS / scene.name)
     if mesh_file:
         mesh_file = _mesh_path(mesh_file)
     foreign = mesh.load(mesh_file) if mesh_file else None
@@ -53,10 +57,10 @@ def run(scene: Scene | Multibody, overrides: dict[str, Value] | None = None, out
     program = freefem.find()
     if scene.meshed and not foreign:
         mesh.start_gmsh()
-    with staging(folder) as (stage, lock):
+    with Line(scene.name, runs(estimate), progress) as line, staging(folder) as (stage, lock):
         if not force and (there := reusable(scene, folder, mesh_file, estimate)):   # another run has finished it meanwhile
             return there
-        provenance = {"script": scene.script, "code": code_hash(), "freefem": program.version,
+        provenance = {"script": scene.script, "version": __version__, "code": code_hash(), "freefem": program.version,
                       "gmsh": _gmsh(scene, mesh_file)}
         asked_for = {"asked": scene.asked, "estimate": estimate and _hash(ESTIMATING)}
         asked = asked_for | provenance | {"mesh": _sha256(mesh_file) if mesh_file else None}
@@ -64,9 +68,15 @@ def run(scene: Scene | Multibody, overrides: dict[str, Value] | None = None, out
             clear(stage)
             write_json(stage / "checkpoint.json", asked)
 
+        seconds = []
+
         def solve(given: dict[str, Value], where: Path) -> None:
-            with _progress_line(scene.name) if progress else nullcontext() as show:
-                _solve(program, scene.override(given), foreign, where, lock, show)
+            told = Told(line, scene, mesh_file, "main run" if where == stage else f"{where.name} run", 1 + len(seconds))
+            try:
+                _solve(program, scene.override(given), foreign, where, lock, told)
+                told.at("ready", 1.0)
+            finally:
+                seconds.append((read_json(where / "summary.json") or read_json(where / "failure.json")).get("wall_seconds", 0.0))
 
         try:
             solve({}, stage)
@@ -82,13 +92,14 @@ def run(scene: Scene | Multibody, overrides: dict[str, Value] | None = None, out
             raise
         provenance |= asked_for | {"git": _git(), "mesh": _sha256(mesh_file or stage / scene.mesh_name) if scene.meshed else None}
         _say_where(stage, folder)
-        _finish(stage, found, provenance)
+        _tell_accuracy(stage / "scene.toml", scene.values["accuracy"])
+        _finish(stage, scene, found | {"total_seconds": sum(seconds)}, provenance)
         replace(stage, folder, _same_scene(folder, scene, mesh_file))
     return RunResult(folder, read_summary(folder), reused=False)
 
 
 def _solve(program: freefem.FreeFem, scene: Scene | Multibody, foreign: bytes | None, where: Path, lock: int,
-           show: freefem.Progress | None) -> None:
+           told: Told) -> None:
     """Runs the scene in the folder `where`: from its checkpoint where there is one, not again where it is finished."""
     if (where / "summary.json").exists():
         return
@@ -97,12 +108,14 @@ def _solve(program: freefem.FreeFem, scene: Scene | Multibody, foreign: bytes | 
         where.mkdir(exist_ok=True)
         if not (where / "checkpoint.json").exists():   # what makes the folder ours
             write_json(where / "checkpoint.json", scene.asked)
+    told.at("mesh")
     given, scene_toml = scene.prepare(where, foreign)
+    told.at("set-up")
     given = given | {"out": where} | ({"restart": where / "checkpoint"} if goes_on else {})
     flags = [text for name, value in given.items() for text in (f"-{name}", str(value))]
-    exit_code, said = freefem.run(program, scene.script, flags, where / "log.txt", show, lock)
+    exit_code, said = freefem.run(program, scene.script, flags, where / "log.txt", told.show, lock)
     if scene_toml and (where / "scene.toml").exists():
-        (where / "scene.toml").write_text(scene_toml)
+        (where / "scene.toml").write_text(scene_toml, "utf-8")
     _check(where, exit_code, said)
 
 
@@ -144,13 +157,21 @@ def _tail(stage: Path) -> str:
     return "end of its log: " + " | ".join([line for line in lines if line and not line.startswith("progress ")][-4:])
 
 
-def _finish(stage: Path, found: dict, provenance: dict) -> None:
+def _tell_accuracy(path: Path, asked: float) -> None:
+    """scene.toml says what was asked for beside the accuracy as used, where finer runs were made for it."""
+    used = read_scene(path.parent)["accuracy"]
+    if not math.isclose(used, asked):
+        why = f"   # asked for: {asked:g}; this one, with the sizes of mesh and steps, for the estimated error\n"
+        path.write_text(re.sub(r"(?m)^(accuracy = \S+)\n", rf"\1{why}", path.read_text("utf-8"), count=1), "utf-8")
+
+
+def _finish(stage: Path, scene: Scene | Multibody, found: dict, provenance: dict) -> None:
     """The summary with what was `found` beside the run and its provenance, last and by rename."""
     summary = read_summary(stage)
     found["warnings"] = summary.get("warnings", []) + found.get("warnings", [])
     if found.get("estimated_error"):
         summary["skipped"] = [name for name in summary["skipped"] if name != "error estimate"]
-    summary |= {"estimated_error": None} | found | {"provenance": provenance}
+    summary |= {"estimated_error": None, "released": list(scene.released)} | found | {"provenance": provenance | {"files": files_of(stage)}}
     (stage / "summary.json").unlink()
     write_json(stage / "summary.json.part", summary)
     os.replace(stage / "summary.json.part", stage / "summary.json")
@@ -160,20 +181,9 @@ def _keep_failed(stage: Path, failure: Failure, scene: Scene | Multibody, proven
     """failure.json: the one the script wrote, or what is known; never a summary.json."""
     (stage / "summary.json").unlink(missing_ok=True)
     if not (stage / "scene.toml").exists():
-        (stage / "scene.toml").write_text(to_toml(scene.given))
+        (stage / "scene.toml").write_text(to_toml(scene.given), "utf-8")
     record = {"status": FAILURES.get(failure.code, "crashed"), "message": str(failure)} | read_json(stage / "failure.json")
     write_json(stage / "failure.json", record | {"exit_code": failure.code, "provenance": provenance})
-
-
-@contextmanager
-def _progress_line(name: str) -> Iterator[freefem.Progress]:
-    """One line on stderr, gone at the end."""
-    from tqdm import tqdm
-    with tqdm(total=1.0, desc=name, leave=False, bar_format="{desc} {percentage:3.0f}% |{bar}| {elapsed}{postfix}") as line:
-        def show(fraction: float, t: str, steps: str) -> None:
-            line.n = min(max(fraction, line.n), 1.0) if math.isfinite(fraction) else line.n
-            line.set_postfix_str(f"t = {float(t) * 1e3:.3f} ms, {steps} steps")
-        yield show
 
 
 # ---- reuse
@@ -184,18 +194,33 @@ def reusable(scene: Scene | Multibody, folder: Path, mesh_file: Path | None = No
     summary = finished_in(folder, force=False)
     same = (summary and (folder / "history.csv").exists() and summary.get("provenance", {}).get("code") == code_hash()
             and (summary["provenance"].get("estimate") == _hash(ESTIMATING) or not estimate) and read_scene(folder) and _same_scene(folder, scene, mesh_file))
+    if same:
+        check_files(folder)
     return RunResult(folder, summary, reused=True) if same else None
 
 
 def code_hash() -> str:
     """sha256 over what decides a result besides the scene: the FreeFEM scripts and what makes meshes and scene.dat."""
-    return _hash(DECISIVE, sorted(path for path in (ROOT / "edp").rglob("*") if path.suffix in (".edp", ".idp")))
+    return _hash(sorted(imported(ENTRANCE) - HARMLESS), sorted(path for path in (ROOT / "edp").rglob("*") if path.suffix in (".edp", ".idp")))
+
+
+@cache
+def imported(name: str, package: Path = PACKAGE) -> set[str]:
+    """A module of the package and those of it that it imports, wherever in it, or they do."""
+    found, open_ones = set(), {name}
+    while open_ones:
+        found.add(module := open_ones.pop())
+        said = re.findall(r"(?m)^\s*from \.(\w*) import (\([^)]*\)|.*)", (package / f"{module}.py").read_text("utf-8"))
+        names = {name for source, listed in said for name in ([source] if source else re.findall(r"\w+", listed))}
+        open_ones |= {name for name in names if (package / f"{name}.py").exists()} - found
+    return found
 
 
 def _hash(modules: Iterable[str], files: Iterable[Path] = ()) -> str:
     digest = hashlib.sha256()
-    for path in [*files, *(ROOT / f"orchestrate/{name}.py" for name in modules)]:
-        digest.update(f"{path.relative_to(ROOT)}\n".encode() + path.read_bytes())
+    named = {path.relative_to(ROOT): path for path in files} | {f"orchestrate/{name}.py": PACKAGE / f"{name}.py" for name in modules}
+    for name, path in named.items():
+        digest.update(f"{name}\n".encode() + path.read_bytes())
     return digest.hexdigest()
 
 
@@ -238,7 +263,9 @@ def _sha256(path: Path) -> str:
 
 
 def _git() -> str:
-    """The commit, with -dirty where the tree differs from it."""
+    """The commit, with -dirty where the tree differs from it; unknown where the program is installed, in whosever folder."""
+    if INSTALLED:
+        return "unknown"
     try:
         return subprocess.run(["git", "describe", "--always", "--dirty", "--abbrev=40", "--exclude=*"], cwd=ROOT,
                               capture_output=True, text=True, check=True).stdout.strip()

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from . import estimate, mesh, parameters
 from .describe import describe
-from .failure import BadInput
+from .failure import BadInput, brief
 
 SCENES = Path(__file__).resolve().parent / "scenes"
 
@@ -20,10 +20,14 @@ class Scene:
     title: str
     script: str
     values: dict[str, parameters.Value]
+    released: tuple[str, ...] = ()      # sentences: what was fixed for others that are set now
 
     def override(self, given: dict[str, parameters.Value]) -> "Scene":
-        """The same scene with some parameters set (text or values); BadInput where one is not accepted."""
-        return replace(self, values=self.values | self.check(given))
+        """The same scene with some parameters set (text or values), and open again what it had fixed for them (FOLLOWS); BadInput where one is not accepted."""
+        checked = self.check(given)
+        opened = parameters.released(self.values, checked)
+        said = tuple(parameters.release(name, self.values[name], [cause for cause in parameters.FOLLOWS[name] if cause in checked]) for name in opened)
+        return replace(self, values=self.values | opened | checked, released=self.released + said)
 
     def check(self, given: dict[str, parameters.Value]) -> dict[str, parameters.Value]:
         """The given entries of such a scene, checked one by one and converted; BadInput."""
@@ -110,7 +114,7 @@ def read_toml(path: Path, missing: str) -> tuple[str, dict]:
     try:
         if path.exists() and not path.is_file() and not path.is_dir():   # reading a pipe or a device might never end
             raise BadInput(f"{path}: is no file")
-        text = path.read_text()
+        text = path.read_text("utf-8")
         return text, tomllib.loads(text)
     except (FileNotFoundError, IsADirectoryError, NotADirectoryError):
         raise BadInput(missing) from None
@@ -143,7 +147,7 @@ def _read(given: dict, path: Path) -> "Scene | multibody.Multibody":
     script, title = given.pop("script", "disc-plane"), given.pop("title", path.stem)
     scripts = [word for word in describe()["scripts"].split("|") if word not in dimension.SCRIPTS]
     if script in dimension.SCRIPTS:
-        raise BadInput(f"body: is missing, which script = '{script}' needs (accepted: one table [[body]] or more)")
+        raise BadInput(f"body: is missing, which script = '{brief(script)}' needs (accepted: one table [[body]] or more)")
     if script not in scripts:
-        raise BadInput(f"script: '{script}' is not known (accepted: {'|'.join(scripts)})")
+        raise BadInput(f"script: '{brief(script)}' is not known (accepted: {'|'.join(scripts)})")
     return Scene(path.stem, title, script, parameters.defaults(script) | parameters.check(given, script))

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what is missing and nothing else: FreeFem++ with its plugins, OpenBLAS, the libraries that
-# gmsh's wheel needs, and a .venv with the packages that pyproject.toml pins. For Debian and Ubuntu.
+# gmsh's wheel needs, and a .venv with the packages that requirements.lock pins. For Debian and Ubuntu.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -73,7 +73,7 @@ if ! probe; then
 fi
 
 [ -x .venv/bin/python ] || "$(find_python)" -m venv .venv || stop "no python >= 3.11 with venv found; apt-get install python3 python3-venv"
-.venv/bin/python -c 'import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["dependencies"], sep="\n")' \
-  | .venv/bin/python -m pip install -q --disable-pip-version-check -r /dev/stdin
+.venv/bin/python -m pip install -q --disable-pip-version-check -r requirements.lock
 .venv/bin/python -c 'import gmsh, matplotlib.pyplot'   # they load, and matplotlib's font list is made now, not in the first run
+.venv/bin/python -c 'from orchestrate import freefem; freefem.find()'   # builds edp/libclock.so where there is a compiler
 say "ready"

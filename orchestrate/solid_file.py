@@ -17,7 +17,7 @@ from . import mesh
 from .failure import BadInput
 from .mesh import FREE, Sizes
 from .places import ROOT
-from .solid_mesh import NEVER, TURN, SolidMesh, boundary, cell_volumes, cells_of, generate
+from .solid_mesh import NEVER, TURN, SolidMesh, boundary, cell_volumes, cells_of, generate, pieces
 
 MESHES, GEOMETRIES = (".msh", ".mesh"), (".geo", ".step", ".stp")
 CONTACT = "contact"
@@ -104,7 +104,7 @@ def _meshed(path: Path, sizes: Sizes | None) -> SolidMesh:
     def label(gmsh, points: np.ndarray, cells: np.ndarray) -> None:
         found.append(_labelled(gmsh.model, points, cells))
 
-    generate(build, sizes or Sizes(0.0, 0.0, np.empty((0, 3)), 0.0), TURN["geometry"], label)
+    generate(build, sizes or Sizes(0.0, 0.0, np.empty((0, 3)), 0.0), TURN, label)
     return found[0]
 
 
@@ -113,10 +113,11 @@ def _labelled(model, points: np.ndarray, cells: np.ndarray) -> SolidMesh:
     volumes = cell_volumes(points, cells)
     if not (volumes > 1e-12 * np.ptp(points, axis=0).max()**3 / len(cells)).all():
         raise BadInput(f"a tetrahedron is flat: its volume is {np.nanmin(volumes):.3g} m3, or it has a corner that is no number")
-    count = len(np.unique(_pieces(len(points), cells)[cells[:, 0]]))
+    count = len(np.unique(pieces(len(points), cells)[cells[:, 0]]))
     if count > 1:
         raise BadInput(f"its tetrahedra are {count} pieces that hang together nowhere (accepted: one, a [[body]] table and a file a piece)")
     faces = boundary(cells)
+    _check_surface(points, faces)
     named = _contact_triangles(model)
     if named is None:
         return SolidMesh(points, cells, faces, np.where(_is_outer(points, faces), FREE, NEVER))
@@ -129,6 +130,24 @@ def _labelled(model, points: np.ndarray, cells: np.ndarray) -> SolidMesh:
     if not (labels == FREE).any():
         raise BadInput(f"its physical surface '{CONTACT}' is not on its boundary")
     return SolidMesh(points, cells, faces, labels)
+
+
+def _check_surface(points: np.ndarray, faces: np.ndarray) -> None:
+    """BadInput where the body hangs together by an edge or a point alone: a side of boundary faces belongs to two of them, and around a point of the boundary
+    they follow each other in one turn."""
+    corners = np.arange(3 * len(faces)).reshape(-1, 3)
+    sides, ends = (of[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2) for of in (faces, corners))
+    ends = np.where((sides[:, 0] > sides[:, 1])[:, None], ends[:, ::-1], ends)
+    found, which, count = np.unique(np.sort(sides, axis=1), axis=0, return_inverse=True, return_counts=True)
+    def place(point: int) -> str:
+        return "({:g}, {:g}, {:g})".format(*points[point])
+    if (count != 2).any():
+        a, b = found[np.argmax(count != 2)]
+        raise BadInput(f"it hangs together by an edge alone, from {place(a)} to {place(b)} (accepted: tetrahedra that hang together by faces)")
+    first, second = ends[np.argsort(which.ravel(), kind="stable")].reshape(-1, 2, 2).transpose(1, 0, 2)
+    turns = np.unique(np.column_stack([faces.ravel(), pieces(corners.size, np.column_stack([first.ravel(), second.ravel()]))]), axis=0)[:, 0]
+    if len(twice := turns[1:][turns[1:] == turns[:-1]]):
+        raise BadInput(f"it hangs together by a point alone, {place(twice[0])} (accepted: tetrahedra that hang together by faces)")
 
 
 def _contact_triangles(model) -> np.ndarray | None:
@@ -148,22 +167,10 @@ def _contact_triangles(model) -> np.ndarray | None:
 
 def _is_outer(points: np.ndarray, faces: np.ndarray) -> np.ndarray:
     """Which boundary faces (f,) are around a body rather than around a cavity: pieces of surface that hang together, with a volume above 0."""
-    piece = _pieces(len(points), faces)
+    piece = pieces(len(points), faces)
     a, b, c = points[faces].transpose(1, 0, 2) - points.mean(axis=0)
     volume = np.bincount(piece[faces[:, 0]], weights=(a * np.cross(b, c)).sum(axis=1), minlength=len(points))
     return volume[piece[faces[:, 0]]] > 0
-
-
-def _pieces(points: int, elements: np.ndarray) -> np.ndarray:
-    """The piece (points,) that each point belongs to, by the lowest number of a point in it: elements (n, corners) hang together by common points."""
-    piece = np.arange(points)
-    while True:
-        least = piece[elements].min(axis=1)
-        before = piece.copy()
-        np.minimum.at(piece, elements.ravel(), np.repeat(least, elements.shape[1]))
-        piece = piece[piece]
-        if (piece == before).all():
-            return piece
 
 
 if __name__ == "__main__":

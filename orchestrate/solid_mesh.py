@@ -15,7 +15,7 @@ from .mesh import AXIS, FREE, GROWTH, Sizes
 
 DEPTH, NEVER = 3, 4
 PLANES = {0: AXIS, 2: DEPTH}       # of symmetry: the axis across it, and its label
-TURN = {"cylinder": 20, "geometry": 16}     # elements on a full turn of a curved surface at least
+TURN = 20                          # elements on a full turn of a curved surface at least
 LARGEST = 0.52                     # element of a ball over its radius: twelve on a full turn
 FACES = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])     # of a tetrahedron, counter-clockwise seen from outside
 MOST_SOURCES = 2000                # points that sizes are measured from
@@ -25,13 +25,34 @@ MOST_UNKNOWNS = 150_000            # displacement unknowns of a run
 
 
 @dataclass(frozen=True)
+class Curved:
+    """A sphere, without an axis (), or a cylinder, about a point of its axis with its direction (3,)."""
+
+    centre: np.ndarray
+    axis: np.ndarray
+    radius: float
+
+    def arms(self, points: np.ndarray) -> np.ndarray:
+        """Vectors (..., 3) to points from the centre, or from the nearest points of the axis."""
+        away = points - self.centre
+        return away - (away @ self.axis)[..., None] * self.axis if len(self.axis) else away
+
+    def onto(self, points: np.ndarray) -> np.ndarray:
+        """Points (n, 3) moved straight onto it."""
+        arms = self.arms(points)
+        return points + arms * (self.radius / np.linalg.norm(arms, axis=1, keepdims=True) - 1)
+
+
+@dataclass(frozen=True)
 class SolidMesh:
-    """points (n, 3) in m, tetrahedra (t, 4) of positive volume, faces (f, 3) of the boundary seen counter-clockwise from outside, their labels (f,)."""
+    """points (n, 3) in m, tetrahedra (t, 4) of positive volume, faces (f, 3) of the boundary seen counter-clockwise from outside, their labels (f,); the
+    spheres and cylinders that faces lie on."""
 
     points: np.ndarray
     cells: np.ndarray
     faces: np.ndarray
     labels: np.ndarray
+    curved: tuple[Curved, ...] = ()
 
     def moved(self, by: np.ndarray) -> "SolidMesh":
         """The same mesh, `by` [m] elsewhere."""
@@ -63,6 +84,18 @@ def boundary(cells: np.ndarray) -> np.ndarray:
 def right_handed(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
     """The tetrahedra (t, 4), those that are inside out turned over."""
     return np.where(cell_volumes(points, cells)[:, None] < 0, cells[:, [0, 1, 3, 2]], cells)
+
+
+def pieces(points: int, elements: np.ndarray) -> np.ndarray:
+    """The piece (points,) that each point belongs to, by the lowest number of a point in it: elements (n, corners) hang together by common points."""
+    piece = np.arange(points)
+    while True:
+        least = piece[elements].min(axis=1)
+        before = piece.copy()
+        np.minimum.at(piece, elements.ravel(), np.repeat(least, elements.shape[1]))
+        piece = piece[piece]
+        if (piece == before).all():
+            return piece
 
 
 def unknowns(cells: np.ndarray, degree: int) -> int:
@@ -98,7 +131,7 @@ def mesh_shape(kind: str, lengths: np.ndarray, rotation: np.ndarray, folded: tup
             occ.intersect([(3, tag)], [(3, half)])
         occ.synchronize()
 
-    points, cells = generate(build, Sizes(bulk * unit, min(bulk, sizes.contact) * unit, sizes.near * unit, sizes.slack * unit), TURN.get(kind, 0))
+    points, cells = generate(build, Sizes(bulk * unit, min(bulk, sizes.contact) * unit, sizes.near * unit, sizes.slack * unit), TURN if kind == "cylinder" else 0)
     points = points / unit
     faces = boundary(cells)
     labels = np.full(len(faces), FREE)
@@ -106,10 +139,13 @@ def mesh_shape(kind: str, lengths: np.ndarray, rotation: np.ndarray, folded: tup
         on = (abs(points[faces][:, :, axis]) < 1e-7 * scale).all(axis=1)
         labels[on] = PLANES[axis]
         points[np.unique(faces[on]), axis] = 0
-    if kind == "ball":
-        sphere = np.unique(faces[labels == FREE])
-        points[sphere] *= lengths[0] / np.linalg.norm(points[sphere], axis=1, keepdims=True)
-    return SolidMesh(points, cells, faces, labels)
+    if kind == "box":
+        return SolidMesh(points, cells, faces, labels)
+    round_one = Curved(np.zeros(3), rotation[:, 1] if kind == "cylinder" else np.array([]), float(lengths[0]))
+    ends = np.zeros(len(faces), dtype=bool) if kind == "ball" else np.ptp(points[faces] @ rotation[:, 1], axis=1) < 1e-7 * scale
+    side = np.unique(faces[(labels == FREE) & ~ends])
+    points[side] = round_one.onto(points[side])
+    return SolidMesh(points, cells, faces, labels, (round_one,))
 
 
 def generate(build: Callable, sizes: Sizes, turn: int, look: Callable | None = None) -> tuple[np.ndarray, np.ndarray]:

@@ -20,8 +20,8 @@ from typing import Protocol
 
 import numpy as np
 
-from . import solid_file, tumbling
-from .failure import BadInput
+from . import curved, solid_file, tumbling
+from .failure import BadInput, brief
 from .outlines import normal_of
 from .solid_mesh import MOST_CELLS, Sizes, SolidMesh, expected_cells, mesh_shape
 from .tables import LONGEST, SHORTEST, Table
@@ -353,17 +353,22 @@ def mesh_of(body, sizes: Sizes | None, folded: tuple[int, ...]) -> SolidMesh:
     body not turned; of that what lies on the positive side of the planes across the axes `folded`."""
     solid = body.at(0.0, np.zeros(3))
     if body.mesh:
-        return replace(body.mesh, points=body.mesh.points @ solid.rotation.T)
+        return _with_curves(replace(body.mesh, points=body.mesh.points @ solid.rotation.T))
     expected = expected_cells(solid.volume, sizes) / 2**len(folded)
     if expected > MOST_CELLS:
         raise BadInput(f"mesh_size: '{body.name}' would have about {expected:.2g} tetrahedra (accepted: up to {MOST_CELLS}; larger mesh_size, contact_mesh_size or accuracy)")
     if solid.geometry:
         path, centre = solid.geometry
         made = solid_file.meshed(path, replace(sizes, near=sizes.near + centre))
-        return replace(made, points=(made.points - (centre if solid.radius else made.centre)) @ solid.rotation.T)
+        return _with_curves(replace(made, points=(made.points - (centre if solid.radius else made.centre)) @ solid.rotation.T))
     shape = solid.shape
     lengths = shape.extent if isinstance(shape, Box) else np.array([shape.radius] if isinstance(shape, Ball) else [shape.radius, shape.height])
     return mesh_shape(type(shape).__name__.lower(), lengths, solid.rotation, folded, replace(sizes, near=sizes.near @ solid.rotation.T), solid.half_thickness)
+
+
+def _with_curves(made: SolidMesh) -> SolidMesh:
+    """The same with the spheres and cylinders that it has."""
+    return replace(made, curved=tuple(one for one, _ in curved.surfaces(made.points, made.faces)))
 
 
 # ---- tables
@@ -387,29 +392,19 @@ def _of_file(table: Table, folder: Path) -> tuple[Solid, SolidMesh | None]:
         found = solid_file.read(path)
     except BadInput as error:
         raise BadInput(f"{table.path}.file: {error}") from None
-    at, radius = fitted_sphere(found.points[np.unique(found.faces)])
-    centre = at if radius else found.centre
+    ball = next((one for one, own in curved.surfaces(found.points, found.faces) if not len(one.axis) and len(own) == len(found.faces)), None)
+    centre = ball.centre if ball else found.centre
     centred = found.moved(-centre)
-    shape = Ball(radius) if radius else Surface(centred.points[centred.faces])
+    shape = Ball(ball.radius) if ball else Surface(centred.points[centred.faces])
     if solid_file.is_geometry(path):
         return Solid(shape, np.zeros(3), np.eye(3), (path, centre)), None
     return Solid(shape, np.zeros(3), np.eye(3)), centred
 
 
-def fitted_sphere(points: np.ndarray) -> tuple[np.ndarray, float]:
-    """Centre and radius of the sphere that points lie on, to 1e-9 of it; radius 0 where there is none."""
-    middle, scale = points.mean(axis=0), np.ptp(points, axis=0).max()
-    local = (points - middle) / scale
-    found, *_ = np.linalg.lstsq(np.column_stack([2 * local, np.ones(len(local))]), (local**2).sum(axis=1), rcond=None)
-    radius = math.sqrt(max(found[3] + (found[:3]**2).sum(), 0.0))      # r^2 - 2 r c + c^2 = R^2
-    off = abs(np.linalg.norm(local - found[:3], axis=1) - radius).max()
-    return middle + scale * found[:3], scale * radius if len(points) > 8 and off <= 1e-9 * radius else 0.0
-
-
 def motion(table: Table) -> dict:
     """Where a body is at the start and how it moves: position [m], turn [rad], velocity [m/s], spin [rad/s], vectors (3,)."""
     if "angle" in table and "turn" in table:
-        raise BadInput(f"{table.path}.angle: '{table.given['angle']}' stands beside turn (accepted: angle about z, or turn = [x, y, z])")
+        raise BadInput(f"{table.path}.angle: '{brief(table.given['angle'])}' stands beside turn (accepted: angle about z, or turn = [x, y, z])")
     turn = [0.0, 0.0, table.number("angle", -36000, 36000)] if "angle" in table else table.numbers("turn", -36000, 36000, (0.0,) * 3, 3)
     about_z = "spin" in table and not isinstance(table.given["spin"], list)
     spin = [0.0, 0.0, table.number("spin", -1e12, 1e12)] if about_z else table.numbers("spin", -1e12, 1e12, (0.0,) * 3, 3)

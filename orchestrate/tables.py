@@ -2,12 +2,13 @@
 
 import difflib
 import json
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from .failure import BadInput
+from .failure import BadInput, brief
 from .parameters import Parameter, Value
 
 LONGEST = 1e9                # m, m/s: beyond the largest of anything
@@ -21,12 +22,12 @@ class Table:
 
     def __init__(self, path: str, given: dict, accepted: Sequence[str]):
         if not isinstance(given, dict):
-            raise BadInput(f"{path}: '{given}' is no table (accepted: a table with {', '.join(accepted)})")
+            raise BadInput(f"{path}: '{brief(given)}' is no table (accepted: a table with {', '.join(accepted)})")
         for key, value in given.items():
             if key not in accepted:
                 close = difflib.get_close_matches(key, accepted, n=2)
                 hint = f"; did you mean {' or '.join(close)}?" if close else ""
-                raise BadInput(f"{_at(path, key)}: '{value}' belongs to no such key{hint} (accepted: {', '.join(accepted)})")
+                raise BadInput(f"{_at(path, brief(key))}: '{brief(value)}' belongs to no such key{hint} (accepted: {', '.join(accepted)})")
         self.path, self.given = path, given
 
     def at(self, key: str) -> str:
@@ -59,7 +60,7 @@ class Table:
         """A list of polygons, [] where there is none."""
         given = self.given.get(key, [])
         if not isinstance(given, list):
-            raise BadInput(f"{self.at(key)}: '{given}' is no list of polygons (accepted: [[[x, y], ...], ...])")
+            raise BadInput(f"{self.at(key)}: '{brief(given)}' is no list of polygons (accepted: [[[x, y], ...], ...])")
         return [_points(f"{self.at(key)}.{k}", one, 3) for k, one in enumerate(given, 1)]
 
     def word(self, key: str, words: tuple[str, ...]) -> str:
@@ -71,13 +72,13 @@ class Table:
         """true or false."""
         given = self.given.get(key, default)
         if not isinstance(given, bool):
-            raise BadInput(f"{self.at(key)}: '{given}' is neither true nor false (accepted: true|false)")
+            raise BadInput(f"{self.at(key)}: '{brief(given)}' is neither true nor false (accepted: true|false)")
         return given
 
     def text(self, key: str, default: str) -> str:
         given = self.given.get(key, default)
         if not isinstance(given, str):
-            raise BadInput(f"{self.at(key)}: '{given}' is no text (accepted: text in quotes)")
+            raise BadInput(f"{self.at(key)}: '{brief(given)}' is no text (accepted: text in quotes)")
         return given
 
     def _wanted(self, key: str, default, accepted: str) -> None:
@@ -89,27 +90,43 @@ def listed(given: dict, key: str) -> list[dict]:
     """The tables [[key]] of a file, [] where there are none."""
     tables = given.get(key, [])
     if not isinstance(tables, list):
-        raise BadInput(f"{key}: '{tables}' is no list of tables (accepted: [[{key}]])")
+        raise BadInput(f"{key}: '{brief(tables)}' is no list of tables (accepted: [[{key}]])")
     for k, table in enumerate(tables, 1):
         if not isinstance(table, dict):
-            raise BadInput(f"{key}.{k}: '{table}' is no table (accepted: [[{key}]])")
+            raise BadInput(f"{key}.{k}: '{brief(table)}' is no table (accepted: [[{key}]])")
     return tables
 
 
 def to_toml(table: dict, path: str = "") -> str:
-    """The text of a TOML file of tables, lists of tables and values, numbers with all their digits."""
-    values = {key: value for key, value in table.items() if not _tables(value)}
-    text = "".join(f"{key} = {json.dumps(value, ensure_ascii=False)}\n" for key, value in values.items())
+    """The text of a TOML file of tables, lists of tables and values, numbers with all their digits: read again it is the same table."""
+    text = "".join(f"{_key(key)} = {_written(value)}\n" for key, value in table.items() if not _tables(value))
     for key, value in table.items():
         for one in _tables(value):
-            head = f"[{_at(path, key)}]" if isinstance(value, dict) else f"[[{_at(path, key)}]]"
-            text += f"\n{head}\n{to_toml(one, _at(path, key))}"
+            name = _at(path, _key(key))
+            text += f"\n{f'[{name}]' if isinstance(value, dict) else f'[[{name}]]'}\n{to_toml(one, name)}"
     return text
+
+
+def _key(key: str) -> str:
+    return key if re.fullmatch("[A-Za-z0-9_-]+", key) else _written(key)
+
+
+def _written(value) -> str:
+    """A value as TOML writes it: text as JSON does, but DEL; times and dates as Python does."""
+    if isinstance(value, str):
+        if re.search("[\ud800-\udfff]", value):             # a path of other bytes
+            raise BadInput(f"'{brief(value)}': is no text in UTF-8, in which scenes are written down (accepted: names and paths that are)")
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(_written, value))}]"
+    if isinstance(value, dict):
+        return f"{{{', '.join(f'{_key(key)} = {_written(one)}' for key, one in value.items())}}}"
+    return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def _tables(value) -> list[dict]:
     """The tables that a value is or lists."""
-    return [value] if isinstance(value, dict) else value if isinstance(value, list) and value and isinstance(value[0], dict) else []
+    return [value] if isinstance(value, dict) else value if isinstance(value, list) and value and all(isinstance(one, dict) for one in value) else []
 
 
 def _at(path: str, key: str) -> str:
@@ -126,13 +143,13 @@ def _placeholder(count: int) -> str:
 
 def _vector(path: str, given, low: float, high: float, count: int = 2) -> np.ndarray:
     if not isinstance(given, list | tuple) or len(given) != count:
-        raise BadInput(f"{path}: '{given}' is no {_placeholder(count)} (accepted: {('two', 'three')[count - 2]} numbers, each {low:g} to {high:g})")
+        raise BadInput(f"{path}: '{brief(given)}' is no {_placeholder(count)} (accepted: {('two', 'three')[count - 2]} numbers, each {low:g} to {high:g})")
     return np.array([replace(_real(low, high), name=f"{path}.{k}").check(value) for k, value in enumerate(given, 1)])
 
 
 def _points(path: str, given, least: int) -> np.ndarray:
     if not isinstance(given, list) or len(given) < least:
-        raise BadInput(f"{path}: '{given}' is too little (accepted: {least} points [x, y] or more)")
+        raise BadInput(f"{path}: '{brief(given)}' is too little (accepted: {least} points [x, y] or more)")
     if len(given) > MOST:
         raise BadInput(f"{path}: {len(given)} points (accepted: {least} to {MOST})")
     return np.array([_vector(f"{path}.{k}", point, -LONGEST, LONGEST) for k, point in enumerate(given, 1)])

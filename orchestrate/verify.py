@@ -16,7 +16,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 from matplotlib.ticker import NullLocator
-from tqdm import tqdm
 
 from verification.case import Case, Row
 from verification.cases import CASES
@@ -24,10 +23,10 @@ from verification.cases import CASES
 from . import freefem, run
 from .failure import BadInput, Failure
 from .folder import result_folder
-from .parameters import ROOT
-from .places import shown
+from .places import COMMAND, RESULTS, ROOT, shown
 from .report.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE
 from .report.report import REFERENCE
+from .results import read_frame
 from .studies import study
 
 COLUMNS = ["case", "what", "size", "value", "expected", "error", "tolerance"]   # of verify.csv; a row with a tolerance is judged
@@ -37,8 +36,8 @@ SHOWN = 1e-6                # smaller errors are drawn there
 
 def main(argv: list[str]) -> int:
     """Runs the cases, prints the table, writes verify.csv and the figures; 0 only if all pass."""
-    parser = argparse.ArgumentParser(prog="python -m orchestrate verify", description=__doc__)
-    parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/verify", help="the result folder")
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} verify", description=__doc__)
+    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "verify", help="the result folder")
     parser.add_argument("--cores", metavar="N", type=int, default=study.CORES, help="this many cases at a time (default: %(default)s)")
     parser.add_argument("--force", action="store_true", help="run again what the same code has left")
     options = parser.parse_args(argv)
@@ -46,7 +45,7 @@ def main(argv: list[str]) -> int:
         raise BadInput(f"--cores: {options.cores} (accepted: from 1)")
     out = result_folder(options.out)
     reused = there(out) and not options.force
-    frame = pd.read_csv(out / "verify.csv", keep_default_na=False, na_values=[""]) if reused else run_all(out, options.cores)
+    frame = read_frame(out / "verify.csv", COLUMNS, keep_default_na=False, na_values=[""]) if reused else run_all(out, options.cores)
     passed = bool(judged(frame)["pass"].all())
     print(study.table(overview(frame), FORMATS))
     for failed in judged(frame).query("not `pass`").itertuples():
@@ -84,10 +83,8 @@ def run_all(out: Path, cores: int = study.CORES) -> pd.DataFrame:
     for case in CASES:
         (out / "runs" / slug(case)).mkdir(parents=True)
     acts = {(c, p): partial(perform, part, out / "runs" / slug(case)) for c, case in enumerate(CASES) for p, part in enumerate(case.parts)}
-    with tqdm(total=len(acts), disable=None, leave=False) as line:
-        for key, outcome in study.side_by_side(acts, cores):
-            found[key] = ([], str(outcome)) if isinstance(outcome, Failure) else outcome
-            line.update()
+    for key, outcome in study.side_by_side(acts, cores, "verify"):
+        found[key] = ([], str(outcome)) if isinstance(outcome, Failure) else outcome
     for c, case in enumerate(CASES):
         outcomes = [found[c, p] for p in range(len(case.parts))]
         rows, message = [row for some, _ in outcomes for row in some], next((said for _, said in outcomes if said), "")

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 
-from .failure import Unreadable
+from .results import Contents, content, reading
 
 TRIANGLE, QUADRATIC_TRIANGLE, QUADRATIC_TETRAHEDRON = 5, 22, 24   # VTK's cell types
 NODES = {TRIANGLE: 3, QUADRATIC_TRIANGLE: 6, QUADRATIC_TETRAHEDRON: 10}
-SPLIT = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]   # a quadratic triangle (corners 0-2, middles 3-5) as four
+FINEST, MOST = 6, 20_000     # straight triangles along a side of a quadratic one, at most; and of all, where that is more than two a side
 EIGHT = [[0, 4, 6, 7], [4, 1, 5, 8], [6, 5, 2, 9], [7, 8, 9, 3],      # a quadratic tetrahedron as its corners and the four about the diagonal 4-9
          [4, 9, 5, 6], [4, 9, 6, 7], [4, 9, 7, 8], [4, 9, 8, 5]]
 CUTS = {1: [[[0, 1], [0, 2], [0, 3]]], 2: [[[0, 2], [0, 3], [1, 3]], [[0, 2], [1, 3], [1, 2]]],     # edges of a tetrahedron between its first so many
@@ -25,7 +25,7 @@ class Snapshot:
 
     points: np.ndarray
     triangles: np.ndarray
-    fields: dict[str, np.ndarray]
+    fields: Contents
 
 
 @dataclass(frozen=True)
@@ -34,12 +34,12 @@ class Solid:
 
     points: np.ndarray
     tetrahedra: np.ndarray
-    fields: dict[str, np.ndarray]
+    fields: Contents
 
 
 def read(path: Path) -> Snapshot:
-    """One snapshot; quadratic triangles, and the faces of quadratic tetrahedra in the plane z = 0, are split into four straight ones. Where a body in
-    three dimensions has no such faces, it is cut there. Unreadable where it is not such a file."""
+    """One snapshot; quadratic triangles, and the faces of quadratic tetrahedra in the plane z = 0, are split into straight ones, so many that curved sides
+    look it. Where a body in three dimensions has no such faces, it is cut there. Unreadable where it is not such a file."""
     points, kind, cells, fields = _parts(path)
     on_plane = np.ones(len(points), dtype=bool)
     if kind == QUADRATIC_TETRAHEDRON:
@@ -47,9 +47,9 @@ def read(path: Path) -> Snapshot:
         cells = _in_plane(solid, on_plane, points)
         if not len(cells):
             return _cut(Solid(points, solid, fields), on_plane)
-    triangles = cells if kind == TRIANGLE else cells[:, SPLIT].reshape(-1, 3)
     row = np.cumsum(on_plane) - 1
-    return Snapshot(points[on_plane, :2], row[triangles], {name: field[on_plane] for name, field in fields.items()})
+    flat = Snapshot(points[on_plane, :2], row[cells], Contents({name: field[on_plane] for name, field in fields.items()}, path))
+    return flat if kind == TRIANGLE else _straight(flat)
 
 
 def read_solid(path: Path) -> Solid | None:
@@ -60,8 +60,9 @@ def read_solid(path: Path) -> Solid | None:
 
 def _parts(path: Path) -> tuple[np.ndarray, int, np.ndarray, dict[str, np.ndarray]]:
     """Points, the type of all cells, their nodes (cells, nodes) and the fields. Unreadable where it is not such a file."""
-    try:
-        piece = xml.parse(path).getroot().find("UnstructuredGrid/Piece")
+    text = content(path)
+    with reading(path):
+        piece = xml.fromstring(text).find("UnstructuredGrid/Piece")
         points = _array(piece.find("Points/DataArray"))
         cells = {array.get("Name"): _array(array).astype(int) for array in piece.iterfind("Cells/DataArray")}
         kinds = set(cells["types"])
@@ -72,9 +73,29 @@ def _parts(path: Path) -> tuple[np.ndarray, int, np.ndarray, dict[str, np.ndarra
         nodes = cells["connectivity"].reshape(-1, NODES[kind])
         if nodes.min() < 0 or nodes.max() >= len(points) or any(len(field) != len(points) for field in fields.values()):
             raise ValueError("a node or a value at one is missing")
-        return points, kind, nodes, fields
-    except (OSError, xml.ParseError, AttributeError, KeyError, ValueError, IndexError) as error:
-        raise Unreadable(f"{path} cannot be read: {error}") from None
+        return points, kind, nodes, Contents(fields, path)
+
+
+def _straight(curved: Snapshot) -> Snapshot:
+    """Its quadratic triangles (t, 6: corners, then the middles of 01, 12, 20) as n * n straight ones each, on points where the quadratic functions are."""
+    cells, corners = curved.triangles, curved.triangles[:, :3]
+    n = int(np.clip(np.sqrt(MOST / max(1, len(cells))), 2, FINEST))
+    lattice = [(i, j) for j in range(n + 1) for i in range(n + 1 - j)]
+    place = {each: k for k, each in enumerate(lattice)}
+    b, c = np.array(lattice).T / n
+    a = 1 - b - c
+    values = np.stack([a * (2 * a - 1), b * (2 * b - 1), c * (2 * c - 1), 4 * a * b, 4 * b * c, 4 * c * a], axis=1)        # (points of a cell, 6)
+    # a point of a side is one for both neighbours: it is known by its corners and their shares
+    shares = np.rint(n * np.stack([a, b, c], axis=1)).astype(int)[None].repeat(len(cells), axis=0)                          # (cells, points, 3)
+    owners = np.where(shares > 0, corners[:, None, :], -1)
+    order = np.argsort(owners, axis=2)
+    known = np.concatenate([np.take_along_axis(each, order, axis=2) for each in (owners, shares)], axis=2).reshape(-1, 6)
+    _, first, which = np.unique(known, axis=0, return_index=True, return_inverse=True)
+    at = lambda field: np.tensordot(field[cells], values, axes=(1, 1)).swapaxes(1, -1).reshape(-1, *field.shape[1:])[first]   # noqa: E731
+    up = [(place[i, j], place[i + 1, j], place[i, j + 1]) for i, j in lattice if i + j < n]
+    down = [(place[i + 1, j], place[i + 1, j + 1], place[i, j + 1]) for i, j in lattice if i + j < n - 1]
+    triangles = which.reshape(len(cells), -1)[:, np.array(up + down)].reshape(-1, 3)
+    return Snapshot(at(curved.points), triangles, Contents({name: at(field) for name, field in curved.fields.items()}, curved.fields.path))
 
 
 def _in_plane(tetrahedra: np.ndarray, on_plane: np.ndarray, points: np.ndarray) -> np.ndarray:
@@ -102,18 +123,17 @@ def _cut(solid: Solid, on_plane: np.ndarray) -> Snapshot:
     (ax, ay), (bx, by), (cx, cy) = (at(solid.points)[triangles[:, k], :2].T for k in range(3))
     area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
     triangles = np.where((area < 0)[:, None], triangles[:, ::-1], triangles)[area != 0]
-    return Snapshot(at(solid.points)[:, :2], triangles, {name: at(field) for name, field in solid.fields.items()})
+    return Snapshot(at(solid.points)[:, :2], triangles, Contents({name: at(field) for name, field in solid.fields.items()}, solid.fields.path))
 
 
 def series(pvd: Path) -> list[tuple[float, Path]]:
     """(time in s, file) of every snapshot, in the order of time; empty where there is no such list."""
     if not pvd.exists():
         return []
-    try:
-        sets = xml.parse(pvd).getroot().iterfind("Collection/DataSet")
+    text = content(pvd)
+    with reading(pvd):
+        sets = xml.fromstring(text).iterfind("Collection/DataSet")
         return sorted((float(each.get("timestep")), pvd.parent / each.get("file")) for each in sets)
-    except (xml.ParseError, TypeError, ValueError) as error:
-        raise Unreadable(f"{pvd} cannot be read: {error}") from None
 
 
 def _array(element: xml.Element) -> np.ndarray:

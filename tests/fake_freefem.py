@@ -96,8 +96,8 @@ def summary(status: str = "ok", message: str = "") -> dict:
     return dict(status=status, message=message, warnings=[], contact_time=CONTACT, contact_intervals=1, peak_force=70e3, impulse=208.2,
                 rebound_vx=0.0, rebound_vy=7.394, rebound_spin=0.0, energy_initial=ENERGY, energy_final=ENERGY, vibration_energy=60.0,
                 friction_work=0.0, energy_drift=1e-11, momentum_drift=1e-12, min_jacobian=0.8, min_stretch=0.7,
-                breakdown_time=None, max_penetration=6e-6, sliding_time=0.0, sticking_time=0.0, steps=200, rejected_steps=3,
-                newton_iterations=700, factorizations=9, dofs=1510, wall_seconds=0.1, cpu_seconds=0.1, thresholded_contact_time=0.99 * CONTACT,
+                breakdown_time=None, max_penetration=6e-6, sliding_time=0.0, sticking_time=0.0, steps=199, rejected_steps=3,
+                newton_iterations=700, factorizations=9, dofs=1510, wall_seconds=0.1, cpu_seconds=0.1, thresholded_contact_time=0.99 * CONTACT, mass=MASS,
                 phase_seconds=dict(assembly=0.01, factor=0.02, solve=0.03, contact=0.01, output=0.01),
                 skipped=["half of the disc", "friction", "gravity", "error estimate"])
 

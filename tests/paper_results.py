@@ -17,6 +17,7 @@ SMOOTH = IMPACT | {"sliding_fraction": [0, 1, 1, 0.8, 0.6, 0.4, 0.2, 0, 0, 0, 0,
 END = {"contact_time": 4.51e-3, "thresholded_contact_time": 4.48e-3, "dofs": 304, "ellipticity_lost_time": 1e-4, "breakdown_time": None, "rebound_vx": 3.0, "rebound_vy": 8.7,
        "energy_drift": 2e-11, "cpu_seconds": 2.0, "steps": 100, "newton_iterations": 300, "factorizations": 20, "estimated_error": {"rebound": 0.002}}
 KEPT = END | {"ellipticity_lost_time": None}
+SPACE = KEPT | {"contact_time": 5e-3, "thresholded_contact_time": 4.8e-3, "impulse": 14.2, "rebound_vy": 7.8, "estimated_error": {"impulse": 2e-4, "rebound": 4e-4, "thresholded_contact_time": 4e-3}}
 # Bodies of 10 kg/m that a force throws back
 PUSH = {"t": np.arange(5) * 1e-3, "dt": np.full(5, 1e-3), "normal_force": np.array([0, 50e3, 80e3, 20e3, 0])}
 PUSH["momentum_y"] = -80 + np.cumsum(PUSH["normal_force"] * 1e-3)
@@ -28,6 +29,30 @@ BLOCK = {"t": [0, 0.01, 0.02, 0.03, 0.04], "normal_force": [0, 5, 5, 5, 0], "vy_
 BLOCK_END = {"mass_1": 1000.0, "mass_2": 20000.0, "energy_initial": 50e3, "vibration_energy_1": 2e3, "vibration_energy_2": 35.1e3, "estimated_error": {"rebound": 0.002},
              "ellipticity_lost_time": None}
 DISC = {"radius": 0.05, "young": 7e6, "density": 1722, "speed": 8.0}
+
+
+# Friction and normal force [N] on 10 kg at steps of 20 and 5 us: the first jumps once, or does not, the second is smooth
+def slips(height, n):
+    """The history of n steps of contact of 1 ms and one before: the friction force falls by `height` in one step."""
+    t = np.arange(n + 1) / n
+    history = {"t": 1e-3 * t, "dt": np.full(n + 1, 1e-3 / n), "normal_force": 10 + 100 * t, "friction_force": 10 * t - height * (t > 0.5), "momentum_y": -80 + 0 * t, "vy": -8 + 0 * t}
+    history["normal_force"][0] = 0
+    return history
+
+
+def waves(frequency):
+    """The history of 200 steps of contact of 4.4 ms, whose force is a push with waves of a frequency [Hz]."""
+    t = np.arange(201) * 2.2e-5
+    force = np.maximum(np.sin(np.pi * t / 4.4e-3) * (1 + 0.3 * np.sin(2 * np.pi * frequency * t)), 0)
+    return {"t": t, "dt": np.full(201, 2.2e-5), "normal_force": force}
+
+
+JUMPS, SLIDES = ([slips(height, n) for n in (50, 200)] for height in (200.0, 0.0))
+# By the disc on the block
+NEAR = {"rebound_vy_1": 5.0, "rebound_vy_2": -0.75, "impulse_y_1": 15e3, "mass_1": 1000.0, "contact_intervals": 1, "peak_force": 1e6, "warnings": [], "cpu_seconds": 2.0,
+        "phase_seconds": {"search": 0.1}, "ellipticity_lost_time": None}
+CHATTERS = NEAR | {"contact_intervals": 30, "peak_force": 2e6, "rebound_vy_1": 4.95}
+LEAKS = CHATTERS | {"warnings": ["range: points slip through between each other"]}
 
 
 class Memory(paper_judging.Results):
@@ -62,6 +87,13 @@ class Memory(paper_judging.Results):
         self.read |= set(self.pair(name, **values))
         return self.given["summaries"][name, *sorted(values.items())]
 
+    def has(self, name):
+        return name in self.given["summary"]
+
+    def modes(self, name, **values):
+        self.read |= set(self.pair(name, **values))
+        return [self.given["modes"]] * 2
+
     def friction_laws(self):
         return self.given["laws"]
 
@@ -80,6 +112,14 @@ def key(name, **values):
 
 def jump(law, static=0.7):
     return key("friction-jump", friction_static=static, law=law)
+
+
+def steps(law, static=0.7):
+    return key("friction-steps", friction_static=static, law=law)
+
+
+def pairs(pairing, width="auto"):
+    return key("pairing", pairing=pairing, pairing_range=width)
 
 
 def forces(law, speed):
@@ -112,16 +152,19 @@ def base() -> dict:
     rebound = {"rebound_vx": 3.0, "rebound_vx_error": 0.01, "rebound_vy": 8.7, "rebound_vy_error": 0.0, "contact_time": 4.1e-3, "contact_time_error": 3e-5, "exit": 0}
     given = {
         "laws": laws(),
-        "stick-slip": pd.DataFrame({"law": ["svk", "svk", "neohookean"], "exit": 0, "order": [False, False, True], "quiet": [False, True, True],
-                                    "ellipticity_lost_time": np.nan}),
-        "summary": {"disc-normal": KEPT | {"contact_time": 4.65e-3, "thresholded_contact_time": 4.62e-3}, "disc-normal-neohookean": KEPT | {"contact_time": 4.2e-3, "thresholded_contact_time": 4.18e-3},
+        "stick-slip": pd.DataFrame({"angle": [60.0, 60.0, 60.0, 30.0], "law": ["svk", "svk", "neohookean", "svk"], "exit": 0, "order": [False, False, True, False],
+                                    "quiet": [False, True, True, True], "ellipticity_lost_time": np.nan}),
+        "modes": pd.DataFrame({"mode": [1, 2, 3], "frequency": [300.0, 790.0, 1200.0], "energy": [1.0, 1.0, 1e-3]}),
+        "summary": {"disc-normal": KEPT | {"contact_time": 4.65e-3, "thresholded_contact_time": 4.62e-3}, "disc-normal-neohookean": KEPT | {"min_jacobian": 0.88, "contact_time": 4.2e-3, "thresholded_contact_time": 4.18e-3},
                     "disc-oblique-svk": END, "disc-oblique": KEPT, "disc-rolling": KEPT | {"rebound_vx": 0.666}, "disc-block": BLOCK_END, "disc-block-neohookean": BLOCK_END,
-                    "ball-axisymmetric-svk": END | {"contact_time": 6.03e-3, "thresholded_contact_time": 5.9e-3}, "ball-axisymmetric": KEPT | {"contact_time": 5e-3, "thresholded_contact_time": 4.8e-3}},
+                    "ball-axisymmetric-svk": END | {"contact_time": 6.03e-3, "thresholded_contact_time": 5.9e-3}, "ball-axisymmetric": SPACE, "ball": SPACE},
         "history": {name: PUSH for name in ("disc-normal", "disc-normal-neohookean", "ball-axisymmetric-svk")} | {"disc-block": BLOCK, "disc-block-neohookean": BLOCK},
-        "scene": {"disc-normal": DISC, "disc-oblique-svk": DISC, "disc-rolling": DISC | {"speed": 1.0}},
+        "scene": {"disc-normal": DISC, "ball": DISC, "disc-oblique-svk": DISC, "disc-rolling": DISC | {"speed": 1.0}},
         "histories": {jump(law, static): [IMPACT if static == 0.7 else SMOOTH] * 2 for law in both for static in (0.7, 0.5)}
-                     | {forces(law, speed): [PUSH] * 2 for law in both for speed in (1, 10)},
-        "summaries": {jump("svk"): [KEPT, KEPT | {"contact_time": 4.6e-3}]}
+                     | {forces(law, speed): [PUSH] * 2 for law in both for speed in (1, 10)}
+                     | {steps(law, static): JUMPS if static == 0.7 else SLIDES for law in both for static in (0.7, 0.5)},
+        "summaries": {jump("svk"): [KEPT] * 2, steps("svk"): [KEPT] * 2}
+                     | {pairs(pairing, width): [end] * 2 for width in ("auto", 0.049) for pairing, end in (("closest-point", NEAR), ("pairwise", NEAR), ("pairwise-printed", CHATTERS))}
                      | {forces(law, speed): [KEPT | {"newton_iterations": 450 if law == "neohookean" else 300}] * 2 for law in both for speed in (1, 10)},
         "table": {
             "friction-jump": pd.DataFrame([rebound | {"law": law, "friction_static": static} for law in both for static in (0.7, 0.5)]),
@@ -133,11 +176,20 @@ def base() -> dict:
                                                  (1, "svk", 0, 8000.0), (1, "neohookean", 0, 8100.0), (10, "svk", 5e-4, 90e3), (10, "neohookean", 0, 100e3))]),
             "conservation": pd.DataFrame([{"integrator": scheme, "dt": dt, "exit": 0, "energy_drift": drift, "rebound_vy": 6.9, "ellipticity_lost_time": np.nan} for scheme, drifts in (
                 ("bdf2", (0.1, 0.05, 0.02)), ("energy-momentum", (1e-11, 2e-11, 3e-11))) for dt, drift in zip((4e-5, 2e-5, 1e-5), drifts)]),
-            "calibrate": pd.DataFrame({"law": "svk", "nu": 0.3, "penalty": [1e9, 1e10], "exit": 0, "ellipticity_lost_time": np.nan, "contact_time": [4.9e-3, 4.8e-3],
-                                       "contact_time_error": 1e-6, "thresholded_contact_time": [4.85e-3, 4.75e-3], "thresholded_contact_time_error": 1e-6}),
+            "calibrate": pd.DataFrame([{"law": law, "nu": 0.3, "penalty": k, "exit": 0, "ellipticity_lost_time": np.nan, "contact_time": time, "contact_time_error": 1e-6,
+                                        "thresholded_contact_time": time - 5e-5, "thresholded_contact_time_error": 1e-6, "max_penetration": 1e6 / k, "rebound_vy": 7.4 + 1e7 / k,
+                                        "rebound_vy_error": 1e-3} for law in both for k, time in ((3e8, 5.2e-3), (1e9, 4.9e-3), (1e10, 4.8e-3), (1e12, 4.7e-3))]),
+            "slip-limit": pd.DataFrame({"slip_velocity": [3.0, 1, 0.1, 0.01], "exit": 0, "rebound_vx": [3.3, 3.1, 3.04, 3.03], "rebound_vx_error": 0.02,
+                                        "friction_work": [60.0, 50, 45, 44.5], "friction_work_error": 1.0}),
+            "pairing": pd.DataFrame({"pairing_range": ["auto", 0.049]}),
+            # the stiffer the shorter; the finer mesh's are 0.1 ms longer; with k = 1e9 all lose ellipticity
+            "calibrate-oblique": pd.DataFrame([{"angle": angle, "nu": nu, "penalty": k, "mesh_size": h, "exit": 0, "contact_time": time + 1e-4 * (h == 0.008) + 2e-4 * (angle == 30),
+                                                "breakdown_time": np.nan, "ellipticity_lost_time": 1e-4 if k == 1e9 else np.nan}
+                                               for angle in (60.0, 30.0) for nu in (0.3, 0.45) for k, time in ((3e8, 5e-3), (1e9, 4.7e-3), (1e10, 4.3e-3)) for h in (0.01, 0.008)]),
             # softer contacts last longer; with the stiff one, and on the finest mesh with each, ellipticity is lost
             "calibrate-ball": pd.DataFrame([{"nu": nu, "penalty": k, "mesh_size": h, "exit": 0, "contact_time": time + 100 * (0.3 - nu) * 1e-6, "breakdown_time": np.nan,
                                              "ellipticity_lost_time": 2e-3 if h == 0.01 or k == 1e9 else np.nan}
                                             for nu in (0.3, 0.45) for k, time in ((3e8, 6.1e-3), (5e8, 6.031e-3), (1e9, 5.8e-3)) for h in (0.0175, 0.015, 0.01)]),
         }}
+    given["table"]["calibrate-ball-3d"] = given["table"]["calibrate-ball"].assign(energy_drift=1e-11).query("mesh_size > 0.01")
     return deepcopy(given)

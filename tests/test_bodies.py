@@ -5,13 +5,14 @@ import itertools
 import math
 import os
 import subprocess
+import tomllib
 
 import numpy as np
 import pytest
 
 from orchestrate import approach, assembly, freefem, mesh, multibody
 from orchestrate.failure import BadInput
-from orchestrate.outlines import crossing_sides, ellipse_loop, self_crossing
+from orchestrate.outlines import crossing_sides, ellipse_loop, polygon_loop, self_crossing
 from orchestrate.scene import load
 from orchestrate.tables import to_toml
 
@@ -166,6 +167,33 @@ def test_a_body_may_be_a_file_of_gmsh(tmp_path):
     assert set(m.labels) == {1, 3} and areas(m).min() > 0
 
 
+def test_flats_among_the_arcs_of_a_file_stay_flat(tmp_path):
+    """A shaft with two flats, all corners on one circle, is arcs and flats: its area, centre and distances are theirs, in place and turned, and scene.dat has
+    the circle once."""
+    radius, flat = 0.5, math.acos(0.6)
+    angles = np.concatenate([np.linspace(side + flat, side + math.pi - flat, 10) for side in (0, math.pi)])
+    corners = radius * np.column_stack([np.cos(angles), np.sin(angles)])
+    spokes = np.column_stack([np.full(20, 20), np.arange(20), np.roll(np.arange(20), -1)])
+    mesh.write(mesh.Mesh(np.vstack([corners, [0, 0]]) + [3, 4], spokes, spokes[:, 1:], np.ones(20, dtype=int)), tmp_path / "shaft.msh")
+    scene = read(with_body(shape="mesh", file="shaft.msh", position=[1, 2], angle=90), tmp_path)
+    outline, placed = scene.bodies[0].outline, scene.bodies[0].placed
+    assert outline.area == pytest.approx(radius**2 * (math.pi - 2 * flat + math.sin(2 * flat)), rel=1e-12) and abs(outline.area_centre).max() < 1e-12
+    assert placed.area_centre == pytest.approx([1, 2], abs=1e-12) and placed.extent == pytest.approx([2 * radius, 1.2 * radius], rel=1e-4)
+    assert placed.gap(np.array([[1.0, 2.4], [1, 2], [1.6, 2]])) == pytest.approx([0.1, -0.3, 0.1], abs=1e-4)
+    lines = assembly.assemble(scene).data.splitlines()
+    assert lines[4] == "circles 1" and np.array(lines[5].split(), dtype=float) == pytest.approx([0, 0, 0, radius], abs=1e-12) and lines[6:8] == ["files 1", "0"]
+
+
+def test_a_segment_of_a_circle_has_its_area_and_centre():
+    """A half disc as a loop of arcs and a straight side, either way round: area and centre of the closed forms."""
+    angles = np.linspace(0, math.pi, 8)
+    corners = np.column_stack([np.cos(angles), np.sin(angles)]) + [3, 4]
+    hubs = np.where(np.arange(8)[:, None] < 7, [3.0, 4.0], math.nan)
+    for loop in (polygon_loop(corners, hubs), polygon_loop(corners[::-1], np.roll(hubs[::-1], -1, axis=0))):
+        assert loop.area == pytest.approx(math.pi / 2, rel=1e-12) and loop.area_centre == pytest.approx([3, 4 + 4 / (3 * math.pi)], rel=1e-12)
+        assert abs(np.linalg.norm(loop.polygon[loop.polygon[:, 1] > 4 + 1e-9] - [3, 4], axis=1) - 1).max() < 1e-12
+
+
 def test_mesh_files_that_cannot_be_used_are_named(tmp_path):
     """Half a body, a file that is no mesh and one that is not there: the entry, the file and what is accepted."""
     mesh.write(mesh.disc(0.05, 0.02, 0.01, True), tmp_path / "half.msh")
@@ -253,8 +281,9 @@ file >> word >> n; cout << word << " " << n << endl;
 for (int k = 0; k < n; k++) {{ real[int] v(11); file >> name >> law; for (int i = 0; i < 11; i++) file >> v[i]; cout << name << " " << law << " "; for (int i = 0; i < 11; i++) cout << v[i] << " "; cout << endl; }}
 file >> word >> n; cout << word << " " << n << " ";
 for (int k = 0; k < n; k++) {{ int b; real x, y, r; file >> b >> x >> y >> r; cout << b << " " << x << " " << y << " " << r << endl; }}
+file >> word >> n; cout << word << " " << n << endl;
 file >> word >> n; cout << word << " " << n << " ";
-for (int k = 0; k < n; k++) {{ int m; file >> word >> m; real[int] v(m + 2); for (int i = 0; i < m + 2; i++) file >> v[i]; cout << word << " " << m << " "; for (int i = 0; i < m + 2; i++) cout << v[i] << " "; cout << endl; }}
+for (int k = 0; k < n; k++) {{ int m; file >> name >> word >> m; cout << name << " "; real[int] v(m + 2); for (int i = 0; i < m + 2; i++) file >> v[i]; cout << word << " " << m << " "; for (int i = 0; i < m + 2; i++) cout << v[i] << " "; cout << endl; }}
 file >> word >> n; cout << word << " " << n << endl;
 for (int k = 0; k < n; k++) {{ int a, b; real[int] v(3); file >> a >> b; for (int i = 0; i < 3; i++) file >> v[i]; cout << a << " " << b << " " << v[1] << " " << v[2] << endl; }}
 ''')
@@ -268,8 +297,8 @@ for (int k = 0; k < n; k++) {{ int a, b; real[int] v(3); file >> a >> b; for (in
     assert lines[3].split() == "disc svk 7000000 0.45 1722 0 0 0 1.5 0 0 -10 0".split()
     assert lines[4].split()[:2] == ["block", "svk"] and float(lines[4].split()[5]) == pytest.approx(built.centres[1, 0])
     assert lines[5].split() == ["circles", "1", "0", "0", "0", "0.5"]
-    assert lines[6].split() == "obstacles 1 plane 4 0 -1 0 1 0 0".split()
-    assert lines[7] == "pairs 2" and lines[8:10] == ["0 -1 0.2 0.2", "1 -1 0.2 0.2"]
+    assert lines[6] == "files 0" and lines[7].split() == "obstacles 1 floor plane 4 0 -1 0 1 0 0".split()
+    assert lines[8] == "pairs 2" and lines[9:11] == ["0 -1 0.2 0.2", "1 -1 0.2 0.2"]
 
 
 def test_open_values_follow_the_scripts_rule():
@@ -506,7 +535,7 @@ def test_obstacles_are_their_numbers_and_gaps(entries, words, points, gaps):
     """An obstacle's line in scene.dat, its velocity behind its numbers; its gap is the signed distance, negative inside."""
     far = with_body(shape="disc", radius=0.01, position=[0.5, 5] if entries["kind"] != "bowl" else [1, 0]) | {"obstacle": [entries | {"velocity": [0.5, -0.25]}]}
     scene = read(far)
-    assert f"\n{words} 0.5 -0.25\n" in assembly.assemble(scene).data
+    assert f"\nobstacle1 {words} 0.5 -0.25\n" in assembly.assemble(scene).data
     assert scene.obstacles[0].gap(np.array(points, dtype=float)) == pytest.approx(gaps)
 
 
@@ -560,3 +589,21 @@ def test_a_sliver_is_refused_by_its_thickness():
     """A polygon thinner than any length that is accepted."""
     with pytest.raises(BadInput, match=r"^body.1: is 1e-12 m thick \(accepted: from 2e-09 m\)"):
         read(with_body(shape="polygon", vertices=[[0, 0], [1, 0], [1, 1e-12]]))
+
+
+# ---- written down
+
+def odd_texts(count: int) -> list[str]:
+    """Texts of characters that files trip over, drawn at random, the first of all control characters."""
+    rng = np.random.default_rng(20)
+    odd = [*map(chr, range(0x80)), *"\x80\x85\xa0\u2028\u2029\ufeff\ufffd\U0001f600ß中", '"""', "'''", "\r\n", "\\u0041", "]]", " # ", " = "]
+    return ["".join(map(chr, range(0xa1))), *("".join(rng.choice(odd, rng.integers(0, 12))) for _ in range(count))]
+
+
+def test_what_toml_accepts_is_written_back():
+    """Whatever a TOML file can say is written so that it reads, as the same."""
+    texts = odd_texts(400)
+    said = {text: [text, 1e-300, -0.0, True, 10**30, [[], [1.5, "x"]], math.inf] for text in texts}
+    said |= {"table": {text: text for text in texts}, "list": [{"a": text, "b": {text: {}}} for text in texts], "none": [], "mixed": [{"a": "\x7f"}, 1]}
+    said |= tomllib.loads("day = 2026-11-23\nat = 07:32:00.5\nboth = 1979-05-27T07:32:00.25Z\n")
+    assert tomllib.loads(to_toml(said)) == said

@@ -28,7 +28,7 @@ SCENES = {   # flags of edp/disc-plane.edp, steps between checkpoints, rows of h
     "central-difference": (COARSE | dict(accuracy=0.2, angle=60, friction_static=0.5, friction_dynamic=0.4, slip_velocity=0.5,
                                          end_time=3e-4, integrator="central-difference"), 10, 200),
 }
-EFFORT = ("wall_seconds", "cpu_seconds", "estimate_cpu_seconds", "peak_memory", "phase_seconds", "resumed_at", "provenance")
+EFFORT = ("wall_seconds", "total_seconds", "cpu_seconds", "estimate_cpu_seconds", "peak_memory", "phase_seconds", "resumed_at", "provenance")
 
 
 def direct(flags: dict, out: Path) -> subprocess.Popen:

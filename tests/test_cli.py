@@ -146,7 +146,7 @@ def test_two_runs_do_not_share_a_folder(fake, tmp_path):
 
 
 def test_progress_is_shown_on_a_terminal_only(fake, tmp_path):
-    """On a terminal one line shows time and steps."""
+    """On a terminal one line shows which run it is, of how many, what it is at and the time left of all, from the mesh on; elsewhere there is none."""
     master, slave = pty.openpty()
     termios.tcsetwinsize(slave, (24, 100))
     process = start("run", "disc-normal", "--set", "fields=0", "--out", str(tmp_path / "out"), stderr=slave)
@@ -158,7 +158,8 @@ def test_progress_is_shown_on_a_terminal_only(fake, tmp_path):
     except OSError:   # the other end is closed
         os.close(master)
     process.communicate(timeout=60)
-    assert re.search(r"disc-normal +75% .* t = 3.000 ms, 150 steps", seen) and process.returncode == 0
+    assert re.search(r"disc-normal: main run 1 of 2, t = 3.000 ms, 150 steps +55% .*, \d\d:\d\d left", seen) and process.returncode == 0
+    assert "main run 1 of 2, mesh" in seen and "coarser run 2 of 2" in seen
 
 
 def test_lists():

@@ -81,6 +81,15 @@ def test_both_bodies_bear_the_force_between_them(ran, given):
     np.testing.assert_allclose(forces.shear[1].sum(), forces.shear[2].sum(), rtol=0.1, atol=1e-9)
 
 
+def test_projected_pressure_has_the_same_resultant_and_moment(ran):
+    """On the outline's own functions the force and its moment are those of the points, and the largest pressure is below theirs."""
+    table = contact.read(ran("disc-block", angle=60, friction_static=0.4).folder, beside=True)
+    for name, arm in (("force", 1.0), ("moment", table.X - table.X.min())):
+        sums = table.assign(points=table.pressure * table.weight * arm, projected=table.projected_pressure * table.weight * arm).groupby(["t", "body"])[["points", "projected"]].sum()
+        np.testing.assert_allclose(sums.projected, sums.points, rtol=1e-4, atol=1e-4 * sums.points.max(), err_msg=name)
+    assert (table.pressure == 0).any() and table.projected_pressure.max() < table.pressure.max()
+
+
 def test_two_obstacles_at_once(ran):
     """A disc in a corner: forces on floor and wall are apart, numbered -1 and -2; the friction of each is within its cone."""
     forces, there = summed(ran("corner"))
@@ -110,5 +119,5 @@ def test_picture_and_broken_tables(ran):
     assert (result.folder / "figures/contact.png").stat().st_size > 10000
     assert contact.draw(contact.read(result.folder).iloc[:0], ["body"], False, np.array([])) is None
     (result.folder / "fields/contact.csv").write_text("t,body\n1,2\n")
-    with pytest.raises(Unreadable, match="contact.csv lacks the columns partner, s"):
+    with pytest.raises(Unreadable, match="contact.csv cannot be read: it is not as the run has written it"):
         contact.read(result.folder)

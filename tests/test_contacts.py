@@ -6,7 +6,7 @@ import pytest
 
 from orchestrate import run, scene
 from orchestrate.failure import Unreadable
-from orchestrate.report import impacts
+from orchestrate.report import compare, impacts
 
 COARSE = {"law": "neohookean", "accuracy": 0.1, "fields": 0}
 OBLIQUE = COARSE | {"speed": 12, "angle": 60, "friction_static": 0.7, "friction_dynamic": 0.5, "slip_velocity": 0.1}
@@ -68,10 +68,17 @@ def test_bounces_are_rows(tmp_path):
 
 @pytest.mark.parametrize("pairing", ["closest-point", "pairwise"])
 def test_two_bodies_and_three(tmp_path, pairing):
-    """The disc on the block is one meeting, of body 1 with body 2: its impulse is what each has of momentum."""
+    """The disc on the block is one meeting, of body 1 with body 2: impulse and normal force are resultants, what each has of momentum, and less than the sum of
+    magnitudes; the acceleration that is compared with other runs is the disc's."""
     rows, found = go(tmp_path, "disc-block", {"law": "neohookean", "accuracy": 0.3, "fields": 0, "pairing": pairing})
     assert (rows.body == 1).all() and (rows.partner == 2).all()
     assert rows.impulse_y.sum() == pytest.approx(found.summary["impulse_y_1"], rel=1e-9)
+    s, h = found.summary, found.history
+    given = [s["mass_1"] * (s["rebound_vy_1"] - h["vy_1"][0]), s["mass_2"] * (h["vy_2"][0] - s["rebound_vy_2"])]
+    assert [s["impulse"], rows.impulse.sum(), (h["normal_force"] * h["dt"]).sum()] == pytest.approx([given[0]] * 3, rel=1e-6) and given[1] == pytest.approx(given[0], rel=1e-6)
+    assert s["peak_force"] == h["normal_force"].max() and (h["normal_load"] >= h["normal_force"] * (1 - 1e-12)).all()
+    assert (h["normal_load"] * h["dt"]).sum() > 1.005 * s["impulse"]
+    assert np.diff(h["vy_1"]) / h["dt"][1:] == pytest.approx((compare._push(h) / compare._mass(found))[1:], abs=1e-6 * compare._push(h).max() / s["mass_1"])
     closing = found.history["vy_1"][0] - found.history["vy_2"][0]
     after = found.summary["rebound_vy_1"] - found.summary["rebound_vy_2"]
     assert rows.approach.iloc[0] == pytest.approx(-closing) and rows.separation.iloc[-1] == pytest.approx(after, rel=1e-6)
@@ -111,5 +118,8 @@ def test_bounces_are_drawn(tmp_path):
     light = rows.assign(impulse=[1.0] + [1e-3] * (len(rows) - 1))
     assert impacts.draw(light, ["body"], ["plane"]) is None and impacts.draw(rows[:1], ["body"], ["plane"]) is None
     (found.folder / "contacts.csv").write_text("body\n1\n")
-    with pytest.raises(Unreadable, match="contacts.csv lacks the columns partner, start"):
+    with pytest.raises(Unreadable, match="contacts.csv cannot be read: it is not as the run has written it"):
+        impacts.read(found.folder)
+    (found.folder / "summary.json").unlink()
+    with pytest.raises(Unreadable, match="contacts.csv cannot be read: it lacks the columns partner, start"):
         impacts.read(found.folder)

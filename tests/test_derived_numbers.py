@@ -65,6 +65,59 @@ def test_circle_about_another_point(tmp_path):
     assert row.approach == pytest.approx(1 + 100 * lever * math.sin(turned), rel=2e-3)
 
 
+HEAD = 'law = "neohookean"\nyoung = 7e6\nnu = 0.3\ndensity = 1722\naccuracy = 0.2\n'
+FLOOR = '[[obstacle]]\nname = "floor"\nkind = "plane"\npoint = [0, 0]\nnormal = [0, 1]\n'
+DISC = '[[body]]\nname = "{name}"\nshape = "disc"\nradius = 0.05\nposition = [{x}, 0]\nvelocity = [{v}, {across}]\n'
+SQUARE = '[[body]]\nname = "square"\nshape = "rectangle"\nwidth = 0.1\nheight = 0.1\nangle = {angle}\nposition = [0, {y}]\nvelocity = [0, {v}]\n'
+BLOCK = '[[body]]\nname = "block"\nshape = "rectangle"\nwidth = 0.3\nheight = 0.1\nposition = [0.011, -0.05]\n'
+ABOUT_AN_IMPACT = ("restitution", "restitution_tangential", "angle_out")
+
+
+def of(tmp_path, text: str, values: dict = {}) -> tuple[pd.DataFrame, run.RunResult]:
+    (tmp_path / "given.toml").write_text(HEAD + text)
+    found = run.run(scene.load(str(tmp_path / "given.toml")), {"fields": 0} | values, tmp_path / "out", estimate=False)
+    return pd.read_csv(found.folder / "contacts.csv"), found
+
+
+def test_a_corner_has_the_normal_of_its_contact(tmp_path):
+    """Of a square that comes down on a block with a corner, whose two faces are touched one after the other, the approach is the speed and Newton's restitution
+    that of Poisson."""
+    rows, found = of(tmp_path, SQUARE.format(angle=45, y=0.0731, v=-2) + BLOCK)
+    assert rows.approach[0] == pytest.approx(2, rel=1e-3) and rows.restitution[0] == pytest.approx(rows.restitution_poisson[0], rel=5e-3)
+    assert rows.restitution_energetic[0] == pytest.approx(rows.restitution_poisson[0], rel=5e-3) and found.summary["restitution"] == pytest.approx(rows.restitution[0])
+
+
+def test_a_body_at_rest_has_no_restitution(tmp_path):
+    """A square that lies on the floor, pressed by its weight, approaches with round-off, and never leaves."""
+    rows, found = of(tmp_path, SQUARE.format(angle=0, y=0.05, v=-1e-13) + FLOOR, {"gravity": 9.81, "end_time": 0.01, "body.1.contact_mesh_size": 0.01})
+    assert len(rows) == 1 and rows.loc[0, [*ABOUT_AN_IMPACT, "restitution_poisson", "restitution_energetic", "separation", "angle_in"]].isna().all()
+    assert all(found.summary[name] is None for name in (*ABOUT_AN_IMPACT, "angle_in")) and found.summary["impulse_ratio"] == 0
+
+
+def test_two_corners_are_two_impacts(tmp_path):
+    """A square on one corner, then on the other: each impact has its restitution, the run of both has none."""
+    rows, found = of(tmp_path, SQUARE.format(angle=20, y=0.08, v=-2) + FLOOR, {"end_time": 0.045})
+    assert 0.5 < rows.restitution[0] < 1 and rows.approach[1] > 0.3 and found.summary["restitution"] is found.summary["angle_out"] is None
+
+
+def test_a_head_on_hit_has_no_tangential_restitution(tmp_path):
+    """What two discs slide that meet head-on is of their meshes; without friction no impulse is along the contact, also where both drift."""
+    discs = [DISC.format(name=name, x=x, v=v, across=40) for name, x, v in (("left", -0.0502, 3), ("right", 0.0502, -3))]
+    rows, found = of(tmp_path, "".join(discs), {"contact.friction_static": 0.3})
+    assert rows.restitution_tangential.isna().all() and found.summary["restitution_tangential"] is None and 0.5 < found.summary["restitution"] <= 1
+    assert found.summary["impulse_ratio"] < 1e-2 and found.summary["angular_momentum_drift"] < 1e-6
+    assert of(tmp_path, "".join(discs))[1].summary["impulse_ratio"] == 0
+
+
+def test_what_rolls_has_no_restitution(tmp_path):
+    """A disc that is let go on the wall of a bowl hardly approaches it: what presses it on is its weight. The speeds of a scene are those that it reaches."""
+    found = run.run(scene.load("disc-bowl"), {"accuracy": 0.4, "fields": 0, "end_time": 0.07, "contact.slip_velocity": 0.015}, tmp_path / "out", estimate=False)
+    rows, s = pd.read_csv(found.folder / "contacts.csv"), found.summary
+    assert len(rows) > 1 and rows.impulse_ratio.notna().all() and not (rows.restitution > 2).any()
+    assert s["restitution"] is s["restitution_tangential"] is s["angle_out"] is None
+    assert found.history["vy"].min() < -0.3 and not [sentence for sentence in s["warnings"] if sentence.startswith("slip velocity")]
+
+
 @pytest.mark.parametrize("spin", [50, 60])
 def test_angles_of_a_body_that_comes_along_the_normal(tmp_path, spin):
     """Its centre has no way along the plane before, but for round-off of either sign: the angle after is to the side that it leaves to."""

@@ -9,8 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from orchestrate import freefem, parameters
+from orchestrate import freefem, multibody, parameters
 from orchestrate.__main__ import main
+from orchestrate.tables import to_toml
 
 LONG = "x" * 300                        # longer than a name may be
 NO_NUMBERS = ["x", "8x", "--8", "+-8", "1e", "e5", "1e+", ".", "-", "8.", "0x10", "nan", "inf", "-inf", "1,5", "1 2", "1_000", "８", "٣.٥", "½",
@@ -53,6 +54,7 @@ def tree(folder: Path) -> set[str]:
 def check(code: int, error: str, words: str, wanted: int, before: set[str]) -> None:
     assert code == wanted, error
     assert re.match(rf"ffimpact: .*(?:{words})", error) and error.count("\n") == 1 and error.endswith("\n"), error
+    assert "8" * 201 not in error and len(error) < 2500            # of a value
     assert tree(Path.cwd()) == before
 
 
@@ -152,6 +154,24 @@ SCENES = {
 def test_scene_file(capsys, name):
     """A scene file that is none, in form, encoding or content."""
     in_a_scene(capsys, r"scene\.toml: ", SCENES[name])
+
+
+ENTRIES = ("title", "dimension", "young", "script", "body", "obstacle", "contact", "body.1.shape", "body.1.name", "body.1.radius", "body.1.position", "body.1.velocity",
+           "body.1.file", "obstacle.1.kind", "obstacle.1.normal", "obstacle.1.name", "contact.friction_static", "contact.pair", "fields", "symmetry", "8" * 400)
+VALUES_TOO_LONG = ['"' + "8" * 5000 + '"', "[" + "88, " * 2000 + "]", "{a = '" + "8" * 5000 + "'}", "{" + "8" * 5000 + " = 1}", "[" * 90 + "8" * 400 + "]" * 90]
+
+
+@pytest.mark.parametrize("entry", ENTRIES)
+def test_a_message_repeats_two_hundred_characters_of_a_value(capsys, entry):
+    """Whatever is in the place of an entry of a scene of bodies, the line that refuses it is short, by file and by --set."""
+    scene = {"law": "neohookean", "young": 7e6, "nu": 0.4, "density": 1722, "body": [{"name": "a", "shape": "disc", "radius": 0.05, "position": [0, 0.1], "velocity": [0, -1]}],
+             "obstacle": [{"name": "b", "kind": "plane", "point": [0, 0], "normal": [0, 1]}]}
+    for text in VALUES_TOO_LONG:
+        if entry == "title" and text.startswith('"'):
+            continue
+        in_a_scene(capsys, r"scene\.toml: ", to_toml(multibody.set_entry(scene, entry, text)))
+        Path("scene.toml").write_text(to_toml(scene))
+        by_python(capsys, "", "run", "scene.toml", "--set", f"{entry}={text}", "--out", "a/out")
 
 
 def special(kind: str) -> str:

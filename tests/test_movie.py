@@ -55,7 +55,7 @@ def test_film_has_the_frames_and_seconds_asked_for(fake, no_ffmpeg, tmp_path, ca
 
 def test_results_of_the_scene_are_left_alone(fake, no_ffmpeg, tmp_path, monkeypatch):
     """Without --out the film and its run are in results/movies/SCENE."""
-    monkeypatch.setattr(movie, "ROOT", tmp_path)
+    monkeypatch.chdir(tmp_path)
     movie.main(["disc-normal", "--frames", "2"])
     assert [path.name for path in (tmp_path / "results").iterdir()] == ["movies"]
     assert (tmp_path / "results/movies/disc-normal/disc-normal.gif").exists()

@@ -1,17 +1,18 @@
 """What figures must say: where time begins, when the contact ends, the paper's number, a scale; and the cut of a body in three dimensions."""
 
 import itertools
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from orchestrate import vtu
+from orchestrate import results, vtu
 from orchestrate.report import figures, impacts
 from orchestrate.sweeps import sweep, sweep_figures
 
 SCENE = dict(script="disc-plane", law="svk", young=7e6, nu=0.45, density=1722, radius=0.05, speed=8, angle=90, spin=0, gravity=0, body_force_x=0,
-             body_force_y=0, friction_static=0, penalty=1e10)
+             body_force_y=0, friction_static=0, penalty=1e10, touched=(0.0, 3.93e-3))
 
 
 def history(**given) -> dict[str, np.ndarray]:
@@ -36,17 +37,17 @@ def closed():
 
 @pytest.mark.parametrize("draw", [figures._force, figures._velocity, figures._energies])
 def test_time_begins_at_zero_and_the_last_touch_is_marked(draw):
-    """A run from the touch on has a tick at t = 0; the end of the last step in contact is a line with its time, in the legend."""
+    """A run from the touch on has a tick at t = 0; the end of the contact, inside the last step, is a line with its time, in the legend."""
     figure = draw(history(), SCENE)
     axes = figure.axes[0]
     assert axes.get_xlim()[0] == 0 and 0 in axes.get_xticks()
-    assert "last step in contact, to 3.95 ms" in labels(axes)
+    assert "end of the contact, 3.93 ms" in labels(axes)
 
 
 def test_a_body_that_goes_on_bouncing_has_no_last_touch():
     """The run ends in the air between two touches: no end of the contact is claimed. A run that begins with a flight begins there."""
     h = history(normal_force=np.where(np.arange(100) % 20 < 10, 1e3, 0.0))
-    assert figures._force(h, SCENE | {"speed": 3}).axes[0].get_legend() is None
+    assert figures._force(h, SCENE | {"speed": 3, "touched": (0.0, 4.5e-3)}).axes[0].get_legend() is None
     figure = figures._force(history(t=np.linspace(2e-3, 7e-3, 100)), SCENE)
     assert figure.axes[0].get_xlim()[0] == pytest.approx(2)
 
@@ -164,7 +165,7 @@ def block(low: float, high: float, count: int) -> vtu.Solid:
         tetrahedra.append(row)
     points = np.array(points)
     fields = {"displacement": points.copy(), "von_mises": 1 + points @ (2.0, -1.0, 1.0)}
-    return vtu.Solid(points, np.array(tetrahedra), fields)
+    return vtu.Solid(points, np.array(tetrahedra), results.Contents(fields, Path("a.vtu")))
 
 
 @pytest.mark.parametrize("low, high, count", [(-1, 2, 2), (-1, 1, 1), (-1, 1, 3), (-0.25, 0.75, 1)])

@@ -244,10 +244,40 @@ def test_one_body_and_nothing_else(inputs, tmp_path):
     with pytest.raises(BadInput, match="^obstacle: is missing, and a second body too"):
         multibody.read(alone, tmp_path, "alone").prepare(tmp_path)
     lines = (inputs / "scene.dat").read_text().split("\n")
-    kept = [*lines[:2], "bodies 1", lines[3], "circles 0", "obstacles 0", "pairs 0", ""]
+    kept = [*lines[:2], "bodies 1", lines[3], "circles 0", "files 0", "obstacles 0", "pairs 0", ""]
     (tmp_path / "scene.dat").write_text("\n".join(kept))
     done = freefem_run("-mesh", str(inputs / "mesh.msh"), "-bodies", str(tmp_path / "scene.dat"), "-out", str(tmp_path / "out"))
     assert done.returncode == 10 and "nothing could ever touch" in done.stderr and done.stderr.count("\n") == 1, done.stderr
+
+
+FALLING = {"law": "neohookean", "young": 7e6, "nu": 0.3, "density": 1722, "accuracy": 0.1, "obstacle": [{"kind": "plane", "point": [0, 0], "normal": [0, 1]}]}
+
+
+def test_bodies_turn_about_their_stated_centre(tmp_path):
+    """A coarse ellipse turned by 90 degrees and one with its semi-axes exchanged are the same body, though the mesh's centre of mass is 0.06 mm off: they
+    touch at one time and are nowhere farther apart than round-off."""
+    found = []
+    for axes, angle in (([0.06, 0.03], 0), ([0.03, 0.06], 90)):
+        body = {"shape": "ellipse", "semi_axes": axes, "angle": angle, "position": [0, 0.031], "velocity": [0, -1], "mesh_size": 0.015}
+        found.append(run.run(multibody.read(FALLING | {"body": [body], "end_time": 1.1e-3}, tmp_path, "ellipse"), {}, tmp_path / str(angle), estimate=False))
+    first, second = found
+    assert first.summary["contact_start"] == pytest.approx(second.summary["contact_start"], rel=1e-9)
+    assert second.history["y"] == pytest.approx(first.history["y"], abs=1e-12) and abs(second.history["x"]).max() < 1e-12
+
+
+def test_a_body_that_passes_through_itself_is_warned_about(tmp_path):
+    """The free arm of a hairpin closes its slot of 10 mm at 6 m/s and goes on into the other one: the warning says when, which is not before 10 mm / 12 m/s,
+    and where, on a wall of the slot; as long as the slot is open there is none."""
+    pin = {"shape": "polygon", "vertices": [[0, 0], [0.1, 0], [0.1, 0.01], [0.01, 0.01], [0.01, 0.02], [0.1, 0.02], [0.1, 0.03], [0, 0.03]],
+           "position": [0, 0.0151], "velocity": [0, -6], "mesh_size": 0.009, "contact_mesh_size": 0.009}
+    for end, words in ((4e-3, "overlap: the body passes through itself from t = "), (8e-4, "")):
+        found = run.run(multibody.read(FALLING | {"body": [pin], "end_time": end}, tmp_path, "pin"), {}, tmp_path / "pin", estimate=False)
+        warned = [one for one in found.summary["warnings"] if "overlap" in one]
+        assert len(warned) == (words != "")
+        for sentence in warned:
+            assert sentence.startswith(words) and 8e-4 < float(sentence.split("t = ")[1].split()[0]) < 4e-3
+            x, y = map(float, sentence.split("X = (")[1].split(")")[0].split(", "))
+            assert abs(y) == pytest.approx(0.005, abs=1e-3)
 
 
 @pytest.mark.parametrize("dimension, shape, zeros", [("plane-strain", "disc", 0), ("axisymmetric", "ball", 0), ("3d", "ball", 1)])
@@ -285,9 +315,9 @@ def inputs(tmp_path_factory):
     ("scene.dat", "neohookean 7000000.0", "neohookean -7000000.0", "left has young -7e+06"),
     ("scene.dat", " -0.06 0.0 ", " 0.0 0.0 ", "overlap by 0.0"),
     ("scene.dat", "circles 2\n0", "circles 2\n9", "circle 1 of body 9, of 0 to 1"),
-    ("scene.dat", "obstacles 0", "obstacles 1\nplane 3 0 0 1 0 0", "an obstacle 'plane' of 3 numbers (a plane has 4"),
-    ("scene.dat", "obstacles 0", "obstacles 1\nplane 4 0 0 0 0 0 0", "an obstacle 'plane' whose normal is 0"),
-    ("scene.dat", "obstacles 0", "obstacles 1\npolyline 6 0 0 1 1 1 1 0 0", "with two vertices at one place"),
+    ("scene.dat", "obstacles 0", "obstacles 1\nfloor plane 3 0 0 1 0 0", "an obstacle 'plane' of 3 numbers (a plane has 4"),
+    ("scene.dat", "obstacles 0", "obstacles 1\nfloor plane 4 0 0 0 0 0 0", "an obstacle 'plane' whose normal is 0"),
+    ("scene.dat", "obstacles 0", "obstacles 1\nwall polyline 6 0 0 1 1 1 1 0 0", "with two vertices at one place"),
     ("scene.dat", "pairs 0", "pairs 1\n0 -2 1e9 0 0", "pair 1 is of 0 and -2, not of a body, 0 to 1"),
     ("scene.dat", "pairs 0", "pairs 1\n0 1 -5 0 0", "pair 1 has penalty -5"),
     ("scene.dat", "disc 0.05", "disc 0", "the disc has radius 0"),
@@ -346,3 +376,52 @@ def test_scripts_describe_themselves():
     """The scripts that there are, and of two bodies the columns of each."""
     assert describe()["scripts"] == "disc-plane|disc-block|ball-axisymmetric|ball-plane|bodies|bodies-axisymmetric|bodies-3d" and describe(script="disc-block")["bodies"] == 2
     assert set(multibody.built_in()) == {"two-discs", "three-in-a-row", "disc-bowl", "disc-corner", "disc-step", "two-balls", "ball-cylinder", "ball-block", "balls-3d"} < set(scene.built_in())
+
+
+# ---- what is set is what runs
+
+@pytest.mark.parametrize("name, given, opened, kept", [
+    ("disc-oblique", {"friction_static": "0.3"}, {"friction_dynamic": 0.3}, {"penalty": 1e10, "slip_velocity": 0.1}),
+    ("disc-oblique", {"friction_static": 0.8}, {"friction_dynamic": 0.8}, {"penalty": 1e10}),
+    ("disc-oblique", {"friction_static": 0.8, "friction_dynamic": 0.6}, {"friction_dynamic": 0.6}, {}),
+    ("disc-oblique", {"speed": 4, "nu": 0.3, "law": "svk", "accuracy": 0.1}, {}, {"penalty": 1e10, "friction_dynamic": 0.5, "slip_velocity": 0.1}),
+    ("disc-normal", {"young": 5e6, "density": 1100}, {"penalty": "auto"}, {}), ("disc-normal", {"exponent": 1.5}, {"penalty": "auto"}, {}),
+    ("disc-normal", {"young": 5e6, "penalty": 3e9}, {"penalty": 3e9}, {}), ("ball", {"young": 5e6}, {"penalty": "auto"}, {}),
+    ("disc-rolling", {"radius": 0.5}, {"mesh_size": "open", "contact_mesh_size": "open", "penalty": "auto"}, {"end_time": 0.2}),
+    ("disc-block", {"radius": 0.1}, {"block_width": 2.0, "block_height": 0.4}, {})])
+def test_what_a_scene_fixed_for_its_own_follows(name, given, opened, kept):
+    """What a built-in scene fixes for its material, size or static friction is open again where that is set alone, and a sentence says so; all else stays."""
+    before = scene.load(name)
+    after = before.override(given)
+    used, alone = after.description()["used"], before.override(dict.fromkeys(set(opened) - set(given), "auto") | given
+                                                               if "open" not in opened.values() else {"mesh_size": 0, "contact_mesh_size": 0, "penalty": "auto"} | given)
+    assert all(used[entry] == alone.description()["used"][entry] for entry in opened)
+    assert all(used[entry] == value for entry, value in opened.items() if not isinstance(value, str))
+    assert all(used[entry] == value == before.description()["used"][entry] for entry, value in kept.items())
+    freed = set(opened) - set(given)
+    assert len(after.released) == len(freed) and all(any(said.startswith(f"{entry} is open again") for said in after.released) for entry in freed)
+
+
+def test_what_a_scene_of_bodies_fixed_follows():
+    """The same of dotted names: coefficients in their table, sizes in their body, the penalty of any material; a pair's friction_static alone sets both, too."""
+    bowl = scene.load("disc-bowl")
+    after = bowl.override({"contact.friction_static": "0.3"})
+    assert after.contact["friction_dynamic"] == "auto" and after.released == ("contact.friction_dynamic is open again: the scene's 0.4 was for its own contact.friction_static",)
+    stiff = bowl.override({"contact.penalty": 1e9, "dt": 1e-4})
+    assert not stiff.released and stiff.override({"body.1.velocity": [0, -1], "gravity": 1}).contact["penalty"] == 1e9
+    for name, value in (("body.1.young", 1e6), ("young", 1e6), ("contact.exponent", 1.5)):
+        assert stiff.override({name: value}).contact["penalty"] == "auto"
+    assert (stiff.override({"young": 1e6}).values["dt"], stiff.override({"contact.exponent": 2}).values["dt"]) == (0, 1e-4)
+    larger = bowl.override({"body.1.radius": 0.04})
+    assert larger.bodies[0].mesh_size == larger.bodies[0].contact_mesh_size == 0 and len(larger.released) == 2
+    assert bowl.override({"body.1.radius": 0.04, "body.1.mesh_size": 0.01, "body.1.contact_mesh_size": 0.01}).released == ()
+    own = multibody.read(bowl.given | {"obstacle": [bowl.given["obstacle"][0] | {"friction_static": 0.2}]}, bowl.folder, "bowl")
+    assert assembly.assemble(own).used["contact"]["pair"][0]["friction_dynamic"] == 0.2
+
+
+def test_a_sweep_over_friction_sets_both(tmp_path):
+    """Every point of an axis friction_static is of one coefficient where the dynamic one is not set; with it set, of two."""
+    for more, wanted in (("", [0.7, 0.3]), ("[set]\nfriction_dynamic = 0.2\n", [0.2, 0.2])):
+        (tmp_path / "friction.toml").write_text(f'scene = "disc-oblique"\n{more}[product]\nfriction_static = [0.7, 0.3]\n')
+        found = sweep.load(str(tmp_path / "friction.toml"))
+        assert [scene.load(found.scene).override(found.base | point).description()["used"]["friction_dynamic"] for point in found.points] == wanted

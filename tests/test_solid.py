@@ -95,10 +95,10 @@ def test_hertz_pressure_bears_its_force():
     assert np.trapezoid(2 * np.pi * r * pressure, r) == pytest.approx(30, rel=2e-3)
 
 
-def test_versions_are_those_of_the_project():
-    """What the user is told to install is what pyproject.toml pins as the extra."""
+def test_what_is_missing_is_the_extra():
+    """What the user is told to install is what pyproject.toml names as the extra."""
     extra = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]["solid"]
-    assert solid.INSTALL.endswith(f"pip install {' '.join(extra)}")
+    assert solid.INSTALL.endswith(f"pip install {' '.join(re.split('[<>=]', each)[0] for each in extra)}")
 
 
 def test_without_pyvista_the_rest_is_drawn(ball, no_pyvista, capsys):
@@ -108,7 +108,7 @@ def test_without_pyvista_the_rest_is_drawn(ball, no_pyvista, capsys):
     assert main(["figures", str(result.folder)]) == 0
     said = capsys.readouterr()
     assert "contact.png" in said.out and "solid.png" not in said.out and not (result.folder / "figures/solid.png").exists()
-    assert re.fullmatch(r"ffimpact: without figures/solid.png: PyVista is not installed \(\S+ -m pip install pyvista\S+ vtk\S+\)\n", said.err)
+    assert re.fullmatch(r"ffimpact: without figures/solid.png: PyVista is not installed \(\S+ -m pip install pyvista vtk\)\n", said.err)
     stage = movie.of(result)
     stage.show(2e-3)
     assert isinstance(stage, movie.PlaneStage)

@@ -24,7 +24,7 @@ def test_rows_are_parameters_outcome_and_summary(fake, tmp_path):
     rows = go(tmp_path, [*POINTS, POINTS[0]])
     assert rows[["speed", "dt"]].to_dict("records") == [*POINTS, POINTS[0]]
     assert (rows.exit == 0).all() and (rows.message == "").all() and not rows.reused.any()
-    assert (rows.impulse == 208.2).all() and (rows.steps == 200).all() and fake.starts() == 4
+    assert (rows.impulse == 208.2).all() and (rows.steps == 199).all() and fake.starts() == 4
     used = [results.read_scene(folder) for folder in (tmp_path / "runs").iterdir()]
     assert len(used) == 4 and all(scene["mesh_size"] == 0.02 for scene in used)
 

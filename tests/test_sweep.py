@@ -117,7 +117,7 @@ def test_bad_files_are_one_line(tmp_path, text, words):
 def test_unknown_sweep_and_run():
     """Exit code 10, one line, what there is."""
     code, _, err = call("sweep", "nothing")
-    assert code == 10 and "built in: calibrate, calibrate-ball, conservation, contact-time-neohookean" in err and err.count("\n") == 1
+    assert code == 10 and "built in: calibrate, calibrate-ball, calibrate-ball-3d, calibrate-oblique, conservation, contact-time-neohookean" in err and err.count("\n") == 1
     code, _, err = call("sweep", "law-comparison", "--run", "speed=3")
     assert code == 10 and "--run: 'speed=3' is no run of law-comparison (accepted: see --list)" in err
 
@@ -388,9 +388,34 @@ def test_words_as_axes(fake, tmp_path, capsys):
     assert "| neohookean |" in capsys.readouterr().out and (tmp_path / "out/sweep.png").exists()
 
 
-def test_the_sweep_of_the_readme_is_sound(tmp_path):
-    """What the README shows is accepted as it stands."""
-    text = (parameters.ROOT / "README.md").read_text()
+def test_the_sweep_of_the_docs_is_sound(tmp_path):
+    """What docs/sweeps.md shows is accepted as it stands."""
+    text = (parameters.ROOT / "docs/sweeps.md").read_text()
     example = re.search(r"```\n(scene = \"disc-normal\".*?)```", text, re.S)[1]
     wanted = sweep.load(str(write(tmp_path, example)))
     assert len(wanted.points) == 32 and wanted.refine and wanted.figure
+
+
+def test_a_refused_point_keeps_no_other(fake, tmp_path, capsys):
+    """A point that the scene refuses, the first one too, is a row with exit code 10 that is named; the others run, and --open lists it no more."""
+    shutil.copy(parameters.ROOT / "orchestrate/scenes/two-discs.toml", tmp_path / "two.toml")
+    path = write(tmp_path, 'scene = "two.toml"\ncollect = ["impulse"]\n[product]\n"body.1.position.1" = [0.05, -0.06]\n')
+    wanted = sweep.load(str(path))
+    place = study.place(tmp_path / "out", wanted.points[0])
+    found = study.outcomes(wanted.points, tmp_path / "out", wanted.base, sweep.scene.load(wanted.scene))
+    assert list(found) == [place] and found[place]["exit"] == 10 and "overlaps 'right'" in found[place]["message"]
+    path.write_text('scene = "disc-normal"\ncollect = ["contact_time"]\n' + COARSE + '[[zip]]\nangle = [60, 90]\nsymmetry = ["half", "half"]\n')
+    capsys.readouterr()
+    assert main(["sweep", str(path), "--out", str(tmp_path / "plane")]) == 10
+    said, rows = capsys.readouterr(), table(tmp_path / "plane")
+    assert list(rows.exit) == [10, 0] and rows.contact_time.notna().tolist() == [False, True]
+    assert "first: angle=60.0,symmetry=half: symmetry: half" in said.err and said.err.count("\n") == 1 and "failed, exit 10: angle=60.0,symmetry=half" in said.out
+    assert main(["sweep", str(write(tmp_path, 'scene = "two.toml"\n[product]\n"body.1.position.1" = [0.05, 0.06]\n')), "--list"]) == 10   # none is left
+
+
+@pytest.mark.parametrize("name", sweep.built_in())
+def test_the_sweeps_of_the_paper_say_all_that_they_set(name):
+    """No point of a built-in sweep leaves open what its scene fixes: an axis over the static coefficient has the dynamic one beside it."""
+    wanted = sweep.load(name)
+    given = sweep.scene.load(wanted.scene)
+    assert not {said for point in wanted.points for said in given.override(wanted.base | point).released}

@@ -19,6 +19,7 @@ COARSE = dict(accuracy=0.1, mesh_size=0.02, contact_mesh_size=0.006, dt=5e-5)
 OBLIQUE = COARSE | dict(angle=60, law="neohookean", friction_static=0.7)
 LONG = dict(mesh_size=0.008, contact_mesh_size=0.006, dt=2e-5, penalty=1e10)   # its last touch is a grazing one
 DAMPED = COARSE | dict(integrator="backward-euler", accuracy=0.02)
+SPINS = COARSE | dict(speed=1, spin=60, angle=90, height=0.01, law="neohookean", accuracy=0.002, dt=1e-4, without="flight")
 CASES = [   # name, flags with which it appears, flags with which it does not, a number it tells and what that is about
     ("penalty", COARSE | dict(penalty=1e9), COARSE, r"(\S+) % of the elastic energy", (2, 50)),
     ("penetration", COARSE | dict(penalty=1e8), COARSE | dict(penalty=1e9), r"(\S+) % of the radius", (10, 40)),
@@ -28,6 +29,9 @@ CASES = [   # name, flags with which it appears, flags with which it does not, a
      r"(\d+) of the body touch", (2, 8)),
     ("energy", DAMPED, COARSE | dict(accuracy=0.02), r"backward-euler integrator lost (\S+) %", (3, 30)),
     ("energy", COARSE | dict(integrator="bdf2", accuracy=0.02, dt=2e-4), COARSE | dict(integrator="bdf2", accuracy=0.02, dt=1e-5), r"bdf2 integrator lost (\S+) %", (2, 30)),
+    ("momentum", COARSE | dict(integrator="bdf2", accuracy=0.01, dt=3e-4), COARSE | dict(integrator="backward-euler", accuracy=0.01, dt=3e-4), r"off by (\S+) %", (2, 8)),
+    ("angular momentum", SPINS | dict(integrator="backward-euler"), SPINS, r"off by (\S+) %", (0.3, 2)),
+    ("newmark", OBLIQUE | dict(integrator="newmark"), COARSE | dict(integrator="newmark"), r"and (\S+) % of the energy", (1, 30)),
     ("contact time", LONG, LONG | dict(accuracy=0.05), r"for the last (\S+) % of it", (0.5, 5)),
     ("ellipticity", COARSE | dict(speed=9), COARSE | dict(speed=9, law="neohookean"), r"eigenvalue of the acoustic tensor (\S+) mu", (-1, 0)),
     ("breakdown", COARSE | dict(speed=14, breakdown="continue"), COARSE | dict(speed=9, breakdown="continue"), r"from t = (\S+) s", (1e-4, 3e-3)),
@@ -67,6 +71,11 @@ def test_numbers_of_the_warnings_are_those_of_the_history(disc):
     deep = disc(COARSE | dict(penalty=1e8))
     told = float(re.search(r"(\S+) % of the radius", found(deep, "penetration")[0])[1])
     assert told == pytest.approx(100 * deep.history["max_penetration"].max() / 0.05, rel=0.05)
+    spins = disc(SPINS | dict(integrator="backward-euler"))
+    told, h = float(re.search(r"off by (\S+) %", found(spins, "angular momentum")[0])[1]), spins.history
+    flies = h["normal_force"].cumsum() == 0
+    assert told == pytest.approx(100 * spins.summary["angular_momentum_drift"], rel=0.05)
+    assert told / 100 >= 1 - h["angular_momentum"][flies][-1] / h["angular_momentum"][0] > 1e-3   # about its centre nothing turns a disc without friction
     damped = disc(DAMPED)
     told = float(re.search(r"lost (\S+) %", found(damped, "energy")[0])[1])
     assert told == pytest.approx(-100 * damped.history["balance"].min() / damped.summary["energy_initial"], rel=0.05)
@@ -108,7 +117,8 @@ def test_contact_that_is_not_over_is_measured_to_the_end(disc):
 
 
 def test_no_contact_no_contact_time(disc):
-    """A flight has neither contact time, and no warning."""
+    """A flight has neither contact time, and no warning; nor has one whose energy is less than the round-off of its balance."""
+    assert [each.split(":")[0] for each in disc(COARSE | dict(speed=0, spin=1e-13, height=1, end_time=1e-3)).summary["warnings"]] == ["no contact"]
     outcome = disc(COARSE | dict(height=1, end_time=1e-3))
     assert outcome.summary["contact_time"] is outcome.summary["thresholded_contact_time"] is None and [each.split(":")[0] for each in outcome.summary["warnings"]] == ["no contact"]
 

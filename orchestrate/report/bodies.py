@@ -12,8 +12,8 @@ from .. import dimension, obstacles, vtu
 from ..obstacles import Obstacle
 from ..parameters import Value
 from ..results import suffixes
-from .figures import (BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, SHAPES, STRESS, Body, as_written, deformed, draw_body, is_half, least,
-                      most_stress, over_time, per_metre, scale_bar)
+from .figures import (BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SHAPES, STRESS, Body, as_written, deformed, draw_body, is_half, least,
+                      material, most_stress, over_time, per_metre, scale_bar)
 
 ALONE = ("disc-plane", "ball-axisymmetric", "ball-plane")     # scripts of one body on the plane
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, "#56b4e9", "#e69f00")    # of bodies
@@ -37,9 +37,6 @@ def names(scene: dict[str, Value]) -> list[str]:
 
 def title(scene: dict[str, Value]) -> str:
     """Each body's material; of a disc on a block the speed."""
-    def material(one: dict) -> str:
-        return f"{LAWS[one['law']]}, E = {1e-6 * one['young']:g} MPa, ν = {one['nu']:g}"
-
     if "body" not in scene:
         return f"disc on block: {material(scene)}, {scene['speed']:g} m/s"
     materials = {}
@@ -63,16 +60,15 @@ def legend(axes: plt.Axes, ncols: int = 3) -> None:
 
 def draw(history: dict[str, np.ndarray], scene: dict[str, Value], snapshots: list[tuple[float, Path]]) -> dict[str, plt.Figure]:
     """The figures by name; `history` from the first touch on."""
-    bodies, per = dict(zip(names(scene), suffixes(history))), per_metre(scene)
-    drawn = {"energies": energies(history, bodies, per), "velocity": velocities(history, bodies), "force": forces(history, bodies, per)}
+    drawn = {"energies": energies(history, scene), "velocity": velocities(history, scene), "force": forces(history, scene)}
     if snapshots and len(vtu.read(snapshots[0][1]).triangles):       # none where no body crosses the plane z = 0
         drawn["shapes"] = shapes(snapshots, scene)
     return drawn
 
 
 def width(body: int) -> float:
-    """Of the line of a body (from 0): thinner from body to body, so that one under another is seen."""
-    return max(1.0, 3.2 - 1.0 * body)
+    """Of the line of a body (from 0): a little thinner from body to body, so that one under another is seen."""
+    return max(1.0, 2.0 - 0.4 * body)
 
 
 def panels(count: int, height: float = 2.4) -> tuple[plt.Figure, list[plt.Axes]]:
@@ -90,9 +86,14 @@ def panels(count: int, height: float = 2.4) -> tuple[plt.Figure, list[plt.Axes]]
     return figure, list(grid.flat[:count])
 
 
-def energies(history: dict[str, np.ndarray], bodies: dict[str, str], per: str = "/m") -> plt.Figure:
+def columns_of(history: dict[str, np.ndarray], scene: dict[str, Value]) -> dict[str, str]:
+    """What stands behind the names of the columns of each body, by its name."""
+    return dict(zip(names(scene), suffixes(history)))
+
+
+def energies(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
     """Energies [J/m] over time: a panel a body; one of all, with the contact's, which belongs to no body; the error of the balance."""
-    t, unit = 1e3 * history["t"], f"energy [J{per}]"
+    t, unit, bodies = 1e3 * history["t"], f"energy [J{per_metre(scene)}]", columns_of(history, scene)
     several = len(bodies) > 1
     figure, (*own, together, balance) = panels(len(bodies) * several + 2)
     for body, (axes, (name, of), colour) in enumerate(zip(own, bodies.items(), COLOURS * len(bodies))):
@@ -117,8 +118,8 @@ def energies(history: dict[str, np.ndarray], bodies: dict[str, str], per: str = 
     for axes in (*own, together):
         axes.axhline(0, color=GREY, linewidth=0.6)
         axes.set_ylabel(unit)
-    over_time([together, *own, balance], history)
-    for axes in (*own, together):
+    over_time([balance, together, *own], history, scene)
+    for axes in (*own, together, balance):
         legend(axes, ncols=2 if axes is together and len(bodies) < 4 else 3)
     error = np.abs(history["balance"]) / (largest or 1.0)       # not of the total alone: bodies at rest under gravity have none
     balance.semilogy(t, np.where(error > 0, error, np.nan), color=BLACK, linewidth=0.9)
@@ -127,8 +128,9 @@ def energies(history: dict[str, np.ndarray], bodies: dict[str, str], per: str = 
     return figure
 
 
-def velocities(history: dict[str, np.ndarray], bodies: dict[str, str]) -> plt.Figure:
+def velocities(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
     """Velocities [m/s] of the centres of mass and spins [rad/s], a panel a component, a line a body."""
+    bodies = columns_of(history, scene)
     components = {"vx": "$v_x$ [m/s]", "vy": "$v_y$ [m/s]", "vz": "$v_z$ [m/s]", "spin_x": "spin about x [rad/s]", "spin_y": "spin about y [rad/s]", "spin": "spin [rad/s]"}
     moving = [name for name in components if any(np.any(history.get(name + of, 0)) for of in bodies.values())] or ["vy"]
     figure, grid = panels(len(moving), 2.8)
@@ -138,29 +140,29 @@ def velocities(history: dict[str, np.ndarray], bodies: dict[str, str]) -> plt.Fi
             axes.plot(1e3 * history["t"], history[name + of], color=colour, linewidth=width(body) if len(bodies) > 1 else None,
                       label=called if len(bodies) > 1 else None)
         axes.set_ylabel(components[name])
-    over_time(grid, history)
+    over_time(grid, history, scene)
     legend(grid[0])
     return figure
 
 
-def forces(history: dict[str, np.ndarray], bodies: dict[str, str], per: str = "/m") -> plt.Figure:
+def forces(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
     """Contact forces [kN/m] over time: normal and friction forces of all contacts, and the components on each of several bodies."""
-    t, unit = 1e3 * history["t"], f"[kN{per}]"
+    t, unit, bodies = 1e3 * history["t"], f"[kN{per_metre(scene)}]", columns_of(history, scene)
     lines = {f"normal force {unit}": {"": "normal_force"}}
     if history["friction_force"].any():
         lines[f"friction force {unit}"] = {"": "friction_force"}
-    if len(bodies) > 1:
-        for component in "xyz":
-            columns = {name: f"force_{component}{of}" for name, of in bodies.items()}
-            if any(np.any(history.get(column, 0)) for column in columns.values()):
-                lines[f"force along {component} {unit}"] = columns
+    own = {f"force along {component} {unit}": {name: f"force_{component}{of}" for name, of in bodies.items()} for component in "xyz" if len(bodies) > 1}
+    own = {words: columns for words, columns in own.items() if any(np.any(history.get(column, 0)) for column in columns.values())}
+    if own and len(bodies) == 2 and not obstacles_of(scene):     # the normal force is then that on each
+        lines = dict(list(lines.items())[1:])
+    lines |= own
     figure, grid = panels(len(lines), 2.8)
     for axes, (words, columns) in zip(grid, lines.items()):
         axes.axhline(0, color=GREY, linewidth=0.6)
         for (name, column), colour in zip(columns.items(), COLOURS * len(columns) if len(columns) > 1 else (BLACK,)):
             axes.plot(t, 1e-3 * history[column], color=colour, label=name or None)
         axes.set_ylabel(words)
-    over_time(grid, history)
+    over_time(grid, history, scene)
     legend(grid[0], ncols=1)
     if len(columns) > 1:               # no forces on bodies where nothing touched
         legend(grid[-1])

@@ -1,38 +1,37 @@
 """Runs of several scenes side by side: their reports, and one figure of their forces, energies and velocities."""
 
 import argparse
-import sys
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
 
-from .. import scene
+from .. import progress, scene
 from ..failure import BadInput, Failure
 from ..folder import result_folder
-from ..parameters import ROOT, overrides
-from ..places import shown
+from ..parameters import overrides
+from ..places import COMMAND, RESULTS, shown
 from ..results import RunResult, suffixes
 from ..run import run
 from . import report
 from .bodies import names
-from .figures import ABOVE, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE, numbers_of_the_paper, per_metre
+from .figures import ABOVE, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE, numbers_of_the_paper, per_metre, touched
 
 
 def main(argv: list[str]) -> int:
     """Runs or reuses every scene, prints the reports, draws DIR/<names>.png. A scene that fails does not keep the others."""
-    parser = argparse.ArgumentParser(prog="python -m orchestrate compare", description=__doc__)
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} compare", description=__doc__)
     parser.add_argument("scenes", metavar="SCENE", nargs="+", help="two or more built-in scenes or TOML files")
     parser.add_argument("--set", metavar="NAME=VALUE", nargs="+", action="extend", default=[], help="set a parameter in all of them")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results", help="a folder for a folder of each scene")
+    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS, help="a folder for a folder of each scene")
     options = parser.parse_args(argv)
     scenes, folder = [scene.load(name) for name in options.scenes], result_folder(options.out)
     if len({each.name for each in scenes}) < max(2, len(scenes)):
         raise BadInput("compare: two or more different scenes are needed")
     results, failed = {}, None
-    for each in scenes:
+    for each in progress.in_turn("compare", scenes):
         try:
-            result = run(each, overrides(options.set), folder / each.name, progress=sys.stderr.isatty())
+            result = run(each, overrides(options.set), folder / each.name)
             results[each.name] = result
             report.draw(result)
             print(report.report(result) + "\n")
@@ -51,7 +50,8 @@ def main(argv: list[str]) -> int:
 def draw(results: dict[str, RunResult], path: Path) -> None:
     """Normal force, friction force, total energy and velocities (of each body) over time, a colour a run; friction only where there is any.
 
-    Of discs, per metre, and balls together: the acceleration of the centre of mass (figure 11) for the force, energies over that at the start.
+    Of discs, per metre, and balls together: the acceleration of the centre of mass (figure 11), of several bodies the first one's, for the force, energies over
+    that at the start.
     """
     mixed = len({per_metre(result.scene) for result in results.values()}) > 1
     rubs = any(result.history["friction_force"].any() for result in results.values())
@@ -61,10 +61,10 @@ def draw(results: dict[str, RunResult], path: Path) -> None:
         for k, ((name, result), colour) in enumerate(zip(results.items(), (BLUE, ORANGE, GREEN, PURPLE) * len(results))):
             h, used = result.history, result.scene
             t, per = 1e3 * h["t"], per_metre(used)
-            heavy, start = (_mass(h), result.summary["energy_initial"]) if mixed else (1.0, 1.0)
-            force.plot(t, 1e-3 * h["normal_force"] / heavy, color=colour,
-                       label=f"{name}: {_material(used)}{result.summary['dofs']} dofs")
-            _contact(force, h, used, colour)
+            heavy, start = (_mass(result), result.summary["energy_initial"]) if mixed else (1.0, 1.0)
+            force.plot(t, 1e-3 * (_push(h) if mixed else h["normal_force"]) / heavy, color=colour,
+                       label=f"{name}: {_material(used)}{result.summary['dofs']} dofs{_doubts(result.summary)}")
+            _contact(force, result, colour)
             drag.plot(t, 1e-3 * h["friction_force"] / heavy if rubs else h["max_penetration"] * 1e3, color=colour)
             energy.plot(t, (h["kinetic"] + h["elastic"] + h["contact"]) / start, color=colour, linewidth=max(1.0, 3.4 - 0.8 * k))   # one on another is seen
             energy.plot(t, h["elastic"] / start, color=colour, linestyle="--")
@@ -81,7 +81,7 @@ def draw(results: dict[str, RunResult], path: Path) -> None:
         drag.set_ylabel(("acceleration by friction [10³ m/s²]" if mixed else f"friction force [kN{per}]") if rubs else "largest penetration [mm]")
         energy.set(ylabel="energy over that at the start" if mixed else f"energy [J{per}]", ylim=(0, None), xlabel="time [ms]")
         stated = any(each.scene.get("law") == "svk" and numbers_of_the_paper(each.scene, "contact_time") for each in results.values())
-        _key(force, {"last step in contact": ":", "last touch by the paper": "-."} if stated else {"last step in contact": ":"})
+        _key(force, {"end of the contact": ":", "by the paper": "-."} if stated else {"end of the contact": ":"})
         _key(energy, {"total": "-", "elastic": "--"})
         velocity.set(ylabel="velocity [m/s]", xlabel="time [ms]")
         _key(velocity, {"$v_x$": "-", "$v_y$": "--", r"$-\omega R$": ":"} if rubs else {"$v_y$": "--"})
@@ -91,25 +91,37 @@ def draw(results: dict[str, RunResult], path: Path) -> None:
         plt.close(figure)
 
 
-def _contact(axes: plt.Axes, history: dict[str, np.ndarray], used: dict, colour: str) -> None:
-    """The end of the last step in contact, and when the last touch would be by the contact time that the paper states of that impact with that law."""
-    touching = np.flatnonzero(history["normal_force"] > 0)
-    if len(touching):
-        begin = (history["t"] - history["dt"])[touching[0]]
-        axes.axvline(1e3 * history["t"][touching[-1]], color=colour, linestyle=":", linewidth=0.9)
-        for _, seconds, _ in numbers_of_the_paper(used, "contact_time") if used.get("law") == "svk" else []:   # the law of all of the paper's
-            axes.axvline(1e3 * (begin + seconds), color=colour, linestyle="-.", linewidth=0.9)
+def _contact(axes: plt.Axes, result: RunResult, colour: str) -> None:
+    """The end of the contact, and when it would be by the contact time that the paper states of that impact with that law."""
+    if not (when := touched(result.summary)):
+        return
+    axes.axvline(1e3 * when[1], color=colour, linestyle=":", linewidth=0.9)
+    for _, seconds, _ in numbers_of_the_paper(result.scene, "contact_time") if result.scene.get("law") == "svk" else []:   # the law of all of the paper's
+        axes.axvline(1e3 * (when[0] + seconds), color=colour, linestyle="-.", linewidth=0.9)
 
 
-def _mass(history: dict[str, np.ndarray]) -> float:
-    """Of all bodies [kg, in plane strain kg/m]."""
-    moves = int(np.argmax(np.abs(history["vy"])))
-    return float(history["momentum_y"][moves] / history["vy"][moves])
+def _push(history: dict[str, np.ndarray]) -> np.ndarray:
+    """Force on the body by its contacts: normal to the plane; of several bodies the size of all that acts on the first."""
+    on_first = [history[name] for name in ("force_x_1", "force_y_1", "force_z_1") if name in history]
+    return np.linalg.norm(on_first, axis=0) if on_first else history["normal_force"]
+
+
+def _mass(result: RunResult) -> float:
+    """Of the body, of several the first [kg, in plane strain kg/m]."""
+    if "mass_1" in result.summary:
+        return result.summary["mass_1"]
+    moves = int(np.argmax(np.abs(result.history["vy"])))
+    return float(result.history["momentum_y"][moves] / result.history["vy"][moves])
 
 
 def _material(used: dict) -> str:
-    """Law and nu, where the scene has one of them."""
-    return f"{LAWS.get(used['law'], used['law'])}, ν = {used['nu']:g}, " if "law" in used else ""
+    """Law, nu and penalty, where the scene has one of them."""
+    return f"{LAWS.get(used['law'], used['law'])}, ν = {used['nu']:g}, k = {used['penalty']:.3g}, " if "law" in used else ""
+
+
+def _doubts(summary: dict) -> str:
+    """The names of the warnings of a run."""
+    return "".join(f"\n    ! {', '.join(dict.fromkeys(sentence.partition(':')[0] for sentence in summary['warnings']))}" if summary.get("warnings") else "")
 
 
 def _key(axes: plt.Axes, lines: dict[str, str]) -> None:

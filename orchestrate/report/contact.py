@@ -21,29 +21,32 @@ MAPS = 5                         # instants at most
 ALONG = "along the outline"
 WIDTH, LOAD = "#0072b2", "#d55e00"
 ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 1), "ncols": 3, "fontsize": 6.5, "handlelength": 1.0, "columnspacing": 0.8}
-COLUMNS = ["t", "body", "partner", "s", "X", "Y", "x", "y", "weight", "pressure", "shear", "slip_velocity", "slides"]
+COLUMNS = ["t", "body", "partner", "s", "X", "Y", "x", "y", "weight", "pressure", "shear", "slip_velocity", "slides", "projected_pressure"]
 
 
-def read(folder: Path) -> pd.DataFrame:
-    """fields/contact.csv of the run in `folder`: a row for every point of an outline that bears load, at the instants of the snapshots.
+def read(folder: Path, beside: bool = False) -> pd.DataFrame:
+    """fields/contact.csv of the run in `folder`: a row for every point of an outline that bears load, at the instants of the snapshots; also for those `beside`,
+    where only the projected pressure is not 0.
 
     t [s]; body (from 1); partner (k: body k, -k: obstacle k); s: along the body's outline from where it was first touched, the body to the left;
     X, Y, x, y: reference and present place; weight: share of the outline [m]; pressure (10), shear (11) [Pa] per reference length, means over the
-    step that ends at t; slip_velocity [m/s]; slides (1 or 0). In three dimensions also Z, z, shear_z, slip_velocity_z; weight [m2]. Unreadable where it is not such a table.
+    step that ends at t; slip_velocity [m/s]; slides (1 or 0); projected_pressure [Pa]: the pressure as the outline's own functions have it, with the same resultant and moment. In three dimensions also Z, z, shear_z, slip_velocity_z; weight [m2]. Unreadable where it is not such a table.
     """
-    return read_table(folder / "fields/contact.csv", COLUMNS)
+    table = read_table(folder / "fields/contact.csv", COLUMNS)
+    return table if beside else table[table.pressure > 0]
 
 
 def draw(table: pd.DataFrame, names: list[str], half: bool, free: np.ndarray, ball: dict[str, Value] | None = None, symmetry: str = "full",
          history: dict[str, np.ndarray] | None = None) -> plt.Figure | None:
     """A row of panels a body: pressure over the outline at some instants, over outline and time, with friction where it sticks and slides, and with the
-    `history` half-width and largest pressure; None without contact. `free`: times [s] at which nothing is touched.
+    `history` half-width and largest pressure; None without contact. `table`: also of the points beside. `free`: times [s] at which nothing is touched.
 
     Half a body is drawn with its mirror image. `ball`: the scene where the body is a ball that nothing turns: all is drawn over the distance from
     its axis. Of other bodies in three dimensions: of one the points nearest to the plane z = 0, of several all over the distance from the first touch;
     below them the patch at some instants. `symmetry` (quarter, half, full): what of a body in three dimensions was computed."""
     if table.empty:
         return None
+    around, table = table, table[table.pressure > 0]
     largest = table.groupby("body").pressure.max().nlargest(MOST_BODIES)
     instants = np.union1d(table.t, free[(free > table.t.min()) & (free < table.t.max())])
     rubs, bodies, solid = bool(table.shear.any()), sorted(largest.index), "Z" in table
@@ -58,7 +61,7 @@ def draw(table: pd.DataFrame, names: list[str], half: bool, free: np.ndarray, ba
         if ball:
             _over_radius(panels["profiles"], points, ball)
         else:
-            _profiles(panels["profiles"], own, words, "" if solid else "-")
+            _profiles(panels["profiles"], own if solid else _section(around[around.body == body], half)[0], words, "" if solid else "-")
         times, places, pressure = _over_time(own, "pressure", instants)
         picture = panels["pressure"].pcolormesh(1e3 * times, 1e3 * places, 1e-6 * pressure.T, shading="nearest", cmap="viridis", vmin=0, rasterized=True)
         upper.colorbar(picture, ax=panels["pressure"], label=PRESSURE)
@@ -172,10 +175,15 @@ def _instants(table: pd.DataFrame, most: int = INSTANTS) -> list[tuple[float, pd
 
 
 def _profiles(axes: plt.Axes, own: pd.DataFrame, words: str, line: str) -> None:
-    """Pressure [MPa] over s [mm], which is the distance in these words, at up to INSTANTS times."""
+    """Pressure [MPa] over s [mm], which is the distance in these words, at up to INSTANTS times: along a line its projection on the outline's own
+    functions, where it is more than nothing, and small the points."""
     for t, now, colour in _instants(own):
         now = now.sort_values("s")
-        axes.plot(1e3 * now.s, 1e-6 * now.pressure, color=colour, linestyle=line, linewidth=1.1, marker=".", markersize=2.5, label=f"{1e3 * t:.3g} ms")
+        if line:
+            near = now[now.projected_pressure.abs() > 0.01 * now.projected_pressure.max()]
+            axes.plot(1e3 * near.s, 1e-6 * near.projected_pressure, color=colour, linestyle=line, linewidth=1.1, label=f"{1e3 * t:.3g} ms")
+            now = now[now.pressure > 0]
+        axes.plot(1e3 * now.s, 1e-6 * now.pressure, color=colour, linestyle="", marker=".", markersize=1.5 if line else 2.5, label=None if line else f"{1e3 * t:.3g} ms")
     axes.set(xlabel=f"{words} [mm]", ylabel=PRESSURE, ylim=(0, None))
     axes.legend(**ABOVE)
 

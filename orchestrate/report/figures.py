@@ -15,10 +15,13 @@ from matplotlib.collections import TriMesh
 from matplotlib.ticker import NullFormatter
 from matplotlib.transforms import ScaledTranslation
 from matplotlib.tri import LinearTriInterpolator, Triangulation
+from PIL import Image
 
 from .. import dimension, vtu
+from ..failure import Unreadable
 from ..parameters import Value
-from ..results import read_history, read_scene
+from ..places import COMMAND
+from ..results import Contents, check_files, read_history, read_json, read_scene
 
 LAWS = {"svk": "St. Venant–Kirchhoff", "neohookean": "neo-Hookean", "incompressible": "incompressible neo-Hookean"}
 BLUE, ORANGE, GREEN, PURPLE, BLACK, GREY = "#0072b2", "#d55e00", "#009e73", "#aa4499", "#222222", "#999999"
@@ -30,6 +33,7 @@ BODY = {"ball-plane": "ball: ", "ball-axisymmetric": "ball as a body of revoluti
 STRESS = "von Mises stress [MPa]"
 SHAPES = 9   # small multiples at most
 ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 1), "handlelength": 1.6, "columnspacing": 1.4}   # a legend above its panel
+BELOW = {"loc": "upper center", "bbox_to_anchor": (0.5, 0), "borderaxespad": 5.5}         # one below it, under the numbers and the name of its axis
 BAND = "#c8c8c8"   # of what other curves run along
 DASHED = (0, (4, 2))
 filterwarnings("ignore", "Glyph .* missing from", UserWarning)    # a letter that the font lacks is an empty box in the title
@@ -39,23 +43,27 @@ def draw(folder: Path, warnings: list[str]) -> list[Path]:
     """Draws all figures of the run in `folder` into folder/figures, with its warnings below; the files. Unreadable where the
     folder is broken. energies.png is the last: where it is, all are."""
     from . import bodies, contact as contacts, impacts, solid, vibration
+    check_files(folder)
     history, scene = read_history(folder), read_scene(folder)
+    scene["touched"] = touched(read_json(folder / "summary.json"))
+    if scene["script"] in dimension.SCRIPTS and "body" not in scene:
+        raise Unreadable(f"{folder}: of a run without Python, which keeps neither names of bodies nor obstacles (accepted: a folder of {COMMAND} run)")
     snapshots = vtu.series(folder / "fields.pvd")
     target = folder / "figures"
     target.mkdir(exist_ok=True)
     touches = history["normal_force"] > 0
-    contact = {name: column[max(0, int(np.argmax(touches)) - 1):] for name, column in history.items()}   # without the flight
+    contact = Contents({name: column[max(0, int(np.argmax(touches)) - 1):] for name, column in history.items()}, history.path)   # without the flight
     with plt.rc_context(STYLE):
         if bodies.are_several(scene):
             drawn = bodies.draw(contact, scene, snapshots)
         else:
             drawn = _on_a_plane(history, contact, scene, snapshots)
         if (folder / "fields/contact.csv").exists():
-            table = contacts.read(folder)
+            table = contacts.read(folder, beside=True)
             along = contacts.draw(table, bodies.names(scene) if bodies.are_several(scene) else ["body"], is_half(scene), history["t"][~touches],
                                   scene if scene.get("script") in BODY and is_half(scene) else None, scene.get("symmetry", "full"), history)
             drawn |= {"contact": along} if along else {}
-            inside = solid.draw(snapshots, table, scene) if snapshots and "Z" in table else None
+            inside = solid.draw(snapshots, table[table.pressure > 0], scene) if snapshots and "Z" in table else None
             drawn |= {"solid": inside} if inside else {}
         if (folder / "contacts.csv").exists():
             bounces = impacts.draw(impacts.read(folder), bodies.names(scene) if bodies.are_several(scene) else ["body"],
@@ -67,8 +75,7 @@ def draw(folder: Path, warnings: list[str]) -> list[Path]:
         for name, figure in reversed(drawn.items()):
             figure.suptitle(title(scene))
             footer(figure, warnings)
-            figure.savefig(target / f"{name}.png")
-            plt.close(figure)
+            save(figure, target / f"{name}.png")
     return [target / f"{name}.png" for name in drawn]
 
 
@@ -88,6 +95,14 @@ def _on_a_plane(history: dict[str, np.ndarray], contact: dict[str, np.ndarray], 
     return drawn
 
 
+def save(figure: plt.Figure, path: Path) -> None:
+    """Writes the figure, laid out and drawn once (savefig draws it twice), and closes it."""
+    figure.set_dpi(plt.rcParams["savefig.dpi"])
+    figure.canvas.draw()
+    Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB").save(path, dpi=(figure.dpi, figure.dpi), compress_level=3)
+    plt.close(figure)
+
+
 def footer(figure: plt.Figure, warnings: list[str]) -> None:
     """The warnings of the run, small, below the figure, which grows by their height; without what to do about them."""
     width, height = figure.get_size_inches()
@@ -104,13 +119,18 @@ def title(scene: dict[str, Value]) -> str:
         return bodies.title(scene)
     angle = "" if scene.get("angle", 90) == 90 else f" at {scene['angle']:g}°"
     body = BODY.get(scene.get("script"), "")
-    text = f"{body}{LAWS.get(scene['law'], scene['law'])}, ν = {scene['nu']:g}, {scene['speed']:g} m/s{angle}"
+    text = f"{body}{material(scene)}, {scene['speed']:g} m/s{angle}"
     if scene.get("degree") == 1:
         text += ", linear elements"
     if scene.get("friction_static", 0) > 0:
         text += (f"\nfriction {scene['friction_static']:g} static, {scene['friction_dynamic']:g} dynamic, "
                  f"{scene['regularization']}, ε = {scene['slip_velocity']:g} m/s")
     return text
+
+
+def material(one: dict[str, Value]) -> str:
+    """Law, E, nu and density of a body."""
+    return f"{LAWS.get(one['law'], one['law'])}, E = {1e-6 * one['young']:g} MPa, ν = {one['nu']:g}, ρ = {one['density']:g} kg/m³"
 
 
 def as_written(text: str) -> str:
@@ -123,22 +143,28 @@ def per_metre(scene: dict[str, Value]) -> str:
     return "/m" if dimension.per_metre(scene.get("script", "")) else ""
 
 
-def over_time(panels: list[plt.Axes], history: dict[str, np.ndarray]) -> None:
-    """Limits of the time [ms], which begins at 0 where the run does not begin with a long flight; a dotted line at the end of the last step in contact, where the run goes on
+def touched(summary: dict) -> tuple[float, float] | None:
+    """When the contact begins and ends [s], both interpolated inside their steps; None without one, or where it is not over."""
+    if summary.get("contact_time") is None or summary.get("contact_start") is None:
+        return None
+    return summary["contact_start"], summary["contact_start"] + summary["contact_time"]
+
+
+def over_time(panels: list[plt.Axes], history: dict[str, np.ndarray], scene: dict[str, Value]) -> None:
+    """Limits of the time [ms], which begins at 0 where the run does not begin with a long flight; a dotted line at the end of the contact, where the run goes on
     after it for longer than between any two touches, with a name in the legend of the first panel."""
     t, touches = 1e3 * history["t"], history["normal_force"] > 0
-    last = t[touches][-1] if touches.any() else t[-1]
+    last = 1e3 * scene["touched"][1] if scene.get("touched") else t[-1]
     for axes in panels:
         axes.set_xlim(0 if t[0] < 0.05 * t[-1] else t[0], t[-1])
         if t[-1] - last > np.diff(t[touches]).max(initial=0.0):
-            axes.axvline(last, color=BLACK, linestyle=":", linewidth=0.8, label=f"last step in contact, to {last:.4g} ms" if axes is panels[0] else None)
+            axes.axvline(last, color=BLACK, linestyle=":", linewidth=0.8, label=f"end of the contact, {last:.4g} ms" if axes is panels[0] else None)
 
 
-def published(axes: plt.Axes, history: dict[str, np.ndarray], scene: dict[str, Value]) -> None:
+def published(axes: plt.Axes, scene: dict[str, Value]) -> None:
     """The paper's contact time of the same impact, from the first touch on, where it states one, as a line with a name."""
-    touches = history["normal_force"] > 0
-    for _, seconds, words in numbers_of_the_paper(scene, "contact_time") if touches.any() else []:
-        begin = (history["t"] - history["dt"])[np.argmax(touches)]
+    begin, _ = scene.get("touched") or (None, None)
+    for _, seconds, words in numbers_of_the_paper(scene, "contact_time") if begin is not None else []:
         axes.axvline(1e3 * (begin + seconds), color=BLACK, linestyle="-.", linewidth=0.9, label=f"{words}: {1e3 * seconds:.3g} ms")
         axes.set_xlim(right=max(axes.get_xlim()[1], 1.02e3 * (begin + seconds)))
 
@@ -189,7 +215,7 @@ def _energies(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fi
     bottom.set(xlabel="time [ms]", ylabel="|balance| / $E_0$")
     bottom.margins(y=0.15)
     bottom.yaxis.set_minor_formatter(NullFormatter())
-    over_time([top, bottom], history)
+    over_time([top, bottom], history, scene)
     top.legend(**ABOVE, ncols=3)
     return figure
 
@@ -210,9 +236,9 @@ def _force(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figur
 
 
 def _end_of_contact(panels: list[plt.Axes], history: dict[str, np.ndarray], scene: dict[str, Value]) -> None:
-    """The time of panels over the same time, with the last step in contact and the paper's contact time named above the first."""
-    over_time(panels, history)
-    published(panels[0], history, scene)
+    """The time of panels over the same time, with the end of the contact and the paper's contact time named above the first."""
+    over_time(panels, history, scene)
+    published(panels[0], scene)
     if panels[0].get_legend_handles_labels()[0]:
         panels[0].legend(**ABOVE, ncols=2)
 
@@ -258,7 +284,9 @@ def _enlarge(grid: np.ndarray, history: dict[str, np.ndarray], window: tuple[int
     share.set(title="grey on the left, enlarged", ylabel="load that slides [%]",
               xlim=(t[first], t[last]), ylim=(0, 1.08 * max(1.0, 100 * history["sliding_fraction"][inside].max())))
     zoom.plot(t, friction, color=ORANGE, linewidth=1.0, marker=".", markersize=3)
-    zoom.set(ylabel=f"friction force [kN{per}]", ylim=_around(friction[inside], 0.15))
+    lines = [line.get_ydata()[inside] for line in grid[1, 0].lines if len(line.get_ydata()) == len(t)]     # the limits that the force touches, too
+    near = [values for values in lines if values.mean() * friction[inside].mean() > 0]
+    zoom.set(ylabel=f"friction force [kN{per}]", ylim=_around(np.concatenate([friction[inside], *near]), 0.15))
 
 
 def _around(values: np.ndarray, margin: float) -> tuple[float, float]:
@@ -294,7 +322,7 @@ def _velocity(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fi
     for name, colour in zip(moving, (BLUE, ORANGE, GREEN)):
         axes.plot(t, history[name], color=colour, label=f"$v_{name[1]}$")
     axes.set(xlabel="time [ms]", ylabel="velocity of the centre of mass [m/s]")
-    over_time([axes], history)
+    over_time([axes], history, scene)
     axes.legend(**ABOVE, ncols=4)
     return figure
 
@@ -325,7 +353,7 @@ def _rolling(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fig
     bottom.fill_between(t, 0, np.where(touches, 0, 100), step="pre", color="#ececec", linewidth=0, label="no contact")
     bottom.set(xlabel="time [ms]", ylabel="share of the load [%]", ylim=(0, 100))
     bottom.legend(**ABOVE | {"handlelength": 1.0}, ncols=4, handleheight=1.0)
-    over_time([top, bottom], history)
+    over_time([top, bottom], history, scene)
     top.legend(**ABOVE, ncols=4)
     return figure
 
@@ -392,14 +420,14 @@ def _flight(history: dict[str, np.ndarray], scene: dict[str, Value], series: lis
             _draw_flight(axes, poses[-1], 1, -1, history, scene, GREEN)
             at, ahead = row(poses[0].t), np.sign(history["vx"][0]) or 1.0
             before, after = (np.degrees(np.arctan2(abs(history["vy"][k]), ahead * history["vx"][k])) for k in (at, -1))
-            axes.set_title(f"angle to the plane: {before:.1f}° before, {after:.1f}° after" + " (backwards)" * bool(after > 90))
+            axes.set_title(f"angle to the plane: {before:.1f}° before, {after:.1f}° after" + " (backwards)" * bool(after > 90.05))
         room = 1.2 * scene["radius"]   # for the times beside the outlines
     left, right = axes.get_xlim()
     high = axes.get_ylim()[1] + (0 if impact else 0.2 * scene["radius"])
     axes.axhline(0, color=BLACK, linewidth=0.8)
     axes.axhspan(-0.3 * scene["radius"], 0, color="#d0d0d0", linewidth=0)
     axes.set(xlim=(left - room, right + room), ylim=(-0.3 * scene["radius"], high), aspect="equal", xlabel="x [m]", ylabel="y [m]")
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13 if impact else -0.2), ncols=2, handlelength=1.8)
+    axes.legend(**BELOW, ncols=2, handlelength=1.8)
     return figure
 
 

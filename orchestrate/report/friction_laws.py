@@ -10,9 +10,8 @@ import pandas as pd
 from .. import freefem, parameters
 from ..failure import Failure, Unreadable
 from ..folder import result_folder
-from ..parameters import ROOT
-from ..places import shown
-from .figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE
+from ..places import COMMAND, RESULTS, shown
+from .figures import BELOW, BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE
 
 VALUES = {"friction_static": 0.7, "friction_dynamic": 0.5, "slip_velocity": 0.1}   # of section 3.1 and figure 3
 LABELS = {"linear": (r"linear, $\phi^3$ with $v_T/\varepsilon$", BLUE, "-"), "sqrt": (r"sqrt, $\phi^1$", GREEN, "-"),
@@ -22,8 +21,8 @@ LABELS = {"linear": (r"linear, $\phi^3$ with $v_T/\varepsilon$", BLUE, "-"), "sq
 
 def main(argv: list[str]) -> int:
     """Tabulates the laws into DIR/laws.csv and draws DIR/friction-laws.png."""
-    parser = argparse.ArgumentParser(prog="python -m orchestrate friction-laws", description=__doc__)
-    parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/friction-laws", help="the result folder")
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} friction-laws", description=__doc__)
+    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "friction-laws", help="the result folder")
     for name, value in VALUES.items():
         parser.add_argument(f"--{name}", metavar="VALUE", default=value, help=f"{parameters.table()[name].help} (default: {value:g})")
     options = parser.parse_args(argv)
@@ -54,11 +53,11 @@ def draw(laws: pd.DataFrame, values: dict[str, float], path: Path) -> None:
     """The three panels of figure 3, the sides of a jump apart, the velocity in units of slip_velocity."""
     laws = laws.assign(size_=laws.v / values["slip_velocity"])
     with plt.rc_context(STYLE):
-        figure, (a, b, c) = plt.subplots(1, 3, figsize=(10.2, 3.6))
+        figure, (a, b, c) = plt.subplots(1, 3, figsize=(10.2, 3.9))
         for axes in (a, b, c):
             axes.axhline(0, color=GREY, linewidth=0.6)
             axes.axvline(0, color=GREY, linewidth=0.6)
-            axes.set_xlabel(r"$v_T/\varepsilon$")
+            axes.set_xlabel(rf"$v_T/\varepsilon$,  $\varepsilon = {values['slip_velocity']:g}$ m/s")
         a.plot("size_", "ratio", data=laws[laws.panel == "a"], color=BLACK)
         a.set(title="a) Coulomb's law (11): the limit $\\varepsilon \\to 0$", ylabel=r"$-t_T/(\mu\,t_N)$", xlabel="$v_T$",
               xlim=(-3, 3), xticks=[0], ylim=(-1.2, 1.2), yticks=[-1, 0, 1])
@@ -66,16 +65,16 @@ def draw(laws: pd.DataFrame, values: dict[str, float], path: Path) -> None:
             _curve(b, laws[(laws.panel == "b") & (laws.law == law)], colour, line, label, 1.2)
         b.set(title="b) regularised (13), $\\mu_e = \\mu_d$", ylabel=r"$\phi_\varepsilon(v_T)$", xlim=(-4, 4), ylim=(-1.2, 1.2),
               yticks=[-1, -0.5, 0, 0.5, 1])
-        b.legend(loc="upper left", handlelength=1.6, borderaxespad=0, frameon=True, framealpha=1, edgecolor="none")
+        b.legend(**BELOW, handlelength=1.6, ncols=2)
         both = laws[laws.panel == "c"]
         _curve(c, both[both.transition == "jump"], BLUE, "-", "jump at $|v_T| = \\varepsilon$, as in the paper", 1.6)
         _curve(c, both[both.transition == "smooth"], ORANGE, "--", "smooth (friction_transition)", 1.4)
         ticks = {f"{sign}\\mu_{kind}": float(sign + "1") * values[f"friction_{name}"] for sign in ("-", "+")
                  for kind, name in (("e", "static"), ("d", "dynamic"))}
         c.set(title="c) static and dynamic coefficient, linear", ylabel=r"$-t_T/t_N = \mu_f\,\phi_\varepsilon$", xlim=(-4, 4),
-              ylim=(-1.2 * values["friction_static"], 1.45 * values["friction_static"]))
+              ylim=(-1.2 * values["friction_static"], 1.2 * values["friction_static"]))
         c.set_yticks([0, *ticks.values()], ["0", *(f"${name} = {value:+g}$".replace("+", "") for name, value in ticks.items())])
-        c.legend(loc="upper left", handlelength=1.6, borderaxespad=0, frameon=True, framealpha=1, edgecolor="none")
+        c.legend(**BELOW, handlelength=1.6, ncols=1)
         figure.savefig(path)
         plt.close(figure)
 

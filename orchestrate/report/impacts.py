@@ -26,14 +26,13 @@ def read(folder: Path) -> pd.DataFrame:
 
 
 def several(table: pd.DataFrame) -> pd.DataFrame:
-    """The impacts of those meetings that have more than one; intervals with less than LIGHTEST of the largest impulse of their meeting are none."""
-    by = table.groupby(["body", "partner"])
-    impacts = table[table.impulse >= LIGHTEST * by.impulse.transform("max")]
-    return impacts[impacts.groupby(["body", "partner"]).impulse.transform("size") > 1]
+    """The impacts of all meetings, where there are more than one; intervals with less than LIGHTEST of the largest impulse of their meeting are none."""
+    impacts = table[table.impulse >= LIGHTEST * table.groupby(["body", "partner"]).impulse.transform("max")]
+    return impacts if len(impacts) > 1 else impacts.iloc[:0]
 
 
 def draw(table: pd.DataFrame, names: list[str], rigid: list[str]) -> plt.Figure | None:
-    """Restitution, across and along the partner, over the impacts of each meeting, and below them the speeds before each; None where none has several.
+    """Restitution, across and along the partner, over the impacts of each meeting, and below them the speeds before each; None where there are not several.
     `names`: of the bodies; `rigid`: of the obstacles."""
     impacts = several(table)
     if impacts.empty:

@@ -5,7 +5,6 @@ import argparse
 import logging
 import os
 import subprocess
-import sys
 from contextlib import suppress
 from pathlib import Path
 
@@ -15,12 +14,11 @@ from matplotlib.animation import FFMpegWriter, PillowWriter
 from matplotlib.colors import to_rgb
 from matplotlib.patheffects import withStroke
 from PIL import Image
-from tqdm import tqdm
 
-from .. import scene, vtu
+from .. import progress, scene, vtu
 from ..failure import BadInput, NotInstalled, Unreadable
-from ..parameters import ROOT, overrides, whole
-from ..places import shown
+from ..parameters import overrides, whole
+from ..places import COMMAND, RESULTS, shown
 from ..results import RunResult, suffixes
 from ..run import run
 from . import bodies, contact, solid
@@ -35,7 +33,7 @@ logging.getLogger("matplotlib.animation").setLevel(logging.ERROR)   # what ffmpe
 
 def main(argv: list[str]) -> int:
     """Runs or reuses the scene with a snapshot a frame in DIR and writes DIR/<scene>.mp4 (or .gif), or reuses the film too."""
-    parser = argparse.ArgumentParser(prog="python -m orchestrate movie", description=__doc__)
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} movie", description=__doc__)
     parser.add_argument("scene", metavar="SCENE", help="a built-in scene or the path of a TOML file")
     parser.add_argument("--set", metavar="NAME=VALUE", nargs="+", action="extend", default=[], help="set a parameter")
     parser.add_argument("--frames", metavar="N", type=whole, default=100, help="number of frames (default: 100), and of snapshots of the run")
@@ -47,18 +45,17 @@ def main(argv: list[str]) -> int:
     if options.format == "mp4" and not FFMpegWriter.isAvailable():
         raise NotInstalled("ffmpeg not found, which writes mp4; run: sudo apt-get install ffmpeg; or take --format gif")
     form = options.format or ("mp4" if FFMpegWriter.isAvailable() else "gif")
-    given, progress = scene.load(options.scene), sys.stderr.isatty()
-    result = run(given, overrides(options.set) | {"fields": options.frames}, options.out or ROOT / "results/movies" / given.name,
-                 progress=progress)
+    given = scene.load(options.scene)
+    result = run(given, overrides(options.set) | {"fields": options.frames}, options.out or RESULTS / "movies" / given.name)
     film = result.folder / f"{given.name}.{form}"
     done = result.reused and film.exists() and film.stat().st_mtime >= (result.folder / "summary.json").stat().st_mtime
     if not done:
-        write(film, result, options.frames, progress)
+        write(film, result, options.frames)
     print(shown(film))
     return 0
 
 
-def write(film: Path, result: RunResult, frames: int, progress: bool = False) -> None:
+def write(film: Path, result: RunResult, frames: int) -> None:
     """Writes `frames` frames, evenly spaced from the touch to the end, of SECONDS seconds together; complete or not at all."""
     with plt.rc_context(STYLE | {"figure.constrained_layout.use": False}):   # the axes stay where they are
         stage = of(result)
@@ -67,7 +64,7 @@ def write(film: Path, result: RunResult, frames: int, progress: bool = False) ->
         try:
             writer.setup(stage.figure, part, DPI)
             writer.colours = stage.colours
-            for t in tqdm(np.linspace(stage.times[0], stage.times[-1], frames), desc=film.name, leave=False, disable=not progress):
+            for t in progress.in_turn(film.name, np.linspace(stage.times[0], stage.times[-1], frames)):
                 stage.show(t)
                 writer.grab_frame()
             writer.finish()

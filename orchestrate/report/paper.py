@@ -11,25 +11,27 @@ from pathlib import Path
 from .. import scene, verify
 from ..failure import Failure, Unreadable
 from ..folder import result_folder
-from ..parameters import ROOT
-from ..places import shown
+from ..places import COMMAND, RESULTS, ROOT, shown
 from ..studies import stick_slip, study
 from ..sweeps import sweep
-from . import paper_judging as judging, paper_friction, paper_impacts, paper_bodies   # noqa: F401: these register the statements, in this order
+from . import paper_judging as judging, paper_limits, paper_friction, paper_impacts, paper_making, paper_pairs, paper_bodies, paper_times   # noqa: F401: these register the statements, in this order
 from .paper_page import COLOURS, page, verification
 
 RUNS = {"disc-normal": ("force",), "disc-normal-neohookean": (), "disc-oblique": ("flight", "force", "energies"), "disc-oblique-svk": ("flight", "force", "rolling", "energies"),
         "disc-rolling": ("rolling",), "disc-block": ("velocity", "shapes", "energies"), "disc-block-neohookean": ("velocity",),
-        "ball-axisymmetric": (), "ball-axisymmetric-svk": ("energies", "force")}   # and the pictures of them on the page
+        "ball": ("shapes", "force"), "ball-axisymmetric": (), "ball-axisymmetric-svk": ("energies", "force")}   # and the pictures of them on the page
 TARGETS = {"disc-oblique-svk": "disc-oblique", "disc-block-neohookean": "disc-block", "ball-axisymmetric-svk": "ball-axisymmetric",
            "disc-normal-neohookean": "ball-comparison"}   # the make target of a case, where it is not its own name
 
 
 def main(argv: list[str]) -> int:
     """Writes the page; Failure that lists every case that is missing or was made with other code."""
-    parser = argparse.ArgumentParser(prog="python -m orchestrate paper", description=__doc__)
-    parser.add_argument("--results", metavar="DIR", type=Path, default=ROOT / "results", help="where the cases are (default: results)")
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} paper", description=__doc__)
+    parser.add_argument("--results", metavar="DIR", type=Path, default=RESULTS, help="where the cases are (default: results)")
+    parser.add_argument("--make", metavar="TARGET", nargs="+", default=[], help="run these targets of make first")
     options = parser.parse_args(argv)
+    if code := paper_making.make(options.make):
+        return code
     results = judging.Results(result_folder(options.results))
     require(results)
     findings = [(item, text, find(results)) for item, text, find in judging.STATEMENTS]
@@ -63,8 +65,8 @@ def _sweeps(results: judging.Results) -> list[str]:
     missing = []
     for name in sweep.built_in():
         wanted = sweep.load(name)
-        base = scene.load(wanted.scene).override(wanted.base)
-        runs = [(study.place(results.sweep(name), point), base.override(point)) for point in wanted.runs]
+        given = scene.load(wanted.scene)
+        runs = [(study.place(results.sweep(name), point), given.override(wanted.base | point)) for point in wanted.runs]
         if not all(picture.exists() for picture in results.drawn(name)) or not _holds(runs):
             missing.append(name)
     return missing
@@ -72,8 +74,8 @@ def _sweeps(results: judging.Results) -> list[str]:
 
 def _others(results: judging.Results) -> list[str]:
     """Which of the search for sliding and sticking, the friction laws and the verification are not there."""
-    place, base = results.folder / "stick-slip", scene.load(stick_slip.SCENE).override(stick_slip.BASE)
-    runs = [(study.place(place, point), base.override(point)) for point in stick_slip.grid(stick_slip.AXES)]
+    place, base = results.folder / "stick-slip", scene.load(stick_slip.SCENE)
+    runs = [(study.place(place, point), base.override(stick_slip.BASE | point)) for point in stick_slip.grid(stick_slip.AXES)]
     laws = [ROOT / "edp/core/contact/friction.idp", ROOT / "edp/friction-laws.edp"]
     drawn = [results.folder / f"friction-laws/{name}" for name in ("laws.csv", "friction-laws.png")]
     there = {"stick-slip": all((place / f"stick-slip.{kind}").exists() for kind in ("csv", "png")) and _holds(runs),

@@ -8,12 +8,13 @@ import pandas as pd
 
 from ..studies import stick_slip, study
 from .friction_laws import VALUES
-from .paper_judging import (AGREES, CONSTANT, DIFFERS, LAWS, PARTLY, Finding, History, Results, bar, both_times, finished, maxima, of_both, states,
-                            total, touching, when, within)
+from .paper_judging import AGREES, CONSTANT, DIFFERS, LAWS, OPEN, PARTLY, Finding, History, Results, bar, finished, maxima, of_both, states, total, touching
+from .vibration import spectrum
 
-JUMP, SPEED, ANGLE = "friction-jump", 12.0, 60.0   # m/s, degrees from the plane: the paper's normal incidence is pi/2
+JUMP, SPEED, ANGLE, FLAT = "friction-jump", 12.0, 60.0, 30.0   # m/s, degrees from the plane: the paper's normal incidence is pi/2; FLAT: as if pi/3 were from the normal
 EXACT = 1e-9                # a tabulated law and its formula
 APART = 1.0                 # degrees
+STEPS, STEP_RATIO = "friction-steps", 4   # the sweep, and how many times smaller its refined step is
 
 
 def lost(results: Results) -> list[float | None]:
@@ -84,20 +85,6 @@ def _angle(rows: pd.DataFrame, k: int) -> tuple[float, float]:
     return float(np.degrees(np.arctan2(y, x))), float(np.degrees(np.hypot(x * dy, y * dx) / np.hypot(x, y) ** 2))
 
 
-@states("Section 3.1", "oblique disc, SVK, 12 m/s at π/3, μ_d = 0.5, μ_e = 0.7: contact time 0.0045 s, as the paper may have run it")
-def oblique_time(results: Results) -> Finding:
-    """Half a unit of the last digit: agrees where both of two coarse meshes meet it with SVK, partly where one does, or ellipticity is lost."""
-    runs = [results.summary("disc-oblique-svk"), results.summaries(JUMP, law="svk", friction_static=VALUES["friction_static"])[-1]]
-    met = [within(end["contact_time"], 4.5e-3, 0.5e-4) for end in runs]
-    rows = finished(results, "oblique")
-    other = ", ".join(f"{1e3 * time:.2f} ± {1e3 * error:.2f} ms (ν = {nu:g})" for nu, (time, error) in ((nu, bar(rows, "contact_time", nu=nu)) for nu in rows.nu))
-    return Finding(AGREES if all(met) else PARTLY if any(met) else DIFFERS, "on two coarse meshes " + "; ".join(
-        f"{both_times(end)}, {end['dofs']} dofs, {when(end['ellipticity_lost_time'], 'ellipticity lost')}, {when(end['breakdown_time'], 'det F ≤ 0')}" for end in runs)
-        + f". Where ellipticity is lost no mesh is the answer. (The neo-Hookean disc, another law, converges to {other}.)",
-        [results.picture("disc-oblique-svk", "force")], [results.run("disc-oblique-svk"), *results.sweep_runs(JUMP), *results.sweep_runs("oblique")],
-        [end["ellipticity_lost_time"] for end in runs])
-
-
 @states("Section 3.1, figure 5a", "the normal force oscillates")
 def oscillates(results: Results) -> Finding:
     """With a law: where the force has several maxima that stand out by more than 5 % of its largest value, on both meshes."""
@@ -105,8 +92,44 @@ def oscillates(results: Results) -> Finding:
         counts = [maxima(history["normal_force"], 0.05 * history["normal_force"].max()) for history in impact(results, law)]
         return min(counts) > 1, f"{' and '.join(map(str, counts))} maxima"
     verdict, words = of_both(of)
-    return Finding(verdict, f"maxima that stand out by more than 5 % of the largest force, on two meshes; {words}. Their cause is not judged here.",
+    return Finding(verdict, f"maxima that stand out by more than 5 % of the largest force, on two meshes; {words}.",
                    [results.picture("disc-oblique-svk", "force"), results.picture("disc-oblique", "force")], results.sweep_runs(JUMP), lost(results))
+
+
+@states("Section 3.1, figure 5a", "the oscillations are due to the multiple reflections of the impact waves on the disc's boundary")
+def reflected(results: Results) -> Finding:
+    """By the spectrum of the force less its slow push, beside the natural modes of the disc (modes.csv): what waves between its boundaries make up. With SVK, of the peaks that
+    both meshes have: partly where some, agrees where all lie nearer to a mode with 1 % of the vibration than the contact time tells frequencies apart, 1/(2T); but not decided
+    where most of the frequencies do, as then any peak would; not where none does."""
+    found, words = {}, []
+    for law in LAWS:
+        peaks, modes, width, chance = zip(*(_oscillation(*each) for each in zip(impact(results, law), results.modes(JUMP, law=law, friction_static=VALUES["friction_static"]))))
+        common = [peak for peak in peaks[0] if any(abs(peak - other) < max(width) for other in peaks[1])]
+        near = [peak for peak in common if all(np.abs(each - peak).min(initial=np.inf) < width[0] for each in modes)]
+        found[law] = common, near, max(chance)
+        words.append(f"{LAWS[law]}: peaks of both meshes at {', '.join(f'{peak:.0f}' for peak in common) or 'no frequency'} Hz, {len(near)} of {len(common)} within {width[0]:.0f} Hz "
+                     f"of such a mode, as are {100 * max(chance):.0f} % of all frequencies from {min(each.min() for each in modes):.0f} to {max(each.max() for each in modes):.0f} Hz")
+    common, near, chance = found["svk"]
+    verdict = DIFFERS if not near else OPEN if chance > 0.5 else AGREES if len(near) == len(common) else PARTLY
+    said = " The modes lie nearer to each other than an impact of this length tells apart." if verdict == OPEN else ""
+    return Finding(verdict, "; ".join(words) + "." + said, results.drawn(JUMP), results.sweep_runs(JUMP), lost(results))
+
+
+def _oscillation(history: History, modes: pd.DataFrame) -> tuple[np.ndarray, np.ndarray, float, float]:
+    """Of the normal force less the half sine and the sine that fit it best: peaks of its spectrum [Hz] from the lowest to the highest mode, a quarter of the largest or more; the
+    modes with 1 % of the vibration; half of what the contact time tells apart; the share of all frequencies that is as near to such a mode."""
+    steps = touching(history)
+    t, dt, force = (history[name][steps] for name in ("t", "dt", "normal_force"))
+    start, length = t[0] - dt[0], t[-1] - t[0] + dt[0]
+    push = np.sin(np.pi * np.outer((t - dt / 2 - start) / length, (1, 2)))
+    slow, *_ = np.linalg.lstsq(push * np.sqrt(dt)[:, None], force * np.sqrt(dt), rcond=None)
+    frequencies = np.linspace(modes.frequency.min(), modes.frequency.max(), 1000)
+    heights = spectrum(t, dt, force - push @ slow, frequencies)
+    inner = heights[1:-1]
+    peaks = frequencies[1:-1][(inner > heights[:-2]) & (inner > heights[2:]) & (inner > 0.25 * heights.max())]
+    strong = modes.frequency[modes.energy > 0.01 * modes.energy.sum()].to_numpy()
+    width = 1 / (2 * length)
+    return peaks, strong, width, float((np.abs(frequencies[:, None] - strong).min(axis=1) < width).mean())
 
 
 @states("Section 3.1, figure 5b", "an instability born from the alternation of static and dynamic friction")
@@ -123,6 +146,36 @@ def alternates(results: Results) -> Finding:
     said = "" if more else " The points alternate between sliding and sticking, but the jump of the coefficient is not what makes them: equal coefficients do the same."
     return Finding(DIFFERS if not alternate else AGREES if more else PARTLY, "how many times the whole load changes between sliding and sticking, on two meshes; "
                    + "; ".join(words) + "." + said, [*results.drawn(JUMP), results.picture("disc-oblique-svk", "rolling")], results.sweep_runs(JUMP), lost(results))
+
+
+@states("Section 3.1, figure 5b", "the instability is characterised by a discontinuity in the acceleration due to the sudden change in the type of friction")
+def discontinuous(results: Results) -> Finding:
+    """With SVK, on the acceleration of the centre along the plane (friction force over mass) with steps of 20 and 5 μs: it jumps where its largest changes from step to step
+    (mean of five) fall by less than the square root of the steps, while those of the acceleration across the plane fall by more. Agrees where it jumps, and by at least half of
+    what μ_e exceeds μ_d by more than with equal coefficients; partly where it jumps with equal coefficients alike; not where it does not."""
+    found, words = {}, []
+    for law in LAWS:
+        jump, control = ([_changes(history) for history in results.histories(STEPS, law=law, friction_static=VALUES[name])] for name in ("friction_static", "friction_dynamic"))
+        (along, across), (ratio, _) = (_orders(*each) for each in (jump, control))
+        excess = min(mine[0] / other[0] for mine, other in zip(jump, control))
+        found[law] = along < 0.5 < across, excess > (1 + VALUES["friction_static"] / VALUES["friction_dynamic"]) / 2
+        words.append(f"{LAWS[law]}: {' to '.join(f'{change:.0f}' for change, _ in jump)} m/s² along the plane (as the step to the power {along:.2f}; across it {across:.2f}), "
+                     f"with equal coefficients {' to '.join(f'{change:.0f}' for change, _ in control)} ({ratio:.2f})")
+    jumps, more = found["svk"]
+    said = "" if more or not jumps else " Equal coefficients, where nothing changes suddenly but the direction, do the same."
+    return Finding(DIFFERS if not jumps else AGREES if more else PARTLY, "largest changes of the acceleration in a step; " + "; ".join(words) + "." + said,
+                   results.drawn(STEPS), results.sweep_runs(STEPS), [end["ellipticity_lost_time"] for end in results.summaries(STEPS, law="svk", friction_static=VALUES["friction_static"])])
+
+
+def _changes(history: History) -> tuple[float, float]:
+    """The mean of the five largest changes from step to step in the contact of the acceleration of the centre along and across the plane [m/s2]."""
+    steps, mass = touching(history), history["momentum_y"][0] / history["vy"][0]
+    return tuple(float(np.sort(np.abs(np.diff(history[name][steps])))[-5:].mean() / abs(mass)) for name in ("friction_force", "normal_force"))
+
+
+def _orders(coarse: tuple[float, float], fine: tuple[float, float]) -> list[float]:
+    """The power of the step with which these changes go."""
+    return [float(np.log(a / b) / np.log(STEP_RATIO)) for a, b in zip(coarse, fine)]
 
 
 def load_changes(history: History) -> float:
@@ -181,33 +234,35 @@ def _exchange(history: History) -> tuple[float, float, float, int]:
 
 @states("Section 3.1", "the disc slides first and sticks in about the last third of the contact, in which the energy is constant again")
 def sliding_first(results: Results) -> Finding:
-    """Over the search of ε, k, ν with SVK at 60° (the paper calls normal incidence π/2): agrees where all runs do both, partly where some
-    do. Constant energy: at most 5 % of the friction work in the last third."""
+    """Over the search of ε, k, ν with SVK, at 60° (the paper calls normal incidence π/2) and at 30° from the plane: agrees where all runs of one angle do both, partly where
+    some of any do. Constant energy: at most 5 % of the friction work in the last third."""
     every = results.stick_slip()
-    counts = {}
-    for law in LAWS:
-        rows = every[(every.exit == 0) & (every.law == law)]
-        counts[law] = int((rows["order"] & rows["quiet"]).sum()), len(rows), int(rows["order"].sum())
-    both, runs, _ = counts["svk"]
-    said = ", ".join(f"{LAWS[law]}: {order} of {n} runs, {both} of them with at most {100 * stick_slip.QUIET:g} % of the friction work in the last third"
-                     for law, (both, n, order) in counts.items())
+    every = every[every.exit == 0]
+    told, counts = [], {}
+    for (angle, law), rows in every.groupby(["angle", "law"], sort=False):
+        order, both = int(rows["order"].sum()), int((rows["order"] & rows["quiet"]).sum())
+        counts |= {angle: (both, len(rows))} if law == "svk" else {}
+        told.append(f"{angle:g}°, {LAWS[law]}: {order} of {len(rows)} runs, {both} of them with at most {100 * stick_slip.QUIET:g} % of the friction work in the last third")
     restitution = {name: results.summary(name)["rebound_vy"] / _normal() for name in ("disc-oblique-svk", "disc-oblique")}
     shares = " and ".join(f"{slip_share(e):.2f} with the e = {e:.3f} of {name}" for name, e in restitution.items())
-    explained = "" if both else ", which explains it: the disc sticks long before two thirds, and slips back at the end"
-    return Finding(AGREES if runs and both == runs else PARTLY if both else DIFFERS, f"slides first and sticks last: {said}. The slip of a rigid disc ends at the share "
-                   f"v_t/(3 μ_d (1 + e) v_n) of the normal impulse, {shares}{explained}.",
+    met = [angle for angle, (both, _) in counts.items() if both]
+    explained = "" if ANGLE in met else ", which explains it: the disc sticks long before two thirds, and slips back at the end"
+    only = f" With SVK the order appears only at {FLAT:g}° from the plane, which is π/3 from the normal." if met == [FLAT] else ""
+    return Finding(AGREES if any(both == runs for both, runs in counts.values()) else PARTLY if met else DIFFERS, f"slides first and sticks last: {'; '.join(told)}. "
+                   f"The slip of a rigid disc ends at the share v_t/(3 μ_d (1 + e) v_n) of the normal impulse, {shares}{explained}. At {FLAT:g}° from the plane it would end at "
+                   f"{slip_share(restitution['disc-oblique'], FLAT):.2f}.{only}",
                    [results.folder / "stick-slip/stick-slip.png"],
                    [*(study.place(results.folder / "stick-slip", point) for point in stick_slip.grid(stick_slip.AXES)), *map(results.run, restitution)],
-                   list(every[(every.exit == 0) & (every.law == "svk")].ellipticity_lost_time))
+                   list(every[every.law == "svk"].ellipticity_lost_time))
 
 
-def _normal() -> float:
-    return SPEED * np.sin(np.radians(ANGLE))
+def _normal(angle: float = ANGLE) -> float:
+    return SPEED * np.sin(np.radians(angle))
 
 
-def slip_share(e: float) -> float:
+def slip_share(e: float, angle: float = ANGLE) -> float:
     """The share of the normal impulse at which a rigid disc (I = m R²/2, so that each unit of friction impulse takes 3/m of its slip) stops to slide."""
-    return SPEED * np.cos(np.radians(ANGLE)) / (3 * VALUES["friction_dynamic"] * (1 + e) * _normal())
+    return SPEED * np.cos(np.radians(angle)) / (3 * VALUES["friction_dynamic"] * (1 + e) * _normal(angle))
 
 
 @states("Section 3.1, figure 4", "in the last third of the contact the disc rolls without sliding")

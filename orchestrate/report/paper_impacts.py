@@ -53,9 +53,9 @@ def _transits(used: dict, nu: float) -> dict[str, float]:
 
 @states("Figure 7a", "1 m/s: no noticeable difference between the force histories of SVK and neo-Hookean")
 def same_at_low_speed(results: Results) -> Finding:
-    """Agrees where they differ by less than 10 % in L2 over time."""
+    """Agrees where they differ in L2 over time by no more than what mesh and step change; partly where by less than 10 %."""
     distance, error = _distance(results, 1)
-    return Finding(AGREES if distance < 0.1 else DIFFERS, f"they differ by {100 * distance:.1f} % in L2 over time (mesh and step change {100 * error:.1f} %).",
+    return Finding(AGREES if distance <= error else PARTLY if distance < 0.1 else DIFFERS, f"they differ by {100 * distance:.1f} % in L2 over time (mesh and step change {100 * error:.1f} %).",
                    results.drawn(FORCES), results.sweep_runs(FORCES), _lost(results, 1))
 
 

@@ -1,6 +1,6 @@
 """What the statements of the paper are judged with: the verdicts, the results that `make paper` leaves, error bars.
 
-Every verdict follows from numbers by the rule in the docstring of its statement (paper_friction, paper_impacts, paper_bodies). Section 3
+Every verdict follows from numbers by the rule in the docstring of its statement (paper_limits, paper_friction, paper_impacts, paper_pairs, paper_bodies, paper_times). Section 3
 is told of the paper's law, St. Venant-Kirchhoff (5), except where it names (6): with it a verdict is decided; the neo-Hookean answer, which
 converges, stands beside it.
 
@@ -16,9 +16,10 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from ..results import read_history, read_scene, read_summary
+from ..results import read_frame, read_history, read_scene, read_summary
 from ..studies import study
 from ..sweeps import sweep, sweep_figures
+from . import vibration
 
 AGREES, DIFFERS, PARTLY, OPEN = "agrees", "does not agree", "partly", "not decided"
 CONSTANT = 1e-9             # of the energy at the start: below, an energy is constant
@@ -48,6 +49,10 @@ class Results:
     def run(self, name: str) -> Path:
         """The folder of a run."""
         return self.folder / name
+
+    def has(self, name: str) -> bool:
+        """Whether a run is there."""
+        return (self.run(name) / "summary.json").exists()
 
     def picture(self, name: str, kind: str) -> Path:
         """A picture of a run."""
@@ -95,13 +100,17 @@ class Results:
         """The summaries of `pair`."""
         return [read_summary(folder) for folder in self.pair(name, **values)]
 
+    def modes(self, name: str, **values) -> list[pd.DataFrame]:
+        """The natural modes of `pair`."""
+        return [vibration.read(folder) for folder in self.pair(name, **values)]
+
     def friction_laws(self) -> pd.DataFrame:
         """The table that figure 3 is drawn from."""
-        return pd.read_csv(self.folder / "friction-laws/laws.csv")
+        return read_frame(self.folder / "friction-laws/laws.csv")
 
     def stick_slip(self) -> pd.DataFrame:
         """The table of the search for the paper's order of sliding and sticking."""
-        return pd.read_csv(self.folder / "stick-slip/stick-slip.csv")
+        return read_frame(self.folder / "stick-slip/stick-slip.csv")
 
 
 @cache

@@ -1,17 +1,15 @@
 """The page of the paper's statements beside our numbers, as HTML that holds everything itself."""
 
 import base64
-import json
-import tomllib
 from datetime import datetime
 from html import escape
 from pathlib import Path
 
 import pandas as pd
 
-from .. import parameters, scene, verify
-from ..parameters import ROOT, Value
-from ..results import read_scene
+from .. import __version__, parameters, scene, verify
+from ..parameters import Value
+from ..results import read_frame, read_json, read_scene
 from ..run import code_hash
 from ..studies import study
 from ..sweeps import sweep
@@ -54,7 +52,7 @@ details {{ font-size: .85em }} pre {{ white-space: pre-wrap }}
 <p>Buezas, Rosales and Filipich, <i>Nonlinear deformable bodies with unilateral contact including friction</i>. The paper states neither ν (only
 “ν → 0.5”) nor the contact stiffness, ε, mesh or step; a number that it prints is taken as known to half a unit of its last digit.
 Error bars of ours are what refining mesh and step changes. Verdicts follow from the numbers by fixed rules
-(orchestrate/report/paper_friction.py, paper_impacts.py, paper_bodies.py): a statement on St. Venant–Kirchhoff is decided by runs with
+(orchestrate/report/paper_limits.py, paper_friction.py, paper_impacts.py, paper_pairs.py, paper_bodies.py, paper_times.py): a statement on St. Venant–Kirchhoff is decided by runs with
 that law; where it loses ellipticity in them “agrees” becomes “partly”, as then the mesh decides, but not of energy and momentum, which every
 step keeps on any mesh; “not decided” means that the effect is smaller than the errors. “As the paper may have run it”: on a coarse mesh of linear triangles.</p>
 <p><b>{counts}</b></p>
@@ -67,7 +65,7 @@ step keeps on any mesh; “not decided” means that the effect is smaller than 
 </table>
 {sections}
 {more}
-<p>Made {datetime.now():%Y-%m-%d %H:%M} by ffimpact {_version()}, code sha256 {code_hash()}. {BACK}</p>
+<p>Made {datetime.now():%Y-%m-%d %H:%M} by ffimpact {__version__}, code sha256 {code_hash()}. {BACK}</p>
 </body></html>
 """
 
@@ -104,13 +102,9 @@ def caption(path: Path) -> str:
     return TITLES.get(path.stem, path.stem.replace("-", " "))
 
 
-def _version() -> str:
-    return tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
-
-
 def verification(folder: Path) -> str:
     """The section with what `make verify` left in `folder`: a table of the cases, then each with its figure and numbers."""
-    frame = pd.read_csv(folder / "verify.csv")
+    frame = read_frame(folder / "verify.csv", verify.COLUMNS)
     judged = verify.judged(frame)
     table = _table(verify.overview(frame), verify.FORMATS)
     parts = []
@@ -143,7 +137,7 @@ def _provenance(folders: list[Path]) -> str:
               if all(used.get(name) == value for used in scenes) and (name in ("script", "nu") or standard.get(name) != value)}
     varied = {name: sorted({used[name] for used in scenes if name in used}, key=lambda value: (isinstance(value, str), value)) for name in scenes[0]
               if any(used.get(name) != scenes[0][name] for used in scenes)}
-    records = [json.loads(path.read_text()) for folder in folders
+    records = [read_json(path) for folder in folders
                for path in (folder / "summary.json", folder / "failure.json") if path.exists()]
     made = [record.get("provenance", {}) for record in records]
     warned = study.warned("; ".join(each.get("warnings", [])) for each in records)

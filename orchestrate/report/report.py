@@ -79,7 +79,8 @@ def rows(per_metre: bool) -> list[Quantity]:
         Quantity("resumed_at", "resumed at", "ms", 1e3),
         Quantity("steps", "steps", digits=".0f"),
         Quantity("dofs", "degrees of freedom", digits=".0f"),
-        Quantity("wall_seconds", "wall time", "s", digits=".2f"),
+        Quantity("total_seconds", "wall time", "s", digits=".2f"),
+        Quantity("wall_seconds", "  of it this run", "s", digits=".2f"),
     ]
 
 
@@ -151,6 +152,7 @@ def report(result: RunResult) -> str:
         errors = ", ".join(f"{name.replace('_', ' ')} {100 * value:.2g} %" for name, value in stated.items() if value >= 5e-6)
         lines.append(f"  {'stated errors':<{width}}{errors}; not in them: what another {' or '.join(summary['estimated_error_excludes']).replace('_', ' ')} would change")
     lines += [f"  {'warning':<{width}}{sentence}" for sentence in summary["warnings"]]
+    lines += [f"  {'released':<{width}}{sentence}" for sentence in summary.get("released", [])]
     if summary.get("skipped"):
         lines.append(f"  {'skipped':<{width}}{', '.join(summary['skipped'])}")
     pictures = sorted((result.folder / "figures").glob("*.png"))

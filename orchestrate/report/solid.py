@@ -16,9 +16,10 @@ from matplotlib.cm import ScalarMappable
 from .. import vtu
 from ..obstacles import Obstacle
 from ..parameters import Value
+from ..places import shown
 from .contact import PRESSURE
 
-INSTALL = ".venv/bin/python -m pip install pyvista==0.49.1 vtk==9.7.2"
+INSTALL = f"{shown(Path(sys.executable))} -m pip install pyvista vtk"
 PROBE = "import pyvista; p = pyvista.Plotter(off_screen=True, window_size=(8, 8)); p.add_mesh(pyvista.Sphere()); p.screenshot(None, return_img=True)"
 INSTANTS = 4               # of the picture at most
 FINE = 4                   # parts of the side of a face

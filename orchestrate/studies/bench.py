@@ -14,8 +14,8 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from .. import mesh, scene
 from ..folder import result_folder
-from ..parameters import ROOT
-from ..places import shown
+from ..places import COMMAND, RESULTS, shown
+from ..progress import in_turn
 from ..report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE
 from ..results import read_history
 from ..sweeps.sweep_figures import distance
@@ -80,17 +80,17 @@ CASES = {
 
 def main(argv: list[str]) -> int:
     """Runs all settings one after the other, writes bench.csv, a figure a case and bench.md; 0 if the references are sound."""
-    parser = argparse.ArgumentParser(prog="python -m orchestrate bench", description=__doc__)
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} bench", description=__doc__)
     parser.add_argument("cases", metavar="CASE", nargs="*", default=list(CASES), help=f"(default: {' '.join(CASES)})")
     parser.add_argument("--quick", action="store_true", help="the first case, coarse settings only, a coarser reference; under three minutes")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/bench", help="the result folder")
+    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "bench", help="the result folder")
     options = parser.parse_args(argv)
     for name in options.cases:
         if name not in CASES:
             parser.error(f"'{name}' is not known (accepted: {', '.join(CASES)})")
     out, tables, pages = result_folder(options.out), [], []
     cases = options.cases[:1] if options.quick else options.cases
-    for name in cases:
+    for name in in_turn("bench", cases):
         rows, bars = measure(name, out, options.quick)
         draw(name, rows, bars, out / f"{name}.png")
         tables.append(rows)
@@ -207,7 +207,7 @@ def _peers(case: Case, others: list[tuple], best: pd.Series, force: tuple[np.nda
     """The same rows for the settings `others` of other programs: one with the reason for each that is not installed or failed. force_from_ours: of the
     force history against that of our run with the same sizes and step, where `folder` has it among `ours`."""
     rows = []
-    for program, form, factor, dt in others:
+    for program, form, factor, dt in in_turn("others", others):
         sizes = sized(factor)
         history = out / f"{case.scene}-{program}-{form}-{factor:g}-{dt:g}.csv"
         history.parent.mkdir(parents=True, exist_ok=True)
@@ -233,7 +233,7 @@ def _peers(case: Case, others: list[tuple], best: pd.Series, force: tuple[np.nda
 def _two_bodies(case: Case, best: pd.Series, force: tuple[np.ndarray, np.ndarray], out: Path, quick: bool) -> pd.DataFrame:
     """The same rows for NGSolve's disc on a block, a row a refinement of its own mesh; one with the reason where there is no answer."""
     rows = []
-    for refine in REFINEMENTS_QUICK if quick else REFINEMENTS:
+    for refine in in_turn("NGSolve", REFINEMENTS_QUICK if quick else REFINEMENTS):
         history = out / f"two-bodies-{refine:g}.csv"
         history.parent.mkdir(parents=True, exist_ok=True)
         found, reason = peers.two_bodies(LIMIT, refine=refine, history=str(history), **case.base)

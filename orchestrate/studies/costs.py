@@ -15,8 +15,8 @@ import pandas as pd
 from .. import results, run, scene
 from ..failure import Failure
 from ..folder import result_folder
-from ..parameters import ROOT
-from ..places import shown
+from ..places import COMMAND, RESULTS, shown
+from ..progress import in_turn
 from ..report.figures import BLUE, GREY, ORANGE, STYLE
 from . import study
 
@@ -34,9 +34,9 @@ CASES = {                                       # of the profile: scene and what
 
 def main(argv: list[str]) -> int:
     """Prints both tables, writes profile.csv, growth.csv and growth.png."""
-    parser = argparse.ArgumentParser(prog="python -m orchestrate costs", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} costs", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--quick", action="store_true", help="small meshes only")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/costs", help="the result folder")
+    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "costs", help="the result folder")
     options = parser.parse_args(argv)
     out = result_folder(options.out)
     rate = bandwidth()
@@ -69,7 +69,7 @@ def bandwidth() -> float:
 def profile(out: Path, rate: float, quick: bool) -> pd.DataFrame:
     """A row a case: seconds by phase, their sum (the wall time), and a step beside its floor; rate: bytes a second."""
     rows = []
-    for name, (wanted, point) in list(CASES.items())[:2 if quick else None]:
+    for name, (wanted, point) in in_turn("costs", list(CASES.items())[:2 if quick else None]):
         result = run.run(scene.load(wanted), {"fields": 0} | point, out / "runs" / name.replace(",", "").replace(" ", "-"), force=True)
         end = result.summary
         phases = end["phase_seconds"]

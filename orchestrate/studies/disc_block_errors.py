@@ -9,8 +9,9 @@ import pandas as pd
 
 from .. import estimate
 from ..folder import result_folder
-from ..parameters import ROOT, Value, whole
-from ..places import shown
+from ..parameters import Value, whole
+from ..places import COMMAND, RESULTS, shown
+from ..progress import in_turn
 from ..results import read_scene
 from . import peers, study
 
@@ -37,10 +38,10 @@ REFINEMENTS = (0.35, 0.7)
 
 def main(argv: list[str]) -> int:
     """Prints answers, errors and checks, writes disc-block-errors.csv and disc-block-peers.csv; 0 if every run fulfils every check."""
-    parser = argparse.ArgumentParser(prog="python -m orchestrate disc-block-errors", description=__doc__)
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} disc-block-errors", description=__doc__)
     parser.add_argument("--cases", metavar="N", type=whole, default=len(CASES), help="the first N of them")
     parser.add_argument("--accuracy", metavar="A", type=float, nargs="+", default=ACCURACIES, help="of the runs, the most accurate last (default: 0.02 0.005)")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/disc-block-errors", help="the result folder")
+    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "disc-block-errors", help="the result folder")
     parser.add_argument("--page", metavar="FILE", type=Path, help="also write what is printed as a page")
     options = parser.parse_args(argv)
     cases, out = CASES[:max(1, options.cases)], result_folder(options.out)
@@ -89,7 +90,7 @@ def answers(disc: tuple[float, float], block: tuple[float, float], vibration: tu
 def ask_peer(cases: list[study.Point]) -> tuple[pd.DataFrame, str]:
     """A row a case and refinement of NGSolve's (verification/peers/ngsolve_two_bodies.py), and why it was not run, if so."""
     rows, reason = [], "none of its cases is among these" if not cases else ""
-    for case, refine in itertools.product(cases, REFINEMENTS):
+    for case, refine in in_turn("NGSolve", itertools.product(cases, REFINEMENTS)):
         found, reason = peers.two_bodies(LIMIT, refine=refine, speed=SPEED, **case)
         if not found:
             break

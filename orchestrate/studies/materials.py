@@ -7,8 +7,7 @@ import pandas as pd
 
 from .. import estimate
 from ..folder import result_folder
-from ..parameters import ROOT
-from ..places import shown
+from ..places import COMMAND, RESULTS, shown
 from ..results import read_scene
 from . import draws, study
 
@@ -20,9 +19,9 @@ ANSWERS = ("thresholded_contact_time", "restitution", "peak_force")
 
 def main(argv: list[str]) -> int:
     """Prints the differences, writes materials.csv; 0 if each is below LIMIT, or the run has a warning."""
-    parser = argparse.ArgumentParser(prog="python -m orchestrate materials", description=__doc__)
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} materials", description=__doc__)
     parser.add_argument("--materials", metavar="N", type=int, default=len(draws.MATERIALS), help="the first N of them")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/materials", help="the result folder")
+    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "materials", help="the result folder")
     parser.add_argument("--page", metavar="FILE", type=Path, help="also write what is printed as a page")
     options = parser.parse_args(argv)
     table = compare(list(draws.MATERIALS)[:max(1, options.materials)], result_folder(options.out))

@@ -6,6 +6,7 @@ same with v_s after it. Error bars: what elements and steps 1.4 times larger cha
 """
 
 import argparse
+import itertools
 import math
 from pathlib import Path
 
@@ -21,8 +22,8 @@ from verification.rigid_disc import STIFF
 from .. import estimate
 from ..failure import BadInput
 from ..folder import result_folder
-from ..parameters import ROOT
-from ..places import shown
+from ..places import COMMAND, RESULTS, shown
+from ..progress import in_turn
 from ..report.figures import BLACK, BLUE, DASHED, GREEN, ORANGE, STYLE
 from ..results import read_scene
 from . import study
@@ -32,7 +33,7 @@ BASE = {"law": "neohookean", "nu": NU, "fields": 0}
 PAPER = {"young": YOUNG, "density": DENSITY, "radius": RADIUS}
 SLOW = PAPER | {"speed": 0.2, "slip_velocity": 2e-4, "penalty": "auto"}
 KINDS = {"stiff": {"disc": STIFF | {"nu": NU, "penalty": 1e10}, "ball": RIGID | {"nu": NU}},
-         "paper": {"disc": PAPER | {"speed": 12, "accuracy": 0.005}, "ball": PAPER | {"speed": 12, "accuracy": 0.05}},
+         "paper": {"disc": PAPER | {"speed": 12, "penalty": 1e10, "accuracy": 0.005}, "ball": PAPER | {"speed": 12, "penalty": 1e10, "accuracy": 0.05}},
          "slow": {"disc": SLOW | {"accuracy": 0.01}, "ball": SLOW | {"accuracy": 0.1}}}
 WORDS = {"stiff": "E = 10 GPa, 1 m/s", "paper": "E = 7 MPa, 12 m/s", "slow": "E = 7 MPa, 0.2 m/s"}
 COLOURS = {"stiff": BLUE, "paper": ORANGE, "slow": GREEN}
@@ -49,13 +50,13 @@ FORMATS = {"body": "", "kind": "", "angle": "g", "psi_1": ".3f", "e": ".4f", "al
 
 def main(argv: list[str]) -> int:
     """Runs what is not there yet, prints the table, writes oblique-angles.csv and .png; 0 if all that theory holds for agrees with it."""
-    parser = argparse.ArgumentParser(prog="python -m orchestrate oblique-angles", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} oblique-angles", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     usual = ",".join(f"{angle:g}" for angle in ANGLES)
     parser.add_argument("--angles", metavar="A,B,...", default=usual, help="of incidence, degrees from the plane (default: %(default)s)")
     parser.add_argument("--friction", metavar="MU", default=f"{FRICTION:g}", help="static and dynamic coefficient (default: %(default)s)")
     parser.add_argument("--bodies", metavar="BODY,...", default=",".join(INERTIA), help="of %(default)s")
     parser.add_argument("--kinds", metavar="KIND,...", default=",".join(KINDS), help="of %(default)s")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/oblique-angles", help="the result folder")
+    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "oblique-angles", help="the result folder")
     parser.add_argument("--page", metavar="FILE", type=Path, help="also write what is printed as a page")
     options = parser.parse_args(argv)
     angles, friction = numbers("--angles", options.angles, LEAST, MOST), numbers("--friction", options.friction, 0.01, 10)
@@ -63,7 +64,8 @@ def main(argv: list[str]) -> int:
         raise BadInput(f"--friction: {options.friction} (accepted: one number, as static and dynamic coefficient are the same here)")
     bodies, kinds = words("--bodies", options.bodies, list(INERTIA)), words("--kinds", options.kinds, list(KINDS))
     out = result_folder(options.out)
-    table = judge(pd.concat([impacts(body, kind, friction[0], angles, out) for body in bodies for kind in kinds], ignore_index=True))
+    cases = in_turn("oblique-angles", itertools.product(bodies, kinds))
+    table = judge(pd.concat([impacts(body, kind, friction[0], angles, out) for body, kind in cases], ignore_index=True))
     study.save(table, out / "oblique-angles.csv")
     draw(table, out / "oblique-angles.png")
     text = report(table)

@@ -11,8 +11,7 @@ import pandas as pd
 from .. import freefem, run
 from ..failure import Failure
 from ..folder import result_folder
-from ..parameters import ROOT
-from ..places import shown
+from ..places import COMMAND, RESULTS, shown
 from ..results import read_history, read_json, read_scene, write_json
 from . import study
 
@@ -29,9 +28,9 @@ FORMATS = {"law": "", "pairing": "", "mesh": "", "epsilon/h": ".3g", "k/k0": ".3
 
 def main(argv: list[str]) -> int:
     """Prints the table, writes pairing.csv; 0 if pairwise conserves and agrees with closest points where epsilon is an element."""
-    parser = argparse.ArgumentParser(prog="python -m orchestrate pairing-comparison", description=__doc__)
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} pairing-comparison", description=__doc__)
     parser.add_argument("--laws", metavar="LAW", nargs="+", default=LAWS, choices=LAWS, help="of the bodies (default: all)")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/pairing", help="the result folder")
+    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "pairing", help="the result folder")
     parser.add_argument("--page", metavar="FILE", type=Path, help="also write what is printed as a page")
     options = parser.parse_args(argv)
     table = compare(options.laws, result_folder(options.out))

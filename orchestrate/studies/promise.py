@@ -12,8 +12,8 @@ from .. import estimate, run, scene
 from ..failure import Failure, TooLong
 from ..folder import result_folder
 from ..multibody import Multibody
-from ..parameters import ROOT, Value, defaults, whole
-from ..places import shown
+from ..parameters import Value, whole
+from ..places import COMMAND, RESULTS, shown
 from ..results import read_answers
 from . import draws, study
 
@@ -29,12 +29,12 @@ Drawn = tuple[str, study.Point]   # a built-in scene and what it is overridden b
 
 def main(argv: list[str]) -> int:
     """Prints the errors, scene by scene, writes promise.csv; 0 if the promise is kept in enough scenes, and not at too high a price."""
-    parser = argparse.ArgumentParser(prog="python -m orchestrate promise", description=__doc__)
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} promise", description=__doc__)
     parser.add_argument("--scenes", metavar="N", type=whole, default=COUNT, help=f"how many (default: {COUNT})")
     parser.add_argument("--seed", metavar="N", type=whole, default=SEED, help=f"other scenes (default: {SEED})")
     parser.add_argument("--hard", action="store_true", help="also gravity, other integrators, linear elements ...: nothing above what was asked without a warning")
     parser.add_argument("--of", metavar="SCENE", choices=draws.SCENES, help=f"of one kind only: {', '.join(draws.SCENES)}")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/promise", help="the result folder")
+    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "promise", help="the result folder")
     parser.add_argument("--page", metavar="FILE", type=Path, help="also write what is printed as a page")
     options = parser.parse_args(argv)
     count, of = max(1, options.scenes), options.of or "disc-normal"
@@ -52,7 +52,7 @@ def compare(drawn: list[Drawn], out: Path) -> pd.DataFrame:
     """A row a scene: what it is, of each promised answer the error and the stated one, and the largest of each, over the accuracy asked for; warnings;
     processor seconds of the run with its estimate, and of the reference; nan where one of them failed."""
     acts = {k: partial(_row, out, *one) for k, one in enumerate(drawn)}
-    rows = {k: {"message": str(found)} if isinstance(found, Failure) else found for k, found in study.side_by_side(acts)}
+    rows = {k: {"message": str(found)} if isinstance(found, Failure) else found for k, found in study.side_by_side(acts, study.CORES, out.name)}
     rows = [{"scene": f"{name}: {draws.words(point)}", "warnings": ""} | rows[k] for k, (name, point) in enumerate(drawn)]
     columns = [each for name in estimate.PROMISED for each in (name, f"{name} stated")]
     return pd.DataFrame(rows).reindex(columns=["scene", *columns, "error", "estimated", "seconds", "finer seconds", "warnings", "message"])

@@ -14,8 +14,8 @@ from .. import scene as scenes
 from ..describe import describe
 from ..failure import Failure
 from ..folder import result_folder
-from ..parameters import ROOT, defaults
-from ..places import shown
+from ..parameters import defaults
+from ..places import COMMAND, RESULTS, shown
 from ..report.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE
 from . import study
 
@@ -80,12 +80,12 @@ def series(scene: str, quick: bool) -> dict[str, Series]:
 
 def main(argv: list[str]) -> int:
     """Runs all series, prints their tables and the converged values; 0 if the default run is as near to them as asked."""
-    parser = argparse.ArgumentParser(prog="python -m orchestrate refine", description=__doc__)
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} refine", description=__doc__)
     parser.add_argument("scene", nargs="?", default="disc-normal", choices=list(ANSWERS), help="(default: disc-normal)")
     parser.add_argument("--quick", action="store_true", help="few and coarse runs: a look at the tables, not at convergence")
     parser.add_argument("--out", metavar="DIR", type=Path, help="the result folder (default: results/refine/SCENE)")
     options = parser.parse_args(argv)
-    out, wanted = result_folder(options.out or ROOT / "results/refine" / options.scene), series(options.scene, options.quick)
+    out, wanted = result_folder(options.out or RESULTS / "refine" / options.scene), series(options.scene, options.quick)
     answers = ANSWERS[options.scene]
     tables = run_all(options.scene, wanted, out)
     best, error = converged(tables, answers)

@@ -7,8 +7,9 @@ import pandas as pd
 
 from .. import estimate
 from ..folder import result_folder
-from ..parameters import ROOT, defaults
-from ..places import shown
+from ..parameters import defaults
+from ..places import COMMAND, RESULTS, shown
+from ..progress import in_turn
 from ..results import read_scene
 from . import draws, study
 
@@ -26,9 +27,9 @@ ANSWERS = ("impulse", "rebound", "rebound_spin", "energy", "friction_work", "thr
 
 def main(argv: list[str]) -> int:
     """Prints how far the dimensionless answers of each world are from the paper's disc; 0 if all are equal, or within the scatter."""
-    parser = argparse.ArgumentParser(prog="python -m orchestrate scaling", description=__doc__)
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} scaling", description=__doc__)
     parser.add_argument("--accuracy", type=float, default=defaults()["accuracy"], help="of the runs (default: %(default)g)")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/scaling", help="the result folder")
+    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "scaling", help="the result folder")
     parser.add_argument("--page", metavar="FILE", type=Path, help="also write what is printed as a page")
     options = parser.parse_args(argv)
     table = compare(result_folder(options.out), options.accuracy)
@@ -62,7 +63,7 @@ def compare(out: Path, accuracy: float) -> pd.DataFrame:
     """A row a case and world: the largest difference of each answer from the paper's disc; the scatter of the nudged runs and the
     estimated error beside it; holds: equal to EQUAL, or to ten times the scatter where a nudge shows that and the estimate covers it."""
     rows = []
-    for case in CASES:
+    for case in in_turn("scaling", CASES):
         worlds = points(case, accuracy)
         runs = study.study(list(worlds.values()), out / case, {"fields": 0, "penalty": "auto"}, 900.0, estimate=True)
         if runs.exit.any():

@@ -7,8 +7,8 @@ import pandas as pd
 
 from ..failure import Failure
 from ..folder import result_folder
-from ..parameters import ROOT
-from ..places import shown
+from ..places import COMMAND, RESULTS, shown
+from ..progress import in_turn
 from ..results import read_history
 from . import study
 
@@ -30,9 +30,9 @@ SAVINGS = {                            # what is left out, and what the run does
 
 def main(argv: list[str]) -> int:
     """Prints the table and writes skipping.csv; 1 where an answer moves by more than the error of the run itself."""
-    parser = argparse.ArgumentParser(prog="python -m orchestrate skipping", description=__doc__)
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} skipping", description=__doc__)
     parser.add_argument("--accuracy", metavar="A", type=float, default=1e-3, help="of all runs (default: 1e-3)")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/skipping", help="the result folder")
+    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "skipping", help="the result folder")
     options = parser.parse_args(argv)
     out = result_folder(options.out)
     rows = measure(out, options.accuracy)
@@ -54,7 +54,7 @@ def measure(out: Path, accuracy: float) -> pd.DataFrame:
     history = read_history(study.place(out / "0", {"fields": 0}))
     smallest = float(history["dt"][history["normal_force"] > 0].min())
     rows = [{"left out": "nothing", "instead": "", "seconds": full.cpu_seconds, "times": 1.0} | {f"{answer} %": 0.0 for answer in ANSWERS}]
-    for name, (instead, point) in SAVINGS.items():
+    for name, (instead, point) in in_turn("skipping", SAVINGS.items()):
         run = _fastest(point or {"dt": smallest}, out, base)
         rows.append({"left out": name, "instead": instead, "seconds": run.cpu_seconds, "times": run.cpu_seconds / full.cpu_seconds}
                     | {f"{answer} %": 100 * (run[answer] / full[answer] - 1) for answer in ANSWERS})

@@ -1,6 +1,6 @@
 """For which slip velocity, contact stiffness and Poisson's ratio does the oblique disc slide first and stick in the last
 third of the contact with its energy constant, and stay 4.5 ms, as the paper tells (section 3.1)? It states none of the
-three. Its angle pi/3 is 60 degrees from the plane: it calls normal incidence pi/2."""
+three. Its angle pi/3 is 60 degrees from the plane, as it calls normal incidence pi/2; 30 degrees, pi/3 from the normal, is searched as well."""
 
 import argparse
 import itertools
@@ -9,17 +9,17 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
+from matplotlib.image import AxesImage
 from matplotlib.patches import Rectangle
 
 from ..failure import Unreadable
 from ..folder import result_folder
-from ..parameters import ROOT
-from ..places import shown
+from ..places import COMMAND, RESULTS, shown
 from ..report.figures import LAWS, SMALL, STYLE
 from ..results import read_history
 from . import study
 
-AXES = {"slip_velocity": (0.03, 0.3, 1.0, 3.0), "penalty": (1e8, 1e9, 1e10), "nu": (0.3, 0.4, 0.45)}
+AXES = {"angle": (60.0, 30.0), "slip_velocity": (0.03, 0.3, 1.0, 3.0), "penalty": (1e8, 1e9, 1e10), "nu": (0.3, 0.4, 0.45)}
 LAW = {"svk": {"degree": 1, "mesh_size": 0.01, "contact_mesh_size": 0.005, "breakdown": "continue", "accuracy": 0.0025},   # as the paper may have run it
        "neohookean": {"accuracy": 0.005}}
 SCENE, BASE = "disc-oblique", {"fields": 0}
@@ -31,9 +31,9 @@ THIRDS = ("first", "second", "last")
 
 def main(argv: list[str]) -> int:
     """Runs the grid, prints the share of sliding in each third of the contact, draws the map; 0 whatever is found."""
-    parser = argparse.ArgumentParser(prog="python -m orchestrate stick-slip", description=__doc__)
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} stick-slip", description=__doc__)
     parser.add_argument("--quick", action="store_true", help="a corner of the grid")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/stick-slip", help="the result folder")
+    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "stick-slip", help="the result folder")
     options = parser.parse_args(argv)
     out = result_folder(options.out)
     axes = {name: values[-2:] for name, values in AXES.items()} if options.quick else AXES
@@ -83,7 +83,7 @@ def as_told(rows: pd.DataFrame) -> pd.Series:
 
 def report(rows: pd.DataFrame) -> str:
     """A table of all runs, and how many meet the order, the contact time and both."""
-    formats = {"law": "", "nu": "g", "penalty": ".0e", "slip_velocity": "g", "contact_time": ".5f", "first": ".2f",
+    formats = {"law": "", "angle": "g", "nu": "g", "penalty": ".0e", "slip_velocity": "g", "contact_time": ".5f", "first": ".2f",
                "second": ".2f", "last": ".2f", "work_last": ".2f", "breakdown_time": ".5f", "exit": ".0f"}
     for name in ("breakdown_time",):
         if name not in rows:
@@ -91,8 +91,8 @@ def report(rows: pd.DataFrame) -> str:
     lines = [study.table(rows, formats), "",
              "first, second, last: share of the normal load that slides in each third of the contact; "
              "work_last: share of the friction work in the last third", ""]
-    for law, group in rows.groupby("law", sort=False):
-        lines.append(f"{LAWS[law]}: of {len(group)} runs {group['order'].sum()} slide first and "
+    for (angle, law), group in rows.groupby(["angle", "law"], sort=False):
+        lines.append(f"{angle:g} degrees, {LAWS[law]}: of {len(group)} runs {group['order'].sum()} slide first and "
                      f"stick in the last third, {group['quiet'].sum()} lose at most {100 * QUIET:g} % of the friction work in it, "
                      f"{group['time'].sum()} last {1e3 * PAPER[0]:g} ms within {100 * PAPER[1]:g} %, "
                      f"{(group['order'] & group['quiet'] & group['time']).sum()} do all three; {(group.exit != 0).sum()} failed")
@@ -100,28 +100,18 @@ def report(rows: pd.DataFrame) -> str:
 
 
 def draw(rows: pd.DataFrame, axes: dict[str, tuple[float, ...]], path: Path) -> None:
-    """A panel a law and nu: cells over slip velocity and penalty, coloured by the contact time; in each cell three bars, the share that slides in the
-    first, second and last third of the contact, on a common axis from 0 to 100 %; framed where the paper's order is met."""
+    """A column a law and angle, a row a nu: cells over slip velocity and penalty, coloured by the contact time; in each cell three bars, the share that slides in
+    the first, second and last third of the contact, on a common axis from 0 to 100 %; framed where the paper's order is met."""
     low, high = 1e3 * rows.contact_time.min(), 1e3 * rows.contact_time.max()
+    columns = list(itertools.product(LAW, axes["angle"]))
     with plt.rc_context(STYLE):
-        figure, grid = plt.subplots(len(axes["nu"]), len(LAW), figsize=(8.6, 1.9 * len(axes["nu"]) + 1.2), squeeze=False,
+        figure, grid = plt.subplots(len(axes["nu"]), len(columns), figsize=(4.1 * len(columns) + 0.4, 1.9 * len(axes["nu"]) + 1.2), squeeze=False,
                                     sharex=True, sharey=True)
-        for column, law in enumerate(LAW):
-            for panel, nu in zip(grid[:, column], axes["nu"]):
-                here = rows[(rows.law == law) & (rows.nu == nu)].set_index(["penalty", "slip_velocity"])
-                cells = np.array([[here.loc[(k, e), "contact_time"] for e in axes["slip_velocity"]] for k in axes["penalty"]])
-                picture = panel.imshow(1e3 * cells, vmin=low, vmax=high, cmap="viridis", origin="lower", aspect="auto")
-                for i, k in enumerate(axes["penalty"]):
-                    for j, e in enumerate(axes["slip_velocity"]):
-                        row = here.loc[(k, e)]
-                        _bars(panel, j, i, row)
-                        if row["order"]:
-                            panel.add_patch(Rectangle((j - 0.48, i - 0.47), 0.96, 0.94, fill=False, color="#d55e00", linewidth=2))
-                panel.set_title(f"{LAWS[law]}{', coarse P1 mesh' if law == 'svk' else ''}, ν = {nu:g}")
-                panel.set_xticks(range(len(axes["slip_velocity"])), [f"{e:g}" for e in axes["slip_velocity"]])
-                panel.set_yticks(range(len(axes["penalty"])), [f"$10^{{{np.log10(k):.0f}}}$" for k in axes["penalty"]])
-                for side in panel.spines.values():
-                    side.set_visible(False)
+        for panels, (law, angle) in zip(grid.T, columns):
+            for panel, nu in zip(panels, axes["nu"]):
+                here = rows[(rows.law == law) & (rows.angle == angle) & (rows.nu == nu)].set_index(["penalty", "slip_velocity"])
+                picture = _cells(panel, here, axes, low, high)
+                panel.set_title(f"{LAWS[law]}{', coarse P1 mesh' if law == 'svk' else ''}, {angle:g}°, ν = {nu:g}")
         for panel in grid[-1]:
             panel.set_xlabel("slip velocity ε [m/s]")
         for panel in grid[:, 0]:
@@ -132,6 +122,22 @@ def draw(rows: pd.DataFrame, axes: dict[str, tuple[float, ...]], path: Path) -> 
                         f"framed ({rows['order'].sum()} of {len(rows)}): slides first, sticks last, as in the paper, whose contact time is {1e3 * PAPER[0]:g} ms (line in the bar of colours)")
         figure.savefig(path)
         plt.close(figure)
+
+
+def _cells(panel: plt.Axes, here: pd.DataFrame, axes: dict[str, tuple[float, ...]], low: float, high: float) -> AxesImage:
+    """The cells of a panel, by (penalty, slip velocity), and their bars and frames."""
+    cells = np.array([[here.loc[(k, e), "contact_time"] for e in axes["slip_velocity"]] for k in axes["penalty"]])
+    picture = panel.imshow(1e3 * cells, vmin=low, vmax=high, cmap="viridis", origin="lower", aspect="auto")
+    for i, k in enumerate(axes["penalty"]):
+        for j, e in enumerate(axes["slip_velocity"]):
+            row = here.loc[(k, e)]
+            _bars(panel, j, i, row)
+            if row["order"]:
+                panel.add_patch(Rectangle((j - 0.48, i - 0.47), 0.96, 0.94, fill=False, color="#d55e00", linewidth=2))
+    panel.set_xticks(range(len(axes["slip_velocity"])), [f"{e:g}" for e in axes["slip_velocity"]])
+    panel.set_yticks(range(len(axes["penalty"])), [f"$10^{{{np.log10(k):.0f}}}$" for k in axes["penalty"]])
+    panel.spines[:].set_visible(False)
+    return picture
 
 
 def _bars(panel: plt.Axes, column: int, row: int, run: pd.Series) -> None:

@@ -12,8 +12,8 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm
 
 from ..folder import result_folder
-from ..parameters import ROOT, whole
-from ..places import shown
+from ..parameters import whole
+from ..places import COMMAND, RESULTS, shown
 from ..report.figures import LAWS, STYLE
 from . import study
 
@@ -30,9 +30,9 @@ LETTERS = {"open": ("o", "balance open"), "no step": ("s", "no convergence, or c
 
 def main(argv: list[str]) -> int:
     """Runs the sets, prints the outcomes; 0 if every set does what is required of it, else 1."""
-    parser = argparse.ArgumentParser(prog="python -m orchestrate stress", description=__doc__)
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} stress", description=__doc__)
     parser.add_argument("--quick", metavar="N", type=whole, help="N of the sets, always the same ones")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/stress", help="the result folder")
+    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "stress", help="the result folder")
     options = parser.parse_args(argv)
     points = [dict(zip(AXES, values)) for values in itertools.product(*AXES.values())]
     if options.quick is not None:

@@ -8,8 +8,8 @@ import numpy as np
 import pandas as pd
 
 from ..folder import result_folder
-from ..parameters import ROOT, whole
-from ..places import shown
+from ..parameters import whole
+from ..places import COMMAND, RESULTS, shown
 from ..report.figures import BLUE, ORANGE, PURPLE, STYLE
 from . import stress, study
 
@@ -27,9 +27,9 @@ WRONG = ("open", "chatter", "other")   # silent wrong answers, crashes, hangs: n
 
 def main(argv: list[str]) -> int:
     """Runs the sets, prints outcomes and regions, writes stress-map.csv, .png and .md; 0 if the requirement holds."""
-    parser = argparse.ArgumentParser(prog="python -m orchestrate stress-map", description=__doc__)
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} stress-map", description=__doc__)
     parser.add_argument("--sets", metavar="N", type=whole, default=SETS, help=f"the first N of them (default: {SETS})")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/stress-map", help="the result folder")
+    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "stress-map", help="the result folder")
     options = parser.parse_args(argv)
     out = result_folder(options.out)
     points = sample(max(1, options.sets))

@@ -14,17 +14,16 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import pandas as pd
-from tqdm import tqdm
 
 from .. import estimate as estimates, freefem, run, scene, stopping
-from ..failure import Busy, Failure, TooLong, Unreadable
+from ..failure import BadInput, Busy, Failure, TooLong, Unreadable
 from ..parameters import Value
+from ..progress import Line, forward
 from ..results import read_json
 
 CORES = len(os.sched_getaffinity(0))
 TOO_LONG = TooLong("").code   # of a run that its time limit ended
 STOPS = (signal.SIGTERM, signal.SIGHUP, signal.SIGINT)
-tqdm.monitor_interval = 0   # no thread beside us: we fork
 LONGEST = 200               # characters of a folder's name
 BULK, CONTACT = 8e-3, 2.5e-3   # m: the sizes of mesh factor 1 of the studies on the disc of radius 0.05 m
 Key = TypeVar("Key", bound=Hashable)
@@ -43,17 +42,28 @@ def study(points: list[Point], folder: Path, base: Point, limit: float, name: st
     """
     places = [place(folder, point) for point in points]
     given = scene.load(name)
-    tasks = {where: given.override(base | point) for where, point in zip(places, points)}
-    found = {where: outcome for where, wanted in tasks.items() if (outcome := there(where, wanted, estimate))}
-    to_do = {where: wanted for where, wanted in tasks.items() if where not in found}
-    if to_do:
+    found = outcomes(points, folder, base, given, estimate)
+    tasks = {where: given.override(base | point) for where, point in zip(places, points) if where not in found}
+    if tasks:
         freefem.find()
         (folder / "runs").mkdir(parents=True, exist_ok=True)   # here: a run takes away what it had to make if it is interrupted
-    with tqdm(desc="runs", total=len(tasks), initial=len(found), disable=None, leave=False) as line:
-        for where, outcome in _outcomes(to_do, limit, cores, estimate):
-            found[where] = outcome
-            line.update()
+    acts = {where: partial(_limited, limit, where, wanted, estimate) for where, wanted in tasks.items()}
+    for where, outcome in side_by_side(acts, cores, "/".join(folder.parts[-2:]), len(found)):
+        found[where] = _row(1, str(outcome), False, {}) if isinstance(outcome, Failure) else outcome
     return pd.DataFrame([point | found[where] for where, point in zip(places, points)])
+
+
+def outcomes(points: list[Point], folder: Path, base: Point, given: scene.Scene, estimate: bool = False) -> dict[Path, dict]:
+    """By folder what is known of the points without a run: what is there already, and those that the scene `given` refuses."""
+    found = {}
+    for point in points:
+        where = place(folder, point)
+        try:
+            outcome = there(where, given.override(base | point), estimate)
+        except BadInput as error:
+            outcome = _row(error.code, str(error), False, {})
+        found |= {where: outcome} if outcome else {}
+    return found
 
 
 def place(folder: Path, point: Point) -> Path:
@@ -64,18 +74,14 @@ def place(folder: Path, point: Point) -> Path:
     return folder / "runs" / name
 
 
-def _outcomes(tasks: dict[Path, scene.Scene], limit: float, cores: int, estimate: bool) -> Iterator[tuple[Path, dict]]:
-    """(folder, outcome) as they are ready."""
-    acts = {where: partial(_limited, limit, where, wanted, estimate) for where, wanted in tasks.items()}
-    for where, outcome in side_by_side(acts, cores):
-        yield where, _row(1, str(outcome), False, {}) if isinstance(outcome, Failure) else outcome
-
-
-def side_by_side(acts: dict[Key, Callable], cores: int = CORES) -> Iterator[tuple[Key, Any]]:
+def side_by_side(acts: dict[Key, Callable], cores: int, name: str, before: int = 0) -> Iterator[tuple[Key, Any]]:
     """(key, what its act returns) as they are ready, `cores` at a time, a process each; a Failure where the process was lost. An act that
-    returns None is asked again later. Leaving this in any way ends them and their FreeFem++."""
+    returns None is asked again later. Leaving this in any way ends them and their FreeFem++. A line of progress, by its `name`, says which of how
+    many, `before` of which were there already.
+    """
     context = multiprocessing.get_context("fork")
-    waiting, running = deque(acts), {}
+    waiting, running, done = deque(acts), {}, before
+    line = Line(name, dict.fromkeys(acts, 1.0), words=f"{done} of {before + len(acts)} done")
     try:
         while waiting or running:
             while waiting and len(running) < cores:
@@ -88,18 +94,26 @@ def side_by_side(acts: dict[Key, Callable], cores: int = CORES) -> Iterator[tupl
                 sender.close()
                 running[receiver] = key, process
             for receiver in wait(running):
-                key, process = running.pop(receiver)
+                key, process = running[receiver]
                 try:
-                    outcome = receiver.recv()
+                    ended, outcome = receiver.recv()
                 except EOFError:
                     process.join()
-                    outcome = Failure(f"its process ended with exit code {process.exitcode}")
+                    ended, outcome = True, Failure(f"its process ended with exit code {process.exitcode}")
+                said = f"{done} of {before + len(acts)} done"
+                if not ended:         # how far it is
+                    line.at(key, outcome, said)
+                    continue
+                del running[receiver]
                 if outcome is None:   # another study is at it: see later what came of it
                     waiting.append(key)
                     time.sleep(0.3)
                 else:
+                    done += 1
+                    line.at(key, 1.0, f"{done} of {before + len(acts)} done")
                     yield key, outcome
     finally:
+        line.close()
         for _, process in running.values():
             process.terminate()
         for _, process in running.values():
@@ -112,7 +126,8 @@ def _work(sender: Connection, parent: int, act: Callable) -> None:
     stopping.on(signal.SIGTERM, stopping.leave)          # run() tidies up on the way out
     signal.pthread_sigmask(signal.SIG_UNBLOCK, STOPS)
     freefem.die_with_parent(parent, signal.SIGTERM)
-    sender.send(act())
+    forward(lambda share, _: sender.send((False, share)))
+    sender.send((True, act()))
 
 
 def _limited(limit: float, folder: Path, wanted: scene.Scene, estimate: bool) -> dict | None:

@@ -10,8 +10,9 @@ import pandas as pd
 from .. import freefem, mesh, run, scene
 from ..failure import Failure
 from ..folder import result_folder
-from ..parameters import ROOT, whole
-from ..places import shown
+from ..parameters import whole
+from ..places import COMMAND, RESULTS, shown
+from ..progress import in_turn
 from . import study
 
 DT = 2e-5                   # s
@@ -35,15 +36,15 @@ QUICK = (Case(1.25e-2, 2e-4),)
 
 def main(argv: list[str]) -> int:
     """Times both, one process at a time, and prints them side by side; 0 if every ratio is at least ASKED."""
-    parser = argparse.ArgumentParser(prog="python -m orchestrate textbook", description=__doc__)
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} textbook", description=__doc__)
     parser.add_argument("--runs", metavar="N", type=whole, default=1, help="runs of each, of which the median counts")
     parser.add_argument("--small", action="store_true", help="the smaller mesh only: two minutes instead of twelve")
     parser.add_argument("--quick", action="store_true", help="a tiny case: a look at the table, not at the ratio")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "results/textbook", help="the result folder")
+    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "textbook", help="the result folder")
     options = parser.parse_args(argv)
     out = result_folder(options.out)
     runs = max(1, options.runs)
-    rows = pd.DataFrame([compare(case, out, runs) for case in (QUICK if options.quick else CASES[:1] if options.small else CASES)])
+    rows = pd.DataFrame([compare(case, out, runs) for case in in_turn("textbook", QUICK if options.quick else CASES[:1] if options.small else CASES)])
     study.save(rows, out / "textbook.csv")
     print(report(rows, runs))
     print(f"\n{shown(out)}/textbook.csv")

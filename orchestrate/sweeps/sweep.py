@@ -32,11 +32,11 @@ import numpy as np
 import pandas as pd
 
 from .. import parameters, scene
-from ..failure import BadInput, Busy, Failure, Unreadable
+from ..failure import BadInput, Busy, Failure, Unreadable, brief
 from ..multibody import Multibody
-from ..parameters import ROOT, Value
+from ..parameters import Value
 from ..folder import result_folder
-from ..places import shown
+from ..places import COMMAND, RESULTS, shown
 from ..report.figures import per_metre
 from ..studies import study
 from . import sweep_figures
@@ -65,6 +65,7 @@ class Sweep:
     collect: list[str]
     limit: float
     figure: dict
+    sample: scene.Scene | Multibody      # a point's scene
     text: str                   # the file
 
     @property
@@ -80,7 +81,7 @@ class Sweep:
 
 def main(argv: list[str]) -> int:
     """Runs what is not there yet, writes DIR/sweep.csv and DIR/sweep.png; Failure where a run has no answer (10, 14, killed...)."""
-    parser = argparse.ArgumentParser(prog="python -m orchestrate sweep", description=__doc__,
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} sweep", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("sweep", metavar="SWEEP", help=f"a built-in sweep ({', '.join(built_in())}) or the path of a TOML file")
     parser.add_argument("--out", metavar="DIR", type=Path, help="the result folder (default: results/sweeps/NAME)")
@@ -89,15 +90,14 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--run", metavar="NAME", help="only this run of the list, without table and figure")
     options = parser.parse_args(argv)
     wanted = load(options.sweep)
-    out = result_folder(options.out or ROOT / "results/sweeps" / wanted.name)
+    out = result_folder(options.out or RESULTS / "sweeps" / wanted.name)
     names = {study.place(out, point).name: point for point in wanted.runs}
     if options.list or options.open:
-        base = scene.load(wanted.scene).override(wanted.base)
-        print("\n".join(name for name, point in names.items()
-                        if options.list or not study.there(study.place(out, point), base.override(point))))
+        there = study.outcomes([*names.values()], out, wanted.base, scene.load(wanted.scene)) if options.open else {}
+        print("\n".join(name for name, point in names.items() if study.place(out, point) not in there))
         return 0
     if options.run is not None and options.run not in names:
-        raise BadInput(f"--run: '{options.run}' is no run of {wanted.name} (accepted: see --list)")
+        raise BadInput(f"--run: '{brief(options.run)}' is no run of {wanted.name} (accepted: see --list)")
     with _ours(wanted, out):
         if options.run is not None:
             row = study.study([names[options.run]], out, wanted.base, wanted.limit, wanted.scene).iloc[0]
@@ -108,7 +108,8 @@ def main(argv: list[str]) -> int:
     bad = rows[~rows.exit.isin(RECORDED)]
     if len(bad):
         again = "" if bad.exit.isin(LASTING).all() else "; the same command runs again what was killed or did not end"
-        raise Failure(f"{wanted.name}: {len(bad)} of {len(rows)} points have no answer, first: {bad.message.iloc[0]}{again}",
+        first = study.place(Path(), bad[wanted.axes].iloc[0].to_dict()).name
+        raise Failure(f"{wanted.name}: {len(bad)} of {len(rows)} points have no answer, first: {first}: {bad.message.iloc[0]}{again}",
                       int(bad.exit.iloc[0]) if bad.exit.nunique() == 1 else 1)
     return 0
 
@@ -159,7 +160,7 @@ def load(name: str) -> Sweep:
 def _sweep(path: Path, given: dict, text: str) -> Sweep:
     for key in given:
         if key not in KEYS:
-            raise BadInput(f"{key}: no such entry (accepted: {', '.join(KEYS)})")
+            raise BadInput(f"{brief(key)}: no such entry (accepted: {', '.join(KEYS)})")
     tables = {key: _is(given.get(key, {}), dict, key, "a table") for key in ("set", "product", "refine", "figure")}
     groups = _is(given.get("zip", []), list, "zip", "tables [[zip]]")
     name = given.get("scene", "disc-normal")
@@ -178,23 +179,34 @@ def _sweep(path: Path, given: dict, text: str) -> Sweep:
     for where, names in (("set", base), ("product", varied), ("refine", refine)):
         twice = sorted(name for name in names if (varied.count(name) > 1 if where == "product" else name in varied))
         if twice:
-            raise BadInput(f"{where}: {twice[0]} is given twice (accepted: once, in [set], [product] or [[zip]])")
+            raise BadInput(f"{where}: {brief(twice[0])} is given twice (accepted: once, in [set], [product] or [[zip]])")
     points = [{name: value for part in parts for name, value in part.items()} for parts in itertools.product(*axes)]
     if len({tuple(point.values()) for point in points}) < len(points):
         raise BadInput("zip: two points are the same (accepted: every combination once)")
-    of.override({"fields": 0} | base | points[0])
+    sample = _sample(of, {"fields": 0} | base, points)
     _finer(refine, of.values | of.sizes | base, points)
     known = [f"{each}_end" if each in varied else each for each in of.numbers]
     wanted = _is(given.get("collect", known), list, "collect", "a list of names")
     for each in wanted:
         if each not in known or wanted.count(each) > 1:
-            raise BadInput(f"collect: '{each}' is {'given twice' if each in known else 'not known'} (accepted: {', '.join(known)})")
+            raise BadInput(f"collect: '{brief(each)}' is {'given twice' if each in known else 'not known'} (accepted: {', '.join(known)})")
     limit = given.get("limit", LIMIT)
     if type(limit) not in (int, float) or not 1 <= limit <= 1e6:
-        raise BadInput(f"limit: {limit} (accepted: 1 to 1e6 seconds)")
+        raise BadInput(f"limit: {brief(limit)} (accepted: 1 to 1e6 seconds)")
     figure = sweep_figures.check(tables["figure"], points, wanted, of.columns) | {"per": per_metre({"script": of.script})} if tables["figure"] else {}
     base = {"fields": 0} | base
-    return Sweep(path.stem, str(given.get("title", path.stem)), name, base, points, refine, wanted, float(limit), figure, text)
+    return Sweep(path.stem, str(given.get("title", path.stem)), name, base, points, refine, wanted, float(limit), figure, sample, text)
+
+
+def _sample(of: scene.Scene | Multibody, base: study.Point, points: list[study.Point]) -> scene.Scene | Multibody:
+    """The scene of the first point that is accepted; BadInput, as of the first point, where none is. One that is refused keeps no other from its run."""
+    refused = None
+    for point in points:
+        try:
+            return of.override(base | point)
+        except BadInput as error:
+            refused = refused or error
+    raise refused
 
 
 def _finer(refine: study.Point, values: study.Point, points: list[study.Point]) -> None:
@@ -204,12 +216,12 @@ def _finer(refine: study.Point, values: study.Point, points: list[study.Point]) 
     for name in set(refine) & set(FINER):
         coarse = min((values | point)[name] for point in points)       # of bodies the largest that one gives
         if coarse > 0 and not 0 < refine[name] < coarse:
-            raise BadInput(f"refine: {name} = {refine[name]:g} is not finer (accepted: above 0, below {coarse:g})")
+            raise BadInput(f"refine: {brief(name)} = {refine[name]:g} is not finer (accepted: above 0, below {coarse:g})")
 
 
 def _is(value, kind: type, name: str, words: str):
     if not isinstance(value, kind):
-        raise BadInput(f"{name}: '{value}' is not accepted (accepted: {words})")
+        raise BadInput(f"{brief(name)}: '{brief(value)}' is not accepted (accepted: {words})")
     return value
 
 
@@ -226,29 +238,29 @@ def _values(name: str, given: list | dict, of: scene.Scene | Multibody) -> list[
     """The checked values of an axis of a sweep of the scene `of`, from a list or a range."""
     if isinstance(given, dict):
         if not set(RANGE[:3]) <= set(given) <= set(RANGE):
-            raise BadInput(f"{name}: {given} is no range (accepted: from, to, points and perhaps spacing)")
+            raise BadInput(f"{brief(name)}: {brief(given)} is no range (accepted: from, to, points and perhaps spacing)")
         low, high, points, spacing = *(given[key] for key in ("from", "to", "points")), given.get("spacing", "linear")
         if spacing not in ("linear", "log"):
-            raise BadInput(f"{name}: spacing '{spacing}' is not known (accepted: linear|log)")
+            raise BadInput(f"{brief(name)}: spacing '{brief(spacing)}' is not known (accepted: linear|log)")
         rule = parameters.table().get(name.rpartition(".")[2])
         if rule and rule.kind == "word" or not {type(low), type(high)} <= {int, float}:
-            raise BadInput(f"{name}: a range needs a parameter that is a number, from and to numbers")
+            raise BadInput(f"{brief(name)}: a range needs a parameter that is a number, from and to numbers")
         low, high = (of.check({name: number})[name] for number in (low, high))
         if spacing == "log" and min(low, high) <= 0:
-            raise BadInput(f"{name}: from {low} to {high} (accepted for log: above 0)")
+            raise BadInput(f"{brief(name)}: from {brief(low)} to {brief(high)} (accepted for log: above 0)")
         if type(points) is not int or not 2 <= points <= MOST_RUNS:
-            raise BadInput(f"{name}: points = {points} (accepted: 2 to {MOST_RUNS})")
+            raise BadInput(f"{brief(name)}: points = {brief(points)} (accepted: 2 to {MOST_RUNS})")
         given = [float(f"{value:.10g}") for value in (np.geomspace if spacing == "log" else np.linspace)(low, high, points)]
     values = [_single(name, value, of) for value in _is(given, list, name, "a list of values, or a range")]
     if not values or len(set(values)) < len(values):
-        raise BadInput(f"{name}: {given} (accepted: at least one value, none twice)")
+        raise BadInput(f"{brief(name)}: {brief(given)} (accepted: at least one value, none twice)")
     return values
 
 
 def _single(name: str, value, of: scene.Scene | Multibody) -> Value:
     """A checked value of an axis: a number or a word."""
     if isinstance(value, list | dict):
-        raise BadInput(f"{name}: {value} (accepted: single numbers and words, as body.1.velocity.2 for one of two)")
+        raise BadInput(f"{brief(name)}: {brief(value)} (accepted: single numbers and words, as body.1.velocity.2 for one of two)")
     return of.check({name: value})[name]
 
 
@@ -309,6 +321,7 @@ def report(wanted: Sweep, rows: pd.DataFrame, out: Path) -> str:
     for (code, message), group in failed.groupby(["exit", "message"], sort=False):
         where = "; ".join(study.place(Path(), point).name for point in group[wanted.axes].to_dict("records"))
         lines.append(f"failed, exit {code}: {where}: {message}")
+    lines += [f"released: {sentence}" for sentence in wanted.sample.released]
     if found := study.warned(rows.warnings):
         lines.append(f"warnings: {found}")
     lines += sweep_figures.findings(wanted, rows, out)

@@ -1,7 +1,7 @@
 """The figure of a sweep, and what it shows in words. [figure] of a sweep file is one of
 
     kind = "lines"      x, y (one name or several), by: y over x, a line for each value of `by`, with error bars (default)
-    kind = "map"        x, y, colour, by: a panel for each value of `by`; level, band: where colour = level +- band
+    kind = "map"        x, y, colour, by, panel: a column of maps for each value of `by`, a row for each of `panel`; level, band: where colour = level +- band
     kind = "histories"  y (a column of history.csv), panel, by: y over time, a panel a value of `panel`, a line a value of `by`
 
 x, y of a map, by and panel are parameters that vary and together tell all points apart; the y of lines and colour are numbers
@@ -19,14 +19,14 @@ import numpy as np
 import pandas as pd
 from matplotlib.ticker import LogLocator, NullLocator
 
-from .. import parameters, scene
-from ..failure import BadInput
+from .. import parameters
+from ..failure import BadInput, brief
 from ..report import report
 from ..report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, SMALL, STYLE, as_written, numbers_of_the_paper
 from ..results import read_history
 from ..studies import study
 
-KINDS = {"lines": ("x", "y", "by"), "map": ("x", "y", "colour", "by", "level", "band"), "histories": ("y", "panel", "by")}
+KINDS = {"lines": ("x", "y", "by"), "map": ("x", "y", "colour", "by", "panel", "level", "band"), "histories": ("y", "panel", "by")}
 WORDS = {"nu": "ν", "penalty": "k"}
 SPAN = 1e3       # of the values over an axis from which it is logarithmic
 COLOURS, MARKERS = (BLUE, ORANGE, GREEN, PURPLE, GREY), "osd^v"
@@ -38,10 +38,10 @@ def check(given: dict, points: list[dict], collected: list[str], columns: list[s
         return {}
     kind, varied = given.get("kind", "lines"), list(points[0])
     if kind not in list(KINDS):
-        raise BadInput(f"figure: kind '{kind}' is not known (accepted: {'|'.join(KINDS)})")
+        raise BadInput(f"figure: kind '{brief(kind)}' is not known (accepted: {'|'.join(KINDS)})")
     for key in given:
         if key not in ("kind", *KINDS[kind]):
-            raise BadInput(f"figure: {key}: no such entry for {kind} (accepted: {', '.join(KINDS[kind])})")
+            raise BadInput(f"figure: {brief(key)}: no such entry for {kind} (accepted: {', '.join(KINDS[kind])})")
     figure = {"kind": kind, "by": None, "panel": None, "level": None, "band": 0.0} | given
     if kind != "map" and isinstance(figure.get("y"), str):
         figure["y"] = [figure["y"]]
@@ -69,7 +69,7 @@ def check(given: dict, points: list[dict], collected: list[str], columns: list[s
 
 def _name(key: str, name, accepted: list[str]) -> None:
     if not isinstance(name, str) or name not in accepted:
-        raise BadInput(f"figure: {key} {'is missing' if name is None else f'= {name!r}'} (accepted: {', '.join(accepted)})")
+        raise BadInput(f"figure: {key} {'is missing' if name is None else f'= {brief(repr(name))}'} (accepted: {', '.join(accepted)})")
 
 
 def _check_map(figure: dict, points: list[dict]) -> None:
@@ -77,13 +77,13 @@ def _check_map(figure: dict, points: list[dict]) -> None:
     for key in ("x", "y"):
         values = {point[figure[key]] for point in points}
         if len(values) < 2 or any(isinstance(value, str) for value in values):
-            raise BadInput(f"figure: {key} = '{figure[key]}' (accepted for a map: a parameter with at least two numbers)")
+            raise BadInput(f"figure: {key} = '{brief(figure[key])}' (accepted for a map: a parameter with at least two numbers)")
     for key in ("level", "band"):
         value = figure[key]
         if value is not None and (type(value) not in (int, float) or not 0 <= value < 1e300):
-            raise BadInput(f"figure: {key} = {value} (accepted: a number from 0 on)")
+            raise BadInput(f"figure: {key} = {brief(value)} (accepted: a number from 0 on)")
     if figure["level"] is not None and min(point[figure["y"]] for point in points) <= 0:
-        raise BadInput(f"figure: y = '{figure['y']}' has values up to 0 (accepted with a level: above 0)")
+        raise BadInput(f"figure: y = '{brief(figure['y'])}' has values up to 0 (accepted with a level: above 0)")
 
 
 def draw(sweep, rows: pd.DataFrame, out: Path) -> None:
@@ -100,7 +100,7 @@ def draw(sweep, rows: pd.DataFrame, out: Path) -> None:
 
 def _constants(sweep) -> str:
     """What is the same in all runs of a body: law, nu, speed, contact stiffness and, with friction, the slip velocity."""
-    used = scene.load(sweep.scene).override(sweep.base | sweep.points[0]).given
+    used = sweep.sample.given
     names = ("law", "nu", "speed", "penalty") + ("slip_velocity",) * (used.get("friction_static", 0) > 0)
     words = ", ".join(_value(name, used[name]) for name in names if name in used and name not in sweep.axes)
     return words.replace("Pa/m^m", "Pa/m") if used.get("exponent", 1) == 1 else words
@@ -117,7 +117,8 @@ def findings(sweep, rows: pd.DataFrame, out: Path) -> list[str]:
         return [trend(group, sweep.figure["x"], y, words, sweep.figure["per"]) for y in sweep.figure["y"]
                 for words, group in _groups(sweep, rows, "by")]
     if kind == "map":
-        return [line for words, group in _groups(sweep, rows, "by") for line in _set(sweep.figure, words, group)]
+        return [line for panel, part in _groups(sweep, rows, "panel") for words, group in _groups(sweep, part, "by")
+                for line in _set(sweep.figure, ", ".join(filter(None, (panel, words))), group)]
     return [f"{panel}: ".removeprefix(": ") + f"relative L2 difference of {y.replace('_', ' ')}, {a} and {b}: {100 * value:.1f} %"
             + (f" (mesh and step change {100 * bar:.1f} %)" if sweep.refine else "")
             for panel, y, a, b, value, bar in distances(sweep, rows, out)]
@@ -210,7 +211,7 @@ def _why(codes: pd.Series) -> str:
 
 def _published(axes: plt.Axes, sweep, x: str, y: str) -> None:
     """The numbers of the paper for y, whose contact time is that while the force is not zero: a star at its x, or a line over all x where it states none."""
-    for at, value, words in numbers_of_the_paper(scene.load(sweep.scene).override(sweep.base | sweep.points[0]).given, y.removeprefix("thresholded_"), over=x):
+    for at, value, words in numbers_of_the_paper(sweep.sample.given, y.removeprefix("thresholded_"), over=x):
         words = f"{words}: {_factor(y) * value:.3g}{_unit(y, sweep.figure['per'])}"
         if at is None:
             axes.axhline(_factor(y) * value, color=BLACK, linestyle="-.", linewidth=0.9, label=words)
@@ -295,11 +296,11 @@ def trend(group: pd.DataFrame, x: str, y: str, words: str, per: str = "/m") -> s
 def _map(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
     wanted = sweep.figure
     x, y, colour = (wanted[key] for key in ("x", "y", "colour"))
-    groups = list(_groups(sweep, rows, "by"))
-    figure, grid = plt.subplots(1, len(groups), figsize=(1.2 + 3.4 * len(groups), 3.6), sharey=True, squeeze=False)
+    parts = [(panel, list(_groups(sweep, part, "by"))) for panel, part in _groups(sweep, rows, "panel")]
+    figure, grid = plt.subplots(len(parts), len(parts[0][1]), figsize=(1.2 + 3.4 * len(parts[0][1]), 0.8 + 2.8 * len(parts)), sharex=True, sharey=True, squeeze=False)
     values = _factor(colour) * rows[colour]
     low, high = values.min(), values.max()
-    for axes, (words, group) in zip(grid[0], groups):
+    for axes, (words, group) in zip(grid.flat, [(", ".join(filter(None, (panel, words))), group) for panel, groups in parts for words, group in groups]):
         table = group.pivot(index=y, columns=x, values=colour) * _factor(colour)
         cells = np.where(group.pivot(index=y, columns=x, values="exit") == 0, table, np.nan)   # evenly spaced, whatever the values
         picture = axes.imshow(cells, origin="lower", aspect="auto", cmap="viridis", vmin=low, vmax=high)
@@ -315,9 +316,12 @@ def _map(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
                 axes.contour(cells, levels=[level - band, level + band], colors=[ORANGE], linewidths=1, linestyles="--")
         axes.set_xticks(range(len(table.columns)), [f"{value:g}" for value in table.columns])
         axes.set_yticks(range(len(table.index)), [_tick(value) for value in table.index])
-        axes.set(title=words, xlabel=label(x))
+        axes.set_title(words)
         axes.spines[:].set_visible(False)
-    grid[0, 0].set_ylabel(label(y))
+    for axes in grid[-1]:
+        axes.set_xlabel(label(x))
+    for axes in grid[:, 0]:
+        axes.set_ylabel(label(y))
     figure.colorbar(picture, ax=grid, label=label(colour, wanted["per"]))
     return figure
 

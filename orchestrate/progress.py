@@ -1,0 +1,97 @@
+"""Progress: one line on a terminal or in a notebook: what is being done, the share of it that is done, the time left.
+
+Work in parts has one line. What its parts say of themselves, each a line of its own where it stands alone, goes into that one: those of a part in this
+process (part, in_turn), and those of a process beside others (forward, in study.side_by_side).
+"""
+
+import contextlib
+import math
+import multiprocessing
+import sys
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
+
+FORMAT = "{desc} {percentage:3.0f}% |{bar}| {elapsed}, {remaining} left"
+Tell = Callable[[float, str], None]     # the share that is done, in [0, 1], and what is being done
+
+_outer: Tell | None = None              # the one who has the line, where it is not ours
+
+
+def forward(tell: Tell | None) -> Tell | None:
+    """From here on lines go to `tell` (None: are shown); the one before."""
+    global _outer
+    before, _outer = _outer, tell
+    return before
+
+
+def in_notebook() -> bool:
+    return "ipykernel" in sys.modules
+
+
+class Line:
+    """Progress of the work `name` in parts of these costs, in any unit. `watched`: whether it is shown; None: on a terminal and in a notebook."""
+
+    def __init__(self, name: str, costs: Mapping[Hashable, float], watched: bool | None = None, words: str = ""):
+        self.name, self.costs, self.shares = name, dict(costs), dict.fromkeys(costs, 0.0)
+        self.outer, self.bar, self.quiet = _outer, None, watched is False
+        if not self.outer and (watched or watched is None and (sys.stderr.isatty() or in_notebook())):
+            if in_notebook():
+                from tqdm.auto import tqdm
+            else:
+                from tqdm import tqdm
+            from tqdm.contrib import DummyTqdmFile
+            tqdm.monitor_interval = 0                  # no thread beside us: studies fork
+            self.leaving = contextlib.ExitStack()
+            if sys.stdout.isatty():                    # what is printed stands above the line
+                self.leaving.enter_context(contextlib.redirect_stdout(DummyTqdmFile(sys.stdout)))
+            self.bar = tqdm(total=1.0, desc=self._words(words), leave=False, bar_format=FORMAT)
+
+    def __enter__(self) -> "Line":
+        return self
+
+    def __exit__(self, *_) -> None:
+        self.close()
+
+    def close(self) -> None:
+        if self.bar is not None:
+            self.bar.close()
+            self.leaving.close()
+
+    def at(self, part: Hashable, share: float, words: str = "", cost: float = 1.0) -> None:
+        """A part has come that far; one that was not foreseen joins the rest with its cost."""
+        self.costs.setdefault(part, cost)
+        self.shares[part] = min(1.0, max(share, self.shares.get(part, 0.0))) if math.isfinite(share) else self.shares.get(part, 0.0)
+        done = sum(self.costs[each] * of for each, of in self.shares.items()) / (sum(self.costs.values()) or 1.0)
+        if self.outer:
+            self.outer(done, self._words(words))
+        elif self.bar is not None:
+            self.bar.n = done
+            self.bar.set_description_str(self._words(words))
+
+    def _words(self, words: str) -> str:
+        return f"{self.name}: {words}" if words else self.name
+
+    def say(self, sentence: str) -> None:
+        """A sentence of its own above the line, which stays; in a process beside others nobody would know of what."""
+        if not self.quiet and not multiprocessing.parent_process():
+            from tqdm import tqdm
+            tqdm.write(sentence, file=sys.stderr)
+
+    @contextlib.contextmanager
+    def part(self, part: Hashable, words: str) -> Iterator[None]:
+        """What is done in here is that part: lines in it are words of this one."""
+        self.at(part, 0.0, words)
+        before = forward(lambda share, inner: self.at(part, share, f"{words}, {inner}"))
+        try:
+            yield
+        finally:
+            forward(before)
+            self.at(part, 1.0, words)
+
+
+def in_turn(name: str, items: Iterable, watched: bool | None = None) -> Iterator:
+    """The items, one after another, with a line that says which of how many."""
+    items = list(items)
+    with Line(name, dict.fromkeys(range(len(items)), 1.0), watched) as line:
+        for k, item in enumerate(items):
+            with line.part(k, f"{k + 1} of {len(items)}"):
+                yield item

@@ -1,0 +1,94 @@
+"""Results that were damaged: one line that names the file, exit code 14, on every command that reads them; never a traceback, never half a table in silence."""
+
+import json
+import os
+import shutil
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from orchestrate import __main__ as program, run, scene
+from orchestrate.report import report
+
+SET = ("--set", "accuracy=0.4", "fields=3", "modes=4")
+FILES = ("scene.toml", "history.csv", "contacts.csv", "modes.csv", "fields/contact.csv", "fields.pvd", "fields/0001.vtu", "summary.json")
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """A small run that writes all of these."""
+    folder = tmp_path_factory.mktemp("whole") / "run"
+    found = run.run(scene.load("disc-oblique"), {"accuracy": 0.4, "fields": 3, "modes": 4}, folder)
+    report.draw(found)
+    assert all((folder / name).exists() for name in FILES)
+    return folder
+
+
+def damages(content: bytes, seed: int) -> dict[str, bytes]:
+    """What becomes of a file."""
+    rng, lines = np.random.default_rng(seed), content.splitlines(keepends=True)
+    cut = [content[:n] for n in (0, 1, len(content) // 3, len(content) - 1, *rng.integers(1, len(content), 4))]
+    names = lines[0].split(b",")
+    rows = {"two lines": b"".join(lines[:2]), "head": lines[0], "no head": b"".join(lines[1:]), "half the rows": b"".join(lines[:len(lines) // 2]),
+            "last row cut": b"".join(lines[:-1]) + lines[-1][:len(lines[-1]) // 2] + b"\n", "a line longer": b"".join([*lines[:-1], lines[-1].strip() + b",1\n"]),
+            "an empty line": b"".join([*lines[:2], b"\n", *lines[2:]]), "no column": b"\n".join(line.partition(b",")[2] for line in content.split(b"\n"))}
+    words = {"text": b"hello\n", "html": b"<html></html>\n", "nul": b"\0" * 500, "latin": b"\xff\xfe" + content, "nan": content.replace(b"0", b"nan"),
+             "letters": content.replace(b"1", b"x"), "other names": content.replace(names[0], b"q", 1), "twice": content + content, "empty JSON": b"{}", "a list": b"[]",
+             "a table": b"[a]\n", "deep": b"[" * 100_000, "deep TOML": b"a = " + b"[" * 100_000, "equals": b"".join(line.partition(b"=")[0] + b"= \"x\"\n" for line in lines)}
+    found = {f"cut {k}": one for k, one in enumerate(cut)} | rows | words
+    return {name: one for name, one in found.items() if one != content}
+
+
+def refused(capsys, name: str, *arguments: str) -> str:
+    """The line of a command that does not take a result."""
+    capsys.readouterr()
+    code, said = program.main(list(arguments)), capsys.readouterr().err
+    assert code == 14 and said.count("\n") == 1 and said.startswith("ffimpact: ") and name in said and len(said) < 600, said
+    return said
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_a_damaged_result_is_one_line(whole, tmp_path, capsys, name):
+    """Every damage of every file that is read again is refused by `figures` and by `run`, which names the file and what to do."""
+    folder = tmp_path / "run"
+    shutil.copytree(whole, folder)
+    content = (folder / name).read_bytes()
+    for what, damaged in damages(content, 8).items():
+        if name == "summary.json" and what not in ("html", "nul", "text", "empty JSON", "a list", "deep", "cut 0", "cut 2", "head", "latin"):
+            continue
+        (folder / name).write_bytes(damaged)
+        assert "--force" in refused(capsys, name, "figures", str(folder)), what
+    refused(capsys, name, "run", "disc-oblique", *SET, "--out", str(folder))
+    (folder / name).write_bytes(content)
+    assert program.main(["run", "disc-oblique", *SET, "--out", str(folder)]) == 0 and "finished earlier" in capsys.readouterr().out
+
+
+def test_what_is_no_result_is_one_line(whole, tmp_path, capsys):
+    """A folder that is none of a run, a pipe or a folder in the place of a file: one line at once, and no advice to delete what is not ours."""
+    assert "--force" not in refused(capsys, "summary.json", "figures", str(tmp_path)) and "delete" not in refused(capsys, "nowhere", "figures", "nowhere")
+    shutil.copytree(whole, tmp_path / "run")
+    for k, name in enumerate(FILES):
+        (tmp_path / "run" / name).unlink()
+        (tmp_path / "run" / name).mkdir() if k % 2 else os.mkfifo(tmp_path / "run" / name)
+        assert "no file" in refused(capsys, name, "figures", str(tmp_path / "run"))
+        shutil.rmtree(tmp_path / "run")
+        shutil.copytree(whole, tmp_path / "run")
+
+
+@pytest.mark.robustness
+@pytest.mark.parametrize("name", FILES[:-1])
+def test_a_damaged_result_of_a_direct_run(whole, tmp_path, capsys, monkeypatch, name):
+    """Without Python nothing says what the files were: what can still be told from them is refused in one line, and nothing else but one line is said."""
+    monkeypatch.setattr(Figure, "savefig", lambda *_, **__: None)
+    folder = tmp_path / "run"
+    shutil.copytree(whole, folder)
+    (folder / "summary.json").write_text(json.dumps(json.loads((folder / "summary.json").read_text()) | {"provenance": {}}))
+    content, taken = (folder / name).read_bytes(), []
+    for what, damaged in damages(content, 9).items():
+        (folder / name).write_bytes(damaged)
+        capsys.readouterr()
+        code, said = program.main(["figures", str(folder)]), capsys.readouterr().err
+        assert code in (0, 14) and (code == 0 or said.count("\n") == 1 and name in said), (what, said)
+        taken += [what] * (code == 0)
+    assert name != "history.csv" or not taken
