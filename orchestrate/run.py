@@ -12,6 +12,7 @@ import re
 import signal
 import subprocess
 from collections.abc import Iterable
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -28,8 +29,8 @@ from .scene import Scene
 from .tables import to_toml
 from .told import Told, runs
 
-DECISIVE = ("approach", "assembly", "bodies", "curved", "dimension", "flat", "gmsh_file", "mesh", "mirror", "multibody", "obstacles", "outlines", "polyline", "revolution",
-            "solid_file", "solid_mesh", "solids", "tables", "tumbling")
+ENTRANCE = "scene"                     # the module that makes flags, mesh and scene.dat, with all that it imports
+HARMLESS = {"describe", "estimate", "failure", "freefem", "places", "results"}     # of these: what asks, starts, says and reads, and does not decide a result
 ESTIMATING = ("estimate", "results")   # what decides the stated errors besides
 FAILURES = {10: "bad input", 11: "step failed", 12: "material broke down", 13: "not installed", 14: "unreadable"}
 
@@ -200,7 +201,19 @@ def reusable(scene: Scene | Multibody, folder: Path, mesh_file: Path | None = No
 
 def code_hash() -> str:
     """sha256 over what decides a result besides the scene: the FreeFEM scripts and what makes meshes and scene.dat."""
-    return _hash(DECISIVE, sorted(path for path in (ROOT / "edp").rglob("*") if path.suffix in (".edp", ".idp")))
+    return _hash(sorted(imported(ENTRANCE) - HARMLESS), sorted(path for path in (ROOT / "edp").rglob("*") if path.suffix in (".edp", ".idp")))
+
+
+@cache
+def imported(name: str, package: Path = PACKAGE) -> set[str]:
+    """A module of the package and those of it that it imports, wherever in it, or they do."""
+    found, open_ones = set(), {name}
+    while open_ones:
+        found.add(module := open_ones.pop())
+        said = re.findall(r"(?m)^\s*from \.(\w*) import (\([^)]*\)|.*)", (package / f"{module}.py").read_text("utf-8"))
+        names = {name for source, listed in said for name in ([source] if source else re.findall(r"\w+", listed))}
+        open_ones |= {name for name in names if (package / f"{name}.py").exists()} - found
+    return found
 
 
 def _hash(modules: Iterable[str], files: Iterable[Path] = ()) -> str:

@@ -325,15 +325,44 @@ def test_coarse_circles_of_our_own_stay_round(tmp_path):
     assert describe({"mesh": str(tmp_path / "m.msh")})["outline"].startswith("circle of radius 0.05 about (0, 0.05), half a body")
 
 
-def test_a_polygon_is_no_circle(tmp_path):
-    """A regular octagon, all corners on a circle, has straight sides; a disc of 24 sides is round."""
-    for corners, outline in ((8, "8 straight edges"), (24, "circle of radius 0.05 about (2, 0)")):
-        angles = 2 * math.pi * np.arange(corners) / corners
-        points = np.vstack([RADIUS * np.stack([np.cos(angles), np.sin(angles)], axis=1), [[0, 0]]]) + (2, 0)
-        edges = np.stack([np.arange(corners), np.roll(np.arange(corners), -1)], axis=1)
-        triangles = np.hstack([edges, np.full((corners, 1), corners)])
-        mesh.write(mesh.Mesh(points, triangles, edges, np.ones(corners, dtype=int)), tmp_path / f"{corners}.msh")
-        assert describe({"mesh": str(tmp_path / f"{corners}.msh")})["outline"] == outline
+def fan(angles: np.ndarray, x: float, y: float) -> mesh.Mesh:
+    """Corners of a circle at angles [rad], joined with its centre."""
+    n = len(angles)
+    points = np.vstack([RADIUS * np.stack([np.cos(angles), np.sin(angles)], axis=1), [[0, 0]]]) + (x, y)
+    edges = np.stack([np.arange(n), np.roll(np.arange(n), -1)], axis=1)
+    return mesh.Mesh(points, np.hstack([edges, np.full((n, 1), n)]), edges, np.ones(n, dtype=int))
+
+
+def round_of(sides: int) -> np.ndarray:
+    return 2 * math.pi * np.arange(sides) / sides
+
+
+SHAFT = np.array([angle for k, angle in enumerate(round_of(48)) if not 0 < k % 24 < 10])       # two flats of 75 degrees
+
+
+@pytest.mark.parametrize("angles, place, outline", [
+    (round_of(8), (2, 0), "8 straight edges"), (round_of(24), (2, 0), "circle of radius 0.05 about (2, 0)"), (round_of(12), (2, 0), "circle of radius 0.05 about (2, 0)"),
+    (round_of(11), (2, 0), "11 straight edges"), (round_of(6), (0, RADIUS), "6 straight edges"),
+    (SHAFT, (2, 0), "circle of radius 0.05 about (2, 0), 2 straight edges"), (SHAFT, (0, RADIUS), "circle of radius 0.05 about (0, 0.05), 2 straight edges"),
+    (np.array([0, 0.2, 0.4, 0.6, 3, 4]), (2, 0), "6 straight edges")],
+    ids=["octagon", "24", "12", "11", "hexagon on the scene's own circle", "shaft", "shaft on the scene's own circle", "three edges"])
+def test_edges_up_to_30_degrees_are_a_circle(tmp_path, angles, place, outline):
+    """Edges in a row that lie on a circle and span at most 30 degrees each are its arcs; longer ones, flats among them too, stay straight, wherever they are."""
+    mesh.write(fan(angles, *place), tmp_path / "m.msh")
+    said = describe({"mesh": str(tmp_path / "m.msh")})
+    assert said["outline"] == outline
+    chords = abs(np.diff([*angles, angles[0] + 2 * math.pi]))
+    assert [c < 0 for c in said["circle_of"]] == [chord > math.pi / 6 + 1e-9 or "circle" not in outline for chord in chords]
+
+
+def test_another_mass_than_the_file_is_a_warning(tmp_path):
+    """A disc of 24 sides is 1.2 % heavier than its file, and a warning says so; one of 48 sides is as heavy to 0.3 %, without a warning."""
+    for sides, said in ((24, True), (48, False)):
+        m = fan(round_of(sides), 2, 0)
+        result = go(tmp_path / str(sides), m, end_time=1e-4)
+        assert result.summary["energy_initial"] == pytest.approx(DENSITY * math.pi * RADIUS**2 * 4**2 / 2, rel=1e-3)
+        warned = [one for one in result.summary["warnings"] if one.startswith("mass: the body has 1.2 % more than the mesh in its file")]
+        assert len(warned) == said and ("mass:" in str(result.summary["warnings"])) == said
 
 
 @pytest.mark.parametrize("spin", [60, -200])
@@ -370,6 +399,14 @@ def test_body_that_is_set_down_is_in_touch_at_once(direct, tmp_path, accuracy):
 
 
 # ---- gmsh's files
+
+def test_named_curves_without_contact_are_named(tmp_path):
+    """A file of gmsh whose physical curves have names, but none `contact`, is refused with these."""
+    m = fan(round_of(24), 0, 1)
+    in_gmsh(tmp_path / "m.msh", replace(m, labels=np.where(np.arange(24) < 5, 2, 3)), 4.1, False, named=True)
+    with pytest.raises(BadInput, match=r"none of its physical curves \(rest, Symmetry\) has the name 'contact', or without a name the number 1"):
+        mesh.load(tmp_path / "m.msh")
+
 
 def in_gmsh(path: Path, m: mesh.Mesh, version: float, binary: bool, named: bool = False) -> None:
     """Writes a mesh as gmsh does; its boundary in a physical curve a label."""

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 import fake_freefem
-from orchestrate import run, scene
+from orchestrate import __version__, run, scene
 from orchestrate.__main__ import main
 from orchestrate.failure import Failure
 from orchestrate.report import figures, paper, paper_bodies, paper_friction, paper_judging, paper_page, report
@@ -404,7 +404,7 @@ def test_page_leads_to_every_statement_and_back(tmp_path):
     assert text.count('id="figure1"') == 1 and text.count('<a href="#figure1">Figure 1</a> above') == 1
     anchors, links = re.findall(' id="([^"]+)"', text), re.findall(' href="#([^"]+)"', text)
     assert set(links) <= set(anchors) and len(anchors) == len(set(anchors))
-    assert f"by ffimpact {paper_page._version()}" in text and run.code_hash() in text
+    assert f"by ffimpact {__version__}" in text and run.code_hash() in text
 
 
 def test_text_of_all_pictures_has_one_size(tmp_path):

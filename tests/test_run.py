@@ -262,3 +262,30 @@ def test_killed_between_two_renames(tmp_path):
     (part / "summary.json").write_text('{"status": "ok", "provenance": {"code": "1"}}')
     with folder.staging(tmp_path / "out") as (stage, _):
         assert not any(stage.iterdir()) and (tmp_path / "out/summary.json").exists()
+
+
+def test_what_decides_a_result_is_derived():
+    """A run is reused only by the same code: every module that scene.py reaches by imports decides, but those that are named as harmless, and so does a new one."""
+    decisive = run.imported(run.ENTRANCE) - run.HARMLESS
+    assert run.HARMLESS < run.imported(run.ENTRANCE) and {"scene", "multibody", "assembly", "parameters", "mesh", "solid_mesh", "tables", "tumbling"} <= decisive
+    assert not decisive & {"run", "folder", "report", "verify", "told"}
+
+
+def test_an_import_anywhere_is_found(tmp_path):
+    """At the top, inside a function, of a module or of names in it, of modules that import each other; names that are no modules are none."""
+    for name, text in {"a": "from . import b, VERSION\nimport os\n", "b": "def f():\n    from .c import g\n", "c": "from .a import x\nfrom ..elsewhere import y\n", "d": ""}.items():
+        (tmp_path / f"{name}.py").write_text(text)
+    assert run.imported("a", tmp_path) == {"a", "b", "c"} and run.imported("d", tmp_path) == {"d"}
+
+
+def test_a_changed_module_is_other_code(tmp_path, monkeypatch):
+    """What sets mesh sizes, scene.py, is part of the hash."""
+    before = run.code_hash()
+    for name in run.imported(run.ENTRANCE):
+        (tmp_path / f"{name}.py").write_bytes((run.PACKAGE / f"{name}.py").read_bytes())
+    monkeypatch.setattr(run, "PACKAGE", tmp_path)
+    assert run.code_hash() == before
+    (tmp_path / "failure.py").write_text("")
+    assert run.code_hash() == before
+    (tmp_path / "scene.py").write_text("")
+    assert run.code_hash() != before

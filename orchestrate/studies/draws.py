@@ -31,14 +31,16 @@ def draw(seed: int, count: int, hard: bool = False, scene: str = "disc-normal") 
 
 
 def mixture(seed: int, count: int) -> list[tuple[str, Point]]:
-    """About `count` scenes of all dimensions, with and without friction, of one body and two: each scene's name and what it is overridden by."""
+    """About `count` scenes of all dimensions, with and without friction, of one body and two, the kinds spread evenly: each scene's name and what it
+    is overridden by."""
     found = []
     for scene, (share, accuracies) in MIXTURE.items():
         chance = random.Random(f"{seed} {scene}")
-        for _ in range(max(1, round(count * share / 60))):
+        many = max(1, round(count * share / 60))
+        for k in range(many):
             point = SCENES[scene](chance, _scene(chance, False))
-            found.append((scene, point | {"accuracy": chance.choice(accuracies)}))
-    return found
+            found.append(((k + 0.5) / many, scene, point | {"accuracy": chance.choice(accuracies)}))
+    return [(scene, point) for _, scene, point in sorted(found, key=lambda one: one[0])]
 
 
 def _on_plane(chance: random.Random, point: Point) -> Point:

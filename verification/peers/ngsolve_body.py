@@ -1,8 +1,9 @@
 """A body that falls on the rigid plane y = 0 with NGSolve (`pip install ngsolve==6.2.2608`), one thread: what disc and balls share.
 
 A Shape says which body: mesh, symmetry, gradient, weights. Everything else is written once, for any dimension: the laws, the energy-momentum
-step from (u0, v0) to u1 = u and v1, contact of potential k p^2 / 2 per unit reference area, and two ways to solve it:
+step from (u0, v0) to u1 = u and v1, contact of potential k p^2 / 2 per unit reference area, and ways to solve it:
 plain: as users of NGSolve would write it: one nonlinear form, contact on all of the outline, full Newton with UMFPACK.
+newmark: the same with the step that users would take, Newmark's average acceleration, stress and pressure at its end: nothing corrects the energy.
 tuned: constant mass, contact on the lowest arc alone, a symmetric tangent factorised by sparse Cholesky and kept until Newton's method
        slows down; the exact tangent once a step needs it.
 tuned-realcompile: the same with its forms through the C++ compiler, some 10 s of set-up.
@@ -162,10 +163,13 @@ class Plain(Body):
     def __init__(self, shape: Shape, options: argparse.Namespace):
         super().__init__(shape, options)
         u, w = self.space.TnT()
-        acceleration = 2 / self.dt ** 2 * (u - self.u0 - self.dt * self.v0)
         self.form = ng.BilinearForm(self.space)
-        self.form += (self.weighted * InnerProduct(acceleration, w) + self.stress_form(u, w)).Compile() * self.bulk
+        self.form += (self.weighted * InnerProduct(self.acceleration(u), w) + self.stress_form(u, w)).Compile() * self.bulk
         self.form += self.contact_form(u, w).Compile() * self.outline("arc|circle")
+
+    def acceleration(self, u):
+        """The mean of the step that ends at u [m/s2]."""
+        return 2 / self.dt ** 2 * (u - self.u0 - self.dt * self.v0)
 
     def solve(self):
         for _ in range(50):
@@ -178,6 +182,38 @@ class Plain(Body):
             if peer.small(ng.InnerProduct(self.change, self.residual), self.o.tolerance * self.energy0):
                 return
         raise peer.StepFailed("no convergence")
+
+
+class Newmark(Plain):
+    """Newmark's average acceleration (beta = 1/4, gamma = 1/2)."""
+
+    def __init__(self, shape: Shape, options: argparse.Namespace):
+        self.a0 = None
+        super().__init__(shape, options)
+
+    def acceleration(self, u):
+        """At the end of the step [m/s2]; the flight has none."""
+        self.a0 = self.a0 or ng.GridFunction(self.space)
+        return 4 / self.dt ** 2 * (u - self.u0 - self.dt * self.v0) - self.a0
+
+    def stress_form(self, u, w):
+        F = self.deformation(u)
+        return self.shape.share * InnerProduct(F * stress(F.trans * F, self.o), self.shape.gradient(w))
+
+    def contact_form(self, u, w):
+        q = -(y + u[1])
+        return -self.shape.share * self.o.penalty * IfPos(q, q, 0) * w[1]
+
+    def step(self) -> float:
+        before = self.velocity()
+        self.u0.vec.data = self.u.vec
+        self.u.vec.data += self.increment
+        self.solve()
+        self.increment.data = self.u.vec - self.u0.vec
+        self.change.data = (4 / self.dt ** 2) * self.increment - (4 / self.dt) * self.v0.vec - 2 * self.a0.vec     # a1 - a0
+        self.v0.vec.data += self.dt * self.a0.vec + (self.dt / 2) * self.change
+        self.a0.vec.data += self.change
+        return (self.velocity() - before) * self.weight / self.dt
 
 
 class Tuned(Body):
@@ -258,8 +294,8 @@ class Tuned(Body):
 
 def main(scene: str, build: Callable[[argparse.Namespace], Shape]) -> None:
     """Runs the body that `build` makes of the flags, in the form that they ask for; `scene` is the one of ours that it stands beside."""
-    options = peer.arguments("NGSolve", ("plain", "tuned", "tuned-realcompile"), scene)
+    options = peer.arguments("NGSolve", ("plain", "newmark", "tuned", "tuned-realcompile"), scene)
     if options.mesh:
         raise SystemExit("mesh: netgen makes its own, give --mesh-size and --contact-mesh-size")
     ng.SetNumThreads(1)
-    peer.main(lambda o: (Plain if o.form == "plain" else Tuned)(build(o), o), options)
+    peer.main(lambda o: {"plain": Plain, "newmark": Newmark}.get(o.form, Tuned)(build(o), o), options)
