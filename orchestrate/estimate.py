@@ -78,6 +78,7 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
         above = [name for name in wanted(values["accuracy_of"]) if estimated[name] > WORTH * asked]
         scatters, before = above == [SCATTERS] and estimated[SCATTERS] > before / 2, estimated[SCATTERS]
         sentences = excess(estimated, asked, values["accuracy_of"])
+        sentences = sentences and (touches(summary, coarse) or sentences)
         fixed = not own_mesh or any(values[name] for name in SIZES)
         if not above or scatters or fixed or refinements == MOST or summary.get("ellipticity_lost_time") is not None:
             break
@@ -188,6 +189,13 @@ def wanted(also: str) -> list[str]:
 def largest(estimated: Mapping[str, float]) -> float:
     """The largest estimated error of the promised answers."""
     return max(estimated[name] for name in PROMISED)
+
+
+def touches(fine: Mapping, coarse: Mapping) -> list[str]:
+    """A sentence where the runs of a pair saw different numbers of touches, so that what they differ by estimates nothing."""
+    seen, other = (summary.get("contact_intervals") for summary in (fine, coarse))
+    return [f"touches: the run has {seen} intervals of contact, one with {COARSER:.1f} times larger elements and steps {other}: answers that are beyond the accuracy asked for "
+            "are known to no more than that: look at contacts.csv for what each touch does, or ask for a smaller accuracy"] if seen != other else []
 
 
 def excess(estimated: Mapping[str, float], accuracy: float, also: str) -> list[str]:

@@ -250,6 +250,36 @@ def test_one_body_and_nothing_else(inputs, tmp_path):
     assert done.returncode == 10 and "nothing could ever touch" in done.stderr and done.stderr.count("\n") == 1, done.stderr
 
 
+FALLING = {"law": "neohookean", "young": 7e6, "nu": 0.3, "density": 1722, "accuracy": 0.1, "obstacle": [{"kind": "plane", "point": [0, 0], "normal": [0, 1]}]}
+
+
+def test_bodies_turn_about_their_stated_centre(tmp_path):
+    """A coarse ellipse turned by 90 degrees and one with its semi-axes exchanged are the same body, though the mesh's centre of mass is 0.06 mm off: they
+    touch at one time and are nowhere farther apart than round-off."""
+    found = []
+    for axes, angle in (([0.06, 0.03], 0), ([0.03, 0.06], 90)):
+        body = {"shape": "ellipse", "semi_axes": axes, "angle": angle, "position": [0, 0.031], "velocity": [0, -1], "mesh_size": 0.015}
+        found.append(run.run(multibody.read(FALLING | {"body": [body], "end_time": 1.1e-3}, tmp_path, "ellipse"), {}, tmp_path / str(angle), estimate=False))
+    first, second = found
+    assert first.summary["contact_start"] == pytest.approx(second.summary["contact_start"], rel=1e-9)
+    assert second.history["y"] == pytest.approx(first.history["y"], abs=1e-12) and abs(second.history["x"]).max() < 1e-12
+
+
+def test_a_body_that_passes_through_itself_is_warned_about(tmp_path):
+    """The free arm of a hairpin closes its slot of 10 mm at 6 m/s and goes on into the other one: the warning says when, which is not before 10 mm / 12 m/s,
+    and where, on a wall of the slot; as long as the slot is open there is none."""
+    pin = {"shape": "polygon", "vertices": [[0, 0], [0.1, 0], [0.1, 0.01], [0.01, 0.01], [0.01, 0.02], [0.1, 0.02], [0.1, 0.03], [0, 0.03]],
+           "position": [0, 0.0151], "velocity": [0, -6], "mesh_size": 0.009, "contact_mesh_size": 0.009}
+    for end, words in ((4e-3, "overlap: the body passes through itself from t = "), (8e-4, "")):
+        found = run.run(multibody.read(FALLING | {"body": [pin], "end_time": end}, tmp_path, "pin"), {}, tmp_path / "pin", estimate=False)
+        warned = [one for one in found.summary["warnings"] if "overlap" in one]
+        assert len(warned) == (words != "")
+        for sentence in warned:
+            assert sentence.startswith(words) and 8e-4 < float(sentence.split("t = ")[1].split()[0]) < 4e-3
+            x, y = map(float, sentence.split("X = (")[1].split(")")[0].split(", "))
+            assert abs(y) == pytest.approx(0.005, abs=1e-3)
+
+
 @pytest.mark.parametrize("dimension, shape, zeros", [("plane-strain", "disc", 0), ("axisymmetric", "ball", 0), ("3d", "ball", 1)])
 def test_bodies_that_never_meet(tmp_path, dimension, shape, zeros):
     """Refused before anything is meshed: bodies at rest; bodies that fly apart while the end is left open, and only then."""

@@ -52,7 +52,7 @@ def compare(drawn: list[Drawn], out: Path) -> pd.DataFrame:
     """A row a scene: what it is, of each promised answer the error and the stated one, and the largest of each, over the accuracy asked for; warnings;
     processor seconds of the run with its estimate, and of the reference; nan where one of them failed."""
     acts = {k: partial(_row, out, *one) for k, one in enumerate(drawn)}
-    rows = {k: {"message": str(found)} if isinstance(found, Failure) else found for k, found in study.side_by_side(acts)}
+    rows = {k: {"message": str(found)} if isinstance(found, Failure) else found for k, found in study.side_by_side(acts, study.CORES, out.name)}
     rows = [{"scene": f"{name}: {draws.words(point)}", "warnings": ""} | rows[k] for k, (name, point) in enumerate(drawn)]
     columns = [each for name in estimate.PROMISED for each in (name, f"{name} stated")]
     return pd.DataFrame(rows).reindex(columns=["scene", *columns, "error", "estimated", "seconds", "finer seconds", "warnings", "message"])
