@@ -58,6 +58,13 @@ def meetings(scene: Multibody) -> list[Meeting]:
     return [one for pair in pairs for one in _in_turn(scene, _meeting(scene, *pair))]
 
 
+def _fall(scene: Multibody) -> np.ndarray:
+    """The acceleration of free bodies [m/s2]."""
+    fall = np.zeros(scene.dimension.axes)
+    fall[:2] = scene.values.get("body_force_x", 0.0), scene.values["body_force_y"] - scene.values["gravity"]
+    return fall
+
+
 def _in_turn(scene: Multibody, one: Meeting) -> list[Meeting]:
     """A meeting, and in the plane those of the same two that follow, where rigid bodies without friction are turned by it: other corners strike."""
     found = [one]
@@ -76,7 +83,8 @@ def _rebound(scene: Multibody, one: Meeting) -> Multibody | None:
     n = one.normal
     point = min((shape.points[other.gap(shape.points).argmin()] for shape, other in (one.outlines, one.outlines[::-1]) if isinstance(shape, Outline)),
                 key=lambda at: max(abs(shape.gap(at[None])[0]) for shape in one.outlines))
-    fall = np.array([scene.values.get("body_force_x", 0.0), scene.values["body_force_y"] - scene.values["gravity"]]) * one.time
+    fall = _fall(scene) * one.time
+    moves = scene.obstacles[-1 - one.second].velocity if one.second < 0 else np.zeros(len(n))    # of the obstacle, which stays where it is
     hit, yields, closing = [], 0.0, 0.0
     for sign, k in ((1, one.first), (-1, one.second)):
         if k < 0:
@@ -96,7 +104,7 @@ def _rebound(scene: Multibody, one: Meeting) -> Multibody | None:
     for sign, k, shape, lever, mass in hit:
         body, push = bodies[k], sign * (1 + RESTITUTION) * closing / yields / mass
         velocity, spin = body.velocity + fall + push * n, body.spin + push * lever / shape.gyration
-        bodies[k] = replace(body, position=shape.area_centre + velocity * soon, angle=body.angle + body.spin * one.time + spin * soon, velocity=velocity, spin=spin)
+        bodies[k] = replace(body, position=shape.area_centre + (velocity - moves) * soon, angle=body.angle + body.spin * one.time + spin * soon, velocity=velocity, spin=spin)
     still = {name: 0.0 for name in ("gravity", "body_force_x", "body_force_y") if name in scene.values}
     return replace(scene, bodies=bodies, values=scene.values | still)
 
@@ -104,9 +112,7 @@ def _rebound(scene: Multibody, one: Meeting) -> Multibody | None:
 def _meeting(scene: Multibody, first: int, second: int) -> Meeting:
     body = scene.bodies[first]
     other = scene.bodies[second] if second >= 0 else scene.obstacles[-1 - second]
-    pull = np.zeros(scene.dimension.axes)
-    if second < 0:                                             # two bodies fall alike
-        pull[:2] = scene.values.get("body_force_x", 0.0), scene.values["body_force_y"] - scene.values["gravity"]
+    pull = _fall(scene) if second < 0 else np.zeros(scene.dimension.axes)    # two bodies fall alike
     start = body.velocity - other.velocity
     radius = min([body.outline.half_thickness, *([other.outline.half_thickness] if second >= 0 else [])])
     turning = sum(one.outline.fastest(one.angle, one.spin) * one.outline.reach for one in (body, other) if isinstance(one, Body))
@@ -147,6 +153,11 @@ def refuse_nothing(scene: Multibody, met: list[Meeting]) -> None:
     if scene.values["end_time"] == 0 and all(one.never for one in met):
         raise BadInput("end_time: 0 is the end of the contact, but nothing ever touches: the bodies miss each other and every obstacle "
                        "(accepted: an end_time > 0, or velocities and positions that lead them together)")
+    for one in met if scene.values["end_time"] == 0 else []:
+        body = scene.bodies[one.first]
+        if one.second < 0 and one.time == 0 and one.closing == 0 and not np.any(body.spin) and _fall(scene) @ one.normal < 0:
+            raise BadInput(f"end_time: 0 is the end of the contact, but '{body.name}' is set down on '{scene.obstacles[-1 - one.second].name}' and does not leave it "
+                           "(accepted: an end_time > 0)")
 
 
 def _parts(vector: np.ndarray, normal: np.ndarray) -> tuple[float, float]:

@@ -7,8 +7,9 @@ of the two runs on their way: of the running impulse, the velocities, the elasti
     BOUND D^(1/3) d^(2/3),   d: the largest difference of its course over its scale; D: the mean of the promised answers' differences over their usual ones,
 and no less than their difference: an error that 95 of 100 runs keep (docs/promise.md; BOUND is calibrated on other scenes), and so some three
 times the usual one. It is that of mesh and steps: penalty and slip velocity are the same in all runs. Where that of a promised answer is
-more than WORTH times what is asked finer runs follow. Where the contact time alone is off and a finer run has not halved its estimate it scatters with the vibration at the last touch (by 0.8 % rms in
-hard impacts, on any mesh and at any step that was tried): no finer run follows, and the estimate says by how much.
+more than WORTH times what is asked finer runs follow. Where the contact time alone is off and a finer run has not halved its estimate it scatters
+with the vibration at the last touch (by 0.8 % rms in hard impacts, on any mesh and at any step that was tried): no finer run follows, and the
+estimate says by how much.
 """
 
 import math
@@ -53,8 +54,7 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
     it could not be estimated), estimated_error_excludes (what all runs have alike), estimate_cpu_seconds, refinements, and the sentences `warnings`.
 
     Where sizes and steps follow from the accuracy and the estimate is above it, finer runs take the run's place in `stage`.
-    `read` gives the Answers of a folder, `scaled` the entries of the scene with larger or smaller
-    elements and steps (left out: other).
+    `read` gives the Answers of a folder, `scaled` the entries of the scene with larger or smaller elements and steps (left out: other).
     """
     scaled = scaled or other
     coarser, finer = stage / "coarser", stage / "finer"
@@ -78,6 +78,7 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
         above = [name for name in wanted(values["accuracy_of"]) if estimated[name] > WORTH * asked]
         scatters, before = above == [SCATTERS] and estimated[SCATTERS] > before / 2, estimated[SCATTERS]
         sentences = excess(estimated, asked, values["accuracy_of"])
+        sentences = sentences and (touches(summary, coarse) or sentences)
         fixed = not own_mesh or any(values[name] for name in SIZES)
         if not above or scatters or fixed or refinements == MOST or summary.get("ellipticity_lost_time") is not None:
             break
@@ -188,6 +189,13 @@ def wanted(also: str) -> list[str]:
 def largest(estimated: Mapping[str, float]) -> float:
     """The largest estimated error of the promised answers."""
     return max(estimated[name] for name in PROMISED)
+
+
+def touches(fine: Mapping, coarse: Mapping) -> list[str]:
+    """A sentence where the runs of a pair saw different numbers of touches, so that what they differ by estimates nothing."""
+    seen, other = (summary.get("contact_intervals") for summary in (fine, coarse))
+    return [f"touches: the run has {seen} intervals of contact, one with {COARSER:.1f} times larger elements and steps {other}: answers that are beyond the accuracy asked for "
+            "are known to no more than that: look at contacts.csv for what each touch does, or ask for a smaller accuracy"] if seen != other else []
 
 
 def excess(estimated: Mapping[str, float], accuracy: float, also: str) -> list[str]:

@@ -71,7 +71,11 @@ def _contents(value, path: Path):
 def reading(path: Path) -> Iterator[None]:
     """Unreadable where something fails over what is in the file `path` of a run."""
     try:
+        if path.exists() and not path.is_file():              # reading a pipe or a device might never end
+            raise ValueError("it is no file")
         yield
+    except (FileNotFoundError, NotADirectoryError) as error:
+        raise Unreadable(f"{path} cannot be read: {error.strerror} (accepted: the folder of a finished run)") from None
     except (OSError, ValueError, ArithmeticError, LookupError, TypeError, AttributeError, RecursionError, SyntaxError) as error:
         raise Unreadable(f"{path} cannot be read: {brief(why(error))}; {AGAIN}") from None
 
@@ -204,7 +208,7 @@ def read_summary(folder: Path) -> dict:
 def read_json(path: Path) -> dict:
     """What is in a file, {} where there is none or it makes no sense."""
     try:
-        said = json.loads(path.read_text("utf-8"))
+        said = json.loads(path.read_text("utf-8")) if path.is_file() else {}
     except (OSError, ValueError, RecursionError):
         return {}
     return said if isinstance(said, dict) else {}

@@ -12,7 +12,7 @@ import pytest
 
 from orchestrate import approach, assembly, freefem, mesh, multibody
 from orchestrate.failure import BadInput
-from orchestrate.outlines import crossing_sides, ellipse_loop, self_crossing
+from orchestrate.outlines import crossing_sides, ellipse_loop, polygon_loop, self_crossing
 from orchestrate.scene import load
 from orchestrate.tables import to_toml
 
@@ -165,6 +165,33 @@ def test_a_body_may_be_a_file_of_gmsh(tmp_path):
     m = assembly.assemble(scene).mesh
     assert np.linalg.norm(np.diff(m.points[m.edges[m.labels == 1]], axis=1), axis=2).sum() == pytest.approx(4)
     assert set(m.labels) == {1, 3} and areas(m).min() > 0
+
+
+def test_flats_among_the_arcs_of_a_file_stay_flat(tmp_path):
+    """A shaft with two flats, all corners on one circle, is arcs and flats: its area, centre and distances are theirs, in place and turned, and scene.dat has
+    the circle once."""
+    radius, flat = 0.5, math.acos(0.6)
+    angles = np.concatenate([np.linspace(side + flat, side + math.pi - flat, 10) for side in (0, math.pi)])
+    corners = radius * np.column_stack([np.cos(angles), np.sin(angles)])
+    spokes = np.column_stack([np.full(20, 20), np.arange(20), np.roll(np.arange(20), -1)])
+    mesh.write(mesh.Mesh(np.vstack([corners, [0, 0]]) + [3, 4], spokes, spokes[:, 1:], np.ones(20, dtype=int)), tmp_path / "shaft.msh")
+    scene = read(with_body(shape="mesh", file="shaft.msh", position=[1, 2], angle=90), tmp_path)
+    outline, placed = scene.bodies[0].outline, scene.bodies[0].placed
+    assert outline.area == pytest.approx(radius**2 * (math.pi - 2 * flat + math.sin(2 * flat)), rel=1e-12) and abs(outline.area_centre).max() < 1e-12
+    assert placed.area_centre == pytest.approx([1, 2], abs=1e-12) and placed.extent == pytest.approx([2 * radius, 1.2 * radius], rel=1e-4)
+    assert placed.gap(np.array([[1.0, 2.4], [1, 2], [1.6, 2]])) == pytest.approx([0.1, -0.3, 0.1], abs=1e-4)
+    lines = assembly.assemble(scene).data.splitlines()
+    assert lines[4] == "circles 1" and np.array(lines[5].split(), dtype=float) == pytest.approx([0, 0, 0, radius], abs=1e-12) and lines[6:8] == ["files 1", "0"]
+
+
+def test_a_segment_of_a_circle_has_its_area_and_centre():
+    """A half disc as a loop of arcs and a straight side, either way round: area and centre of the closed forms."""
+    angles = np.linspace(0, math.pi, 8)
+    corners = np.column_stack([np.cos(angles), np.sin(angles)]) + [3, 4]
+    hubs = np.where(np.arange(8)[:, None] < 7, [3.0, 4.0], math.nan)
+    for loop in (polygon_loop(corners, hubs), polygon_loop(corners[::-1], np.roll(hubs[::-1], -1, axis=0))):
+        assert loop.area == pytest.approx(math.pi / 2, rel=1e-12) and loop.area_centre == pytest.approx([3, 4 + 4 / (3 * math.pi)], rel=1e-12)
+        assert abs(np.linalg.norm(loop.polygon[loop.polygon[:, 1] > 4 + 1e-9] - [3, 4], axis=1) - 1).max() < 1e-12
 
 
 def test_mesh_files_that_cannot_be_used_are_named(tmp_path):

@@ -6,7 +6,7 @@ import time
 import numpy as np
 import pytest
 
-from orchestrate import approach, assembly, mesh, mirror, multibody, parameters, run, solid_file, solid_mesh, solids, tumbling
+from orchestrate import approach, assembly, curved, mesh, mirror, multibody, parameters, run, solid_file, solid_mesh, solids, tumbling
 from orchestrate.failure import BadInput
 from orchestrate.report import bodies, figures, report
 from orchestrate.scene import load
@@ -261,6 +261,70 @@ def test_files_that_cannot_be_used_are_named(files, name, words):
     assert not (files / "made").exists()              # gmsh would run a script that is called a mesh
 
 
+# ---- what is round in a file
+
+def prism(corners: int, path) -> None:
+    """A prism of radius 0.05 and height 0.08 along y in Medit's format, whose vertices but that in the middle all lie on one sphere."""
+    turn = 2 * math.pi * np.arange(corners) / corners
+    points = np.vstack([[[0, 0, 0]], *(np.column_stack([0.05 * np.cos(turn), np.full(corners, y), 0.05 * np.sin(turn)]) for y in (-0.04, 0.04))])
+    k = np.arange(corners)
+    low, high = 1 + k, 1 + corners + k
+    sides = np.vstack([np.column_stack(one) for one in ((low, high, np.roll(high, -1)), (low, np.roll(high, -1), np.roll(low, -1)))])
+    ends = np.vstack([np.column_stack([np.full(corners - 2, one[0]), one[1:-1], one[2:]]) for one in (low, high)])
+    cells = solid_mesh.right_handed(points, np.column_stack([np.zeros(4 * corners - 4, dtype=int), np.vstack([sides, ends])]))
+    faces = solid_mesh.boundary(cells)
+    solid_mesh.write(solid_mesh.SolidMesh(points, cells, faces, np.ones(len(faces), dtype=int)), np.zeros(len(cells), dtype=int), path)
+
+
+def found_in(path) -> list[tuple]:
+    """The surfaces of a file that are round: whether it is a cylinder, its radius, how many of the faces lie on it."""
+    m = solid_file.read(path)
+    return [(len(one.axis) > 0, round(one.radius, 9), len(own) / len(m.faces)) for one, own in curved.surfaces(m.points, m.faces)]
+
+
+def test_surfaces_are_round_by_the_angles_of_their_faces(tmp_path):
+    """A hexagonal prism is one, though its vertices lie on a sphere; of 24 sides it is a cylinder. A shaft with flats keeps them, a ball with a flat is no ball
+    but has the sphere's surface."""
+    prism(6, tmp_path / "6.mesh")
+    prism(24, tmp_path / "24.mesh")
+    for name, made in {"shaft": "Cylinder(1) = {0, 0, 0, 0, 0.03, 0, 0.02}; Box(2) = {-0.015, -1, -1, 0.03, 2, 2}; BooleanIntersection(3)",
+                       "dome": "Sphere(1) = {0, 0, 0, 0.05}; Box(2) = {-1, -1, -1, 2, 1.02, 2}; BooleanIntersection(3)"}.items():
+        (tmp_path / f"{name}.geo").write_text(f'SetFactory("OpenCASCADE");\n{made} = {{ Volume{{1}}; Delete; }}{{ Volume{{2}}; Delete; }};\n')
+    assert found_in(tmp_path / "6.mesh") == [] and found_in(tmp_path / "24.mesh") == [(True, 0.05, pytest.approx(48 / 92))]
+    assert [one[:2] for one in found_in(tmp_path / "shaft.geo")] == [(True, 0.02)] * 2
+    assert [one[:2] for one in found_in(tmp_path / "dome.geo")] == [(False, 0.05)]
+    one, = read({"shape": "mesh", "file": "dome.geo", "position": [0, 0.3, 0]}, folder=tmp_path).bodies
+    assert one.outline.radius is None and one.outline.extent[1] == pytest.approx(0.07, rel=5e-3)
+
+
+@pytest.mark.parametrize("corners, section, outline, warned", [
+    (6, 1.5 * math.sqrt(3) * 0.05**2, "0 faces on spheres, 0 on cylinders, 20 flat faces; 20 may touch", ""),
+    (24, math.pi * 0.05**2, "0 faces on spheres, 48 on cylinders, 44 flat faces; 92 may touch", "mass: body1 has 1.2 % more than the mesh in its file")])
+def test_the_mass_of_a_file_is_kept_or_warned_about(tmp_path, corners, section, outline, warned):
+    """The body of a file has the mass of its shape, a hexagonal prism that of one; where its sides are round the log says so, and a warning by how much that
+    is more than the file's."""
+    prism(corners, tmp_path / "prism.mesh")
+    body = {"shape": "mesh", "file": "prism.mesh", "position": [0, 0.0402, 0], "velocity": [0, -1, 0]}
+    found = run.run(read(body, obstacles=[FLOOR | {"point": [0, 0, 0]}], folder=tmp_path, end_time=4e-4), {}, tmp_path / "run", estimate=False)
+    assert found.summary["energy_initial"] == pytest.approx(section * 0.08 * 1722 / 2, rel=1e-4)
+    assert f"outline: body1: {outline}\n" in (found.folder / "log.txt").read_text()
+    assert [one[:len(warned)] for one in found.summary["warnings"] if one.startswith("mass")] == [warned] * bool(warned)
+
+
+@pytest.mark.parametrize("cells, words", [
+    ([(0, 1, 2, 3), (0, 1, 4, 5)], "it hangs together by an edge alone, from (0, 0, 0) to (0, 0, 0.1)"),
+    ([(0, 1, 2, 3), (0, 4, 5, 6)], "it hangs together by a point alone, (0, 0, 0)")])
+def test_bodies_that_hang_together_by_less_than_a_face_are_refused(tmp_path, cells, words):
+    """Two tetrahedra with an edge, or a point, in common are no body, as triangles with a point in common are none in the plane."""
+    points = 0.1 * np.array([(0, 0, 0), (0, 0, 1), (1, 0, 0), (0, 1, 0), (-1, 0, 0), (0, -1, 0), (0, 0, -1)])[:max(map(max, cells)) + 1]
+    cells = solid_mesh.right_handed(points, np.array(cells))
+    faces = solid_mesh.boundary(cells)
+    solid_mesh.write(solid_mesh.SolidMesh(points, cells, faces, np.ones(len(faces), dtype=int)), np.zeros(len(cells), dtype=int), tmp_path / "joined.mesh")
+    with pytest.raises(BadInput) as caught:
+        read({"shape": "mesh", "file": "joined.mesh"}, folder=tmp_path)
+    assert f"body.1.file: 'joined.mesh': {words}" in str(caught.value)
+
+
 # ---- symmetry
 
 @pytest.mark.parametrize("entries, top, copies", [
@@ -349,6 +413,20 @@ def test_parts_stand_for_the_whole(falls):
         assert s["impulse"] == pytest.approx(falls["full"].summary["impulse"], rel=0.01) and s["energy_drift"] < 1e-8
         assert s["rebound_vy"] == pytest.approx(falls["full"].summary["rebound_vy"], rel=0.02)
         assert s["contact_time"] == pytest.approx(falls["full"].summary["contact_time"], rel=0.06)
+
+
+def test_a_cylinder_rolls(tmp_path):
+    """Down 5 degrees, bouncing a little, a solid cylinder on a coarse mesh has v = 2/3 g sin(5 deg) t on the mean, to 2 %; friction and its moment about the axis
+    agree to 0.5 %, as normal forces on a round side pass through that."""
+    slope, end = math.radians(5), 0.06
+    pull = 9.81 * math.sin(slope)
+    body = {"shape": "cylinder", "radius": 0.05, "height": 0.05, "position": [0, 0.05, 0], "turn": [90, 0, 0], "mesh_size": 0.025, "contact_mesh_size": 0.025}
+    scene = read(body, obstacles=[FLOOR | {"point": [0, 0, 0]}], nu=0.3, end_time=end, dt=5e-4, gravity=9.81 * math.cos(slope), body_force_x=pull,
+                 contact={"friction_static": 0.5, "friction_dynamic": 0.5, "penalty": 1e8})
+    found = run.run(scene, {}, tmp_path / "roll", estimate=False)
+    t, v, spin = (found.history[name] for name in ("t", "vx", "spin"))
+    assert found.summary["energy_drift"] < 1e-8 and t @ v / (t @ t) == pytest.approx(2 / 3 * pull, rel=0.02)
+    assert t @ (v - 0.05 / 2 * spin) / (t @ t) == pytest.approx(pull, rel=0.005)
 
 
 def test_report_and_figures(falls, tmp_path):

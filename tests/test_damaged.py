@@ -1,6 +1,7 @@
 """Results that were damaged: one line that names the file, exit code 14, on every command that reads them; never a traceback, never half a table in silence."""
 
 import json
+import os
 import shutil
 
 import numpy as np
@@ -61,6 +62,18 @@ def test_a_damaged_result_is_one_line(whole, tmp_path, capsys, name):
     refused(capsys, name, "run", "disc-oblique", *SET, "--out", str(folder))
     (folder / name).write_bytes(content)
     assert program.main(["run", "disc-oblique", *SET, "--out", str(folder)]) == 0 and "finished earlier" in capsys.readouterr().out
+
+
+def test_what_is_no_result_is_one_line(whole, tmp_path, capsys):
+    """A folder that is none of a run, a pipe or a folder in the place of a file: one line at once, and no advice to delete what is not ours."""
+    assert "--force" not in refused(capsys, "summary.json", "figures", str(tmp_path)) and "delete" not in refused(capsys, "nowhere", "figures", "nowhere")
+    shutil.copytree(whole, tmp_path / "run")
+    for k, name in enumerate(FILES):
+        (tmp_path / "run" / name).unlink()
+        (tmp_path / "run" / name).mkdir() if k % 2 else os.mkfifo(tmp_path / "run" / name)
+        assert "no file" in refused(capsys, name, "figures", str(tmp_path / "run"))
+        shutil.rmtree(tmp_path / "run")
+        shutil.copytree(whole, tmp_path / "run")
 
 
 @pytest.mark.robustness

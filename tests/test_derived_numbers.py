@@ -89,7 +89,7 @@ def test_a_corner_has_the_normal_of_its_contact(tmp_path):
 
 def test_a_body_at_rest_has_no_restitution(tmp_path):
     """A square that lies on the floor, pressed by its weight, approaches with round-off, and never leaves."""
-    rows, found = of(tmp_path, SQUARE.format(angle=0, y=0.05, v=-1e-13) + FLOOR, {"gravity": 9.81, "end_time": 0.01})
+    rows, found = of(tmp_path, SQUARE.format(angle=0, y=0.05, v=-1e-13) + FLOOR, {"gravity": 9.81, "end_time": 0.01, "body.1.contact_mesh_size": 0.01})
     assert len(rows) == 1 and rows.loc[0, [*ABOUT_AN_IMPACT, "restitution_poisson", "restitution_energetic", "separation", "angle_in"]].isna().all()
     assert all(found.summary[name] is None for name in (*ABOUT_AN_IMPACT, "angle_in")) and found.summary["impulse_ratio"] == 0
 

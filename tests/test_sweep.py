@@ -411,3 +411,11 @@ def test_a_refused_point_keeps_no_other(fake, tmp_path, capsys):
     assert list(rows.exit) == [10, 0] and rows.contact_time.notna().tolist() == [False, True]
     assert "first: angle=60.0,symmetry=half: symmetry: half" in said.err and said.err.count("\n") == 1 and "failed, exit 10: angle=60.0,symmetry=half" in said.out
     assert main(["sweep", str(write(tmp_path, 'scene = "two.toml"\n[product]\n"body.1.position.1" = [0.05, 0.06]\n')), "--list"]) == 10   # none is left
+
+
+@pytest.mark.parametrize("name", sweep.built_in())
+def test_the_sweeps_of_the_paper_say_all_that_they_set(name):
+    """No point of a built-in sweep leaves open what its scene fixes: an axis over the static coefficient has the dynamic one beside it."""
+    wanted = sweep.load(name)
+    given = sweep.scene.load(wanted.scene)
+    assert not {said for point in wanted.points for said in given.override(wanted.base | point).released}

@@ -18,7 +18,9 @@ from matplotlib.tri import LinearTriInterpolator, Triangulation
 from PIL import Image
 
 from .. import dimension, vtu
+from ..failure import Unreadable
 from ..parameters import Value
+from ..places import COMMAND
 from ..results import Contents, check_files, read_history, read_json, read_scene
 
 LAWS = {"svk": "St. Venant–Kirchhoff", "neohookean": "neo-Hookean", "incompressible": "incompressible neo-Hookean"}
@@ -44,6 +46,8 @@ def draw(folder: Path, warnings: list[str]) -> list[Path]:
     check_files(folder)
     history, scene = read_history(folder), read_scene(folder)
     scene["touched"] = touched(read_json(folder / "summary.json"))
+    if scene["script"] in dimension.SCRIPTS and "body" not in scene:
+        raise Unreadable(f"{folder}: of a run without Python, which keeps neither names of bodies nor obstacles (accepted: a folder of {COMMAND} run)")
     snapshots = vtu.series(folder / "fields.pvd")
     target = folder / "figures"
     target.mkdir(exist_ok=True)
