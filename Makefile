@@ -82,7 +82,7 @@ test: $(READY) ## run all tests: the program's, and beside them on the other cor
 	$(PYTHON) -m pytest -q tests $(ARGS); code=$$?; wait $$beside || code=$$?; cat $$log; exit $$code
 
 robustness: $(READY) ## malformed input, kills, hard runs drawn at random, and every combination of hard parameters: nothing is silently wrong, lost or left behind
-	@$(PYTHON) -m pytest -q -m "robustness or not robustness" tests/test_malformed.py tests/test_direct.py tests/test_kills.py tests/test_damaged.py tests/test_package.py
+	@$(PYTHON) -m pytest -q -m "robustness or not robustness" tests/test_malformed.py tests/test_checkpoint.py tests/test_direct.py tests/test_kills.py tests/test_damaged.py tests/test_package.py
 	@$(PYTHON) -m orchestrate promise --hard --scenes 200 --seed 201 --out results/robustness --page docs/robustness.md $(ARGS)
 	@$(PYTHON) -m orchestrate promise --hard --of disc-block --scenes 20 --seed 202 --out results/robustness-block --page docs/robustness-block.md $(ARGS)
 	@$(PYTHON) -m orchestrate promise --hard --of ball-axisymmetric --scenes 20 --seed 203 --out results/robustness-ball --page docs/robustness-ball.md $(ARGS)

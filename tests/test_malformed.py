@@ -89,16 +89,18 @@ def in_a_scene(capsys, words: str, text: str | bytes, code: int = 10) -> None:
 # ---- values, over all three routes
 
 VALUES = [("speed", text) for text in NO_NUMBERS] + RANGES + WORDS
+# By flag all of them, which one parser refuses; that the other routes lead to it a fifth of them shows.
+SOME = [value if k % 5 == 0 else pytest.param(*value, marks=pytest.mark.robustness) for k, value in enumerate(VALUES)]
 
 
-@pytest.mark.parametrize("name, value", VALUES)
+@pytest.mark.parametrize("name, value", SOME)
 def test_value_given_to_python(capsys, name, value):
     """A value that is not accepted, by --set."""
     by_python(capsys, f"{name}: ", "run", "disc-normal", "--set", f"{name}={value}", "--out", "a/out") if value.strip() == value else \
         by_python(capsys, f"{name}: |--set: ", "run", "disc-normal", "--set", f"{name}=?{value}", "--out", "a/out")
 
 
-@pytest.mark.parametrize("name, value", VALUES)
+@pytest.mark.parametrize("name, value", SOME)
 def test_value_in_a_scene(capsys, name, value):
     """A value that is not accepted, in a scene file, as text and, where TOML takes it so, as it is."""
     in_a_scene(capsys, f"scene.toml: {name}: ", f"{name} = {toml(value)}\n")

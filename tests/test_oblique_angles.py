@@ -68,10 +68,10 @@ def test_what_theory_says_agrees():
 
 @pytest.mark.parametrize("body, kind, angle, share, verdict", [
     ("disc", "stiff", SLIDES, 0.94, "DEVIATES"), ("disc", "stiff", SLIDES, 0.96, "agrees"), ("disc", "stiff", STICKS, 1.06, "DEVIATES"),
-    ("ball", "stiff", STICKS, 1.06, "DEVIATES"), ("ball", "slow", SLIDES, 1.06, "DEVIATES"), ("ball", "slow", STICKS, 1.1, "agrees"),
+    ("ball", "stiff", STICKS, 1.06, "DEVIATES"), ("ball", "slow", SLIDES, 1.06, "DEVIATES"), ("ball", "slow", STICKS, 1.04, "agrees"), ("ball", "slow", STICKS, 1.1, "partly"),
     ("ball", "slow", STICKS, 1.4, "DEVIATES"), ("disc", "slow", SLIDES, 0.9, "DEVIATES"), ("disc", "slow", STICKS, 2.0, ""), ("ball", "paper", STICKS, 2.0, "")])
 def test_a_changed_slip_is_judged(body, kind, angle, share, verdict):
-    """Where `share` of the slip that theory says is lost the run deviates beyond what is asked of it, and only where something is."""
+    """Where `share` of the slip that theory says is lost the run deviates beyond what is asked of it, and only where something is; beyond 5 % it agrees partly at best."""
     table = rows()
     here = (table.body == body) & (table.kind == kind) & (table.angle == angle)
     table.loc[here, "psi_2"] = table.psi_1 - share * (table.psi_1 - table.psi_2)

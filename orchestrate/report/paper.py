@@ -6,6 +6,7 @@ its last digit.
 """
 
 import argparse
+from collections.abc import Iterable
 from pathlib import Path
 
 from .. import scene, verify
@@ -84,6 +85,6 @@ def _others(results: judging.Results) -> list[str]:
     return [name for name, found in there.items() if not found]
 
 
-def _holds(runs: list[tuple[Path, scene.Scene]]) -> bool:
+def _holds(runs: Iterable[tuple[Path, scene.Scene]]) -> bool:
     """Whether every folder holds the outcome of its scene, by the present code."""
     return all(study.there(folder, wanted) for folder, wanted in runs)

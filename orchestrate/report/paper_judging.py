@@ -80,15 +80,15 @@ class Results:
 
     def table(self, name: str) -> pd.DataFrame:
         """The points of a sweep, from its runs."""
-        return sweep.table(_sweep(name), self.sweep(name))
+        return sweep.table(loaded(name), self.sweep(name))
 
     def sweep_runs(self, name: str) -> list[Path]:
         """The folders of the runs of a sweep."""
-        return [study.place(self.sweep(name), point) for point in _sweep(name).runs]
+        return [study.place(self.sweep(name), point) for point in loaded(name).runs]
 
     def pair(self, name: str, **values) -> list[Path]:
         """The runs of the point of a sweep with these values: plain and, where the sweep refines, refined."""
-        wanted = _sweep(name)
+        wanted = loaded(name)
         point = next(point for point in wanted.points if values.items() <= point.items())
         return [study.place(self.sweep(name), point | more) for more in ([{}, wanted.refine] if wanted.refine else [{}])]
 
@@ -114,7 +114,8 @@ class Results:
 
 
 @cache
-def _sweep(name: str) -> sweep.Sweep:
+def loaded(name: str) -> sweep.Sweep:
+    """A built-in sweep."""
     return sweep.load(name)
 
 

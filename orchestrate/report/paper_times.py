@@ -10,9 +10,9 @@ from itertools import combinations, product
 import numpy as np
 import pandas as pd
 
-from ..sweeps import sweep, sweep_figures
+from ..sweeps import sweep_figures
 from .paper_bodies import BALL, BALL_NEO, DISC, DISC_NEO
-from .paper_judging import AGREES, DIFFERS, PARTLY, Finding, Results, bar, both_times, finished, of_both, states, when
+from .paper_judging import AGREES, DIFFERS, PARTLY, Finding, Results, bar, both_times, finished, loaded, of_both, states, when
 
 DISC_MAP, OBLIQUE_MAP, BALL_MAP, SOLID_MAP = "calibrate", "calibrate-oblique", "calibrate-ball", "calibrate-ball-3d"
 MAPS = {"disc": (DISC_MAP,), "oblique disc": (OBLIQUE_MAP,), "ball": (BALL_MAP, SOLID_MAP)}   # of each number of the paper
@@ -37,7 +37,7 @@ def oblique_time(results: Results) -> Finding:
 @states("Section 3.3", "the 2D disc at 8 m/s: contact time 0.0048 s")
 def disc_time(results: Results) -> Finding:
     """Agrees where some (ν, k) of the map, with ellipticity kept, meet it with SVK: the paper states neither."""
-    rows, given = finished(results, DISC_MAP), sweep.load(DISC_MAP).figure
+    rows, given = finished(results, DISC_MAP), loaded(DISC_MAP).figure
     rows = rows[(rows.law == "svk") & rows.ellipticity_lost_time.isna()]
     met, above = ({nu: ranges for nu, ranges in sweep_figures.level_set(given | {"colour": name}, rows).items() if ranges} for name in ("contact_time", "thresholded_contact_time"))
     return Finding(AGREES if met else DIFFERS, f"with SVK met for {_each(met) or 'no ν and k'} [Pa/m] (the time above 1 % of the peak force for "
@@ -63,7 +63,7 @@ def ball_time_3d(results: Results) -> Finding:
 
 def _over_meshes(results: Results, name: str, every: pd.DataFrame, beside: str, figures: list, runs: list) -> Finding:
     """A printed time over a map on several meshes, from the rows `every` of it, by the rule of ball_time()."""
-    rows, meshes, time = every[every.exit == 0], every.mesh_size.unique(), sweep.load(name).figure["level"]
+    rows, meshes, time = every[every.exit == 0], every.mesh_size.unique(), loaded(name).figure["level"]
     whole = _whole(rows)
     met, sound = _met(whole, name), _met(whole[whole.ellipticity_lost_time.isna()], name)
     independent = [nu for nu in rows.nu.unique() if _together([sound.get((h, nu), []) for h in meshes])]
@@ -84,7 +84,7 @@ def _whole(rows: pd.DataFrame) -> pd.DataFrame:
 
 def _met(rows: pd.DataFrame, name: str) -> dict[tuple[float, float], Ranges]:
     """For each (mesh size, ν) of a map that meets the paper's contact time, the ranges of k that do."""
-    figure = sweep.load(name).figure
+    figure = loaded(name).figure
     return {(h, nu): ranges for h, group in rows.groupby("mesh_size", sort=False) for nu, ranges in sweep_figures.level_set(figure, group).items() if ranges}
 
 
@@ -172,7 +172,7 @@ def _common(one: dict[float, Ranges], other: dict[float, Ranges]) -> dict[float,
 
 def _miss(name: str, low: np.ndarray, high: np.ndarray) -> np.ndarray:
     """By what share of it the paper's time, known to half a unit of its last digit, is outside of what lies from low to high; 0 inside."""
-    figure = sweep.load(MAPS[name][0]).figure
+    figure = loaded(MAPS[name][0]).figure
     return np.maximum(0, np.maximum(low - figure["level"], figure["level"] - high) - figure["band"]) / figure["level"]
 
 

@@ -155,8 +155,10 @@ def _unit(name: str, per: str = "/m") -> str:
 
 def _value(name: str, value) -> str:
     """A value of a parameter in words, with its unit."""
-    if isinstance(value, str):
+    if isinstance(value, str) and value != "auto":
         return LAWS.get(value, value)
+    if value == "auto":
+        return f"{WORDS.get(name, name.replace('_', ' '))} auto"
     unit = parameter.unit if (parameter := _parameter(name)) else "-"
     return f"{WORDS.get(name, name.replace('_', ' '))} = {value:g}" + f" {unit}" * (unit != "-")
 
