@@ -84,6 +84,7 @@ def _rebound(scene: Multibody, one: Meeting) -> Multibody | None:
     point = min((shape.points[other.gap(shape.points).argmin()] for shape, other in (one.outlines, one.outlines[::-1]) if isinstance(shape, Outline)),
                 key=lambda at: max(abs(shape.gap(at[None])[0]) for shape in one.outlines))
     fall = _fall(scene) * one.time
+    moves = scene.obstacles[-1 - one.second].velocity if one.second < 0 else np.zeros(len(n))    # of the obstacle, which stays where it is
     hit, yields, closing = [], 0.0, 0.0
     for sign, k in ((1, one.first), (-1, one.second)):
         if k < 0:
@@ -103,7 +104,7 @@ def _rebound(scene: Multibody, one: Meeting) -> Multibody | None:
     for sign, k, shape, lever, mass in hit:
         body, push = bodies[k], sign * (1 + RESTITUTION) * closing / yields / mass
         velocity, spin = body.velocity + fall + push * n, body.spin + push * lever / shape.gyration
-        bodies[k] = replace(body, position=shape.area_centre + velocity * soon, angle=body.angle + body.spin * one.time + spin * soon, velocity=velocity, spin=spin)
+        bodies[k] = replace(body, position=shape.area_centre + (velocity - moves) * soon, angle=body.angle + body.spin * one.time + spin * soon, velocity=velocity, spin=spin)
     still = {name: 0.0 for name in ("gravity", "body_force_x", "body_force_y") if name in scene.values}
     return replace(scene, bodies=bodies, values=scene.values | still)
 

@@ -19,13 +19,14 @@ from .bodies import MATERIAL, Body
 from .describe import describe
 from .dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID
 from .failure import BadInput
-from .mesh import AXIS, FREE, GROWTH, ROUND, Sizes, nearest
+from .mesh import AXIS, FREE, GROWTH, Sizes, nearest
 from .mirror import COPIES, FOLDED, copies
 from .multibody import OWN, Multibody, Pair
 from .outlines import Loop
 from .parameters import Value
 
 NEVER = 3                    # the label of what nothing reaches
+ROUND = 0.5                  # largest element size on a circle or ellipse, over its smaller semi-axis
 SAMPLED = 0.25               # a step between points at which an element size is asked for, over that size
 LIKE = ("radius", "young", "nu", "density", "speed", "angle", "spin")
 NARROW = 0.6                 # of the contact of a disc on a plane: where less of an outline is near, elements are smaller; of two equal discs it is 0.71

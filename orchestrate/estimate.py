@@ -7,8 +7,9 @@ of the two runs on their way: of the running impulse, the velocities, the elasti
     BOUND D^(1/3) d^(2/3),   d: the largest difference of its course over its scale; D: the mean of the promised answers' differences over their usual ones,
 and no less than their difference: an error that 95 of 100 runs keep (docs/promise.md; BOUND is calibrated on other scenes), and so some three
 times the usual one. It is that of mesh and steps: penalty and slip velocity are the same in all runs. Where that of a promised answer is
-more than WORTH times what is asked finer runs follow. Where the contact time alone is off and a finer run has not halved its estimate it scatters with the vibration at the last touch (by 0.8 % rms in
-hard impacts, on any mesh and at any step that was tried): no finer run follows, and the estimate says by how much.
+more than WORTH times what is asked finer runs follow. Where the contact time alone is off and a finer run has not halved its estimate it scatters
+with the vibration at the last touch (by 0.8 % rms in hard impacts, on any mesh and at any step that was tried): no finer run follows, and the
+estimate says by how much.
 """
 
 import math
@@ -53,8 +54,7 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
     it could not be estimated), estimated_error_excludes (what all runs have alike), estimate_cpu_seconds, refinements, and the sentences `warnings`.
 
     Where sizes and steps follow from the accuracy and the estimate is above it, finer runs take the run's place in `stage`.
-    `read` gives the Answers of a folder, `scaled` the entries of the scene with larger or smaller
-    elements and steps (left out: other).
+    `read` gives the Answers of a folder, `scaled` the entries of the scene with larger or smaller elements and steps (left out: other).
     """
     scaled = scaled or other
     coarser, finer = stage / "coarser", stage / "finer"

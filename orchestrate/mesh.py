@@ -24,19 +24,20 @@ from .places import INSTALLED
 FREE, AXIS = 1, 2          # boundary labels
 LIBRARIES = "apt-get install libglu1-mesa libxcursor1 libxft2 libxinerama1 libgomp1"   # that gmsh's wheel needs, with what they need
 GROWTH = 0.3               # element size gained per length of distance from the contact arc
-ROUND = 0.5                # largest element size on a circle or ellipse, over its smaller semi-axis: an edge spans at most 30 degrees
+OWN = 360                  # the region of the triangles of our own discs, whose outline is a circle however long its edges are (edp/core/input/mesh-file.idp)
 
 
 @dataclass(frozen=True)
 class Mesh:
     """points (n, 2) in m, triangles (t, 3) counter-clockwise, edges (e, 2) of the boundary, their labels (e,); `hubs` (e, 2) are the centres of the
-    circles that the edges of a file lie on, nan of straight ones."""
+    circles that the edges of a file lie on, nan of straight ones; `region` is that of all triangles."""
 
     points: np.ndarray
     triangles: np.ndarray
     edges: np.ndarray
     labels: np.ndarray
     hubs: np.ndarray | None = None
+    region: int = 0
 
     def moved(self, by: np.ndarray) -> "Mesh":
         """The same mesh, `by` [m] elsewhere."""
@@ -87,7 +88,7 @@ def disc(radius: float, mesh_size: float, contact_mesh_size: float, half: bool, 
         gmsh.model.geo.addPlaneSurface([gmsh.model.geo.addCurveLoop(arcs + axis)])
         gmsh.model.geo.synchronize()
         contact_arcs = arcs[:1] if half else [arcs[0], arcs[-1]]
-        _grade(gmsh.model.mesh.field, contact_arcs, arcs, mesh_size * unit, contact_mesh_size * unit, contact_arc)
+        _grade(gmsh.model.mesh.field, contact_arcs, mesh_size * unit, contact_mesh_size * unit, contact_arc)
         gmsh.model.mesh.generate(2)
         tags, coordinates, _ = gmsh.model.mesh.getNodes()
         _, triangle_tags = gmsh.model.mesh.getElementsByType(2)
@@ -106,7 +107,7 @@ def disc(radius: float, mesh_size: float, contact_mesh_size: float, half: bool, 
     points[circle] /= np.linalg.norm(points[circle], axis=1, keepdims=True)
     points[np.unique(edges[labels == AXIS]), 0] = 0.0
     points = radius * (points + (0.0, 1.0))
-    return Mesh(points, counter_clockwise(points, triangles.reshape(-1, 3)), edges, labels)
+    return Mesh(points, counter_clockwise(points, triangles.reshape(-1, 3)), edges, labels, region=OWN)
 
 
 @cache
@@ -154,21 +155,14 @@ def _outline(geo, half: bool, contact_arc: float) -> tuple[list[int], list[int]]
     return arcs, [geo.addLine(top, bottom)] if half else []
 
 
-def _grade(field, contact_arcs: list[int], arcs: list[int], bulk: float, contact: float, contact_arc: float) -> None:
-    """Element size `contact` on the contact arcs, growing linearly with the distance from them up to `bulk`, on all arcs to ROUND."""
+def _grade(field, contact_arcs: list[int], bulk: float, contact: float, contact_arc: float) -> None:
+    """Element size `contact` on the arcs, growing linearly with the distance from them up to `bulk`."""
     distance, size = field.add("Distance"), field.add("Threshold")
     field.setNumbers(distance, "CurvesList", contact_arcs)
     field.setNumber(distance, "Sampling", math.ceil(2 * contact_arc / contact))
     for name, value in dict(InField=distance, SizeMin=contact, SizeMax=bulk, DistMin=0,
                             DistMax=max(bulk - contact, 1e-9) / GROWTH).items():
         field.setNumber(size, name, value)
-    if bulk > ROUND:
-        round_, on_arcs, whole = field.add("MathEval"), field.add("Restrict"), size
-        field.setString(round_, "F", f"{ROUND}")
-        field.setNumber(on_arcs, "InField", round_)
-        field.setNumbers(on_arcs, "CurvesList", arcs)
-        size = field.add("Min")
-        field.setNumbers(size, "FieldsList", [whole, on_arcs])
     field.setAsBackgroundMesh(size)
 
 
@@ -187,7 +181,7 @@ def write(mesh: Mesh, path: Path) -> None:
     with open(path, "w") as file:
         file.write(f"{len(mesh.points)} {len(mesh.triangles)} {len(mesh.edges)}\n")
         file.writelines(f"{x:.17g} {y:.17g} {label}\n" for (x, y), label in zip(mesh.points, point_labels))
-        file.writelines(f"{a} {b} {c} 0\n" for a, b, c in mesh.triangles + 1)
+        file.writelines(f"{a} {b} {c} {mesh.region}\n" for a, b, c in mesh.triangles + 1)
         file.writelines(f"{a} {b} {label}\n" for (a, b), label in zip(mesh.edges + 1, mesh.labels))
 
 

@@ -18,6 +18,7 @@ import hashlib
 import itertools
 import re
 import tomllib
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -314,17 +315,22 @@ def release(given: dict, names: list[str]) -> tuple[str, ...]:
     """Takes out of the tables of a file what FOLLOWS says that the entries `names`, which were set, leave open; the sentences about it. What is of one table
     (coefficients of friction, sizes of a body) follows what is set there, penalty and step whatever body it is of."""
     places = [_table_of(name) for name in names]
-    tables = {"": given, "contact": given.get("contact", {})}
-    for key, listed_in in (("body", given), ("obstacle", given), ("contact.pair", tables["contact"])):
-        tables |= {f"{key}.{k}": one for k, one in enumerate(listed_in.get(key.rpartition(".")[2], []), 1)}
     said = []
-    for path, table in tables.items():
+    for path, table in list(_tables(given)):
         for key in [key for key in parameters.FOLLOWS if key in table and (path, key) not in places]:
             causes = parameters.FOLLOWS[key] + (SHAPE if "radius" in parameters.FOLLOWS[key] else ())
             found = [name for name, (where, entry) in zip(names, places) if entry in causes and (where == path or key in EVERYWHERE)]
             if found and table[key] not in ("auto", 0):
                 said.append(parameters.release(f"{path}.{key}".lstrip("."), table.pop(key), found))
     return tuple(said)
+
+
+def _tables(value, path: str = "") -> Iterator[tuple[str, dict]]:
+    """All tables in a table or a list, with their dotted names."""
+    if isinstance(value, dict):
+        yield path, value
+    for key, one in value.items() if isinstance(value, dict) else enumerate(value, 1) if isinstance(value, list) else ():
+        yield from _tables(one, f"{path}.{key}".lstrip("."))
 
 
 def _table_of(name: str) -> tuple[str, str]:

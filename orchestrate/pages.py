@@ -85,7 +85,8 @@ def warnings() -> str:
             sentence = _literal(call[1])
             rows.setdefault(sentence.partition(":")[0], []).append(sentence.partition(": ")[2])
     found = "".join(f"| {name} | {cell(' / '.join(dict.fromkeys(words)))} |\n" for name, words in sorted(rows.items()) if words != [""])
-    return WARNINGS + found + ("| estimated errors | of an answer above what was asked, of the exact contact time and the peak force above twice that (`orchestrate/estimate.py`) |\n")
+    return WARNINGS + found + ("| estimated errors | of an answer above what was asked, of the exact contact time and the peak force above twice that (`orchestrate/estimate.py`) |\n"
+                                "| touches | instead of these, where the two runs of an estimate saw different numbers of intervals of contact |\n")
 
 
 def _literal(expression: str) -> str:

@@ -1,7 +1,7 @@
 """How a free rigid body turns: Euler's equations, its angular momentum L constant in space, dR/dt = w x R with w = R J^-1 R^T L."""
 
 import math
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -46,13 +46,26 @@ def _principal(moments: np.ndarray, start: np.ndarray, spin: np.ndarray) -> bool
 
 
 class _Motion:
-    """The matrices at multiples of a step, as far as they were asked for."""
+    """The matrices at multiples of a step of a period, as far as they were asked for. After a period the spin is the same to the body again, which has turned
+    as a whole about its angular momentum."""
 
     def __init__(self, moments: np.ndarray, start: np.ndarray, spin: np.ndarray):
         self.inverse, self.momentum, self.found = np.linalg.inv(moments), start @ moments @ start.T @ spin, [start]
-        self.step = STEP / fastest(moments, start, spin)
+        self.step, self.period = STEP / fastest(moments, start, spin), _period(moments, self.momentum, spin)
 
     def at(self, t: float) -> np.ndarray:
+        periods = int(t / self.period)
+        turned_by = rotation(periods * self._turn) if periods else np.eye(3)
+        return turned_by @ self._within(t - periods * self.period)
+
+    @cached_property
+    def _turn(self) -> np.ndarray:
+        """The rotation vector of a period."""
+        axis, once = self.momentum / np.linalg.norm(self.momentum), self._within(self.period) @ self.found[0].T
+        sine = axis @ [once[2, 1] - once[1, 2], once[0, 2] - once[2, 0], once[1, 0] - once[0, 1]] / 2
+        return math.atan2(sine, (np.trace(once) - 1) / 2) * axis
+
+    def _within(self, t: float) -> np.ndarray:
         whole = int(t / self.step)
         while len(self.found) <= whole:
             self.found.append(self._next(self.found[-1], self.step))
@@ -68,6 +81,18 @@ class _Motion:
 
     def _rate(self, R: np.ndarray) -> np.ndarray:
         return _cross(R @ self.inverse @ R.T @ self.momentum) @ R
+
+
+def _period(moments: np.ndarray, momentum: np.ndarray, spin: np.ndarray) -> float:
+    """Seconds, 4 K(m) / p, of Jacobi's functions (Landau and Lifshitz, Mechanics, 37), K by the arithmetic-geometric mean."""
+    (least, middle, most), square, energy = np.linalg.eigvalsh(moments), momentum @ momentum, spin @ momentum
+    if square < energy * middle:
+        least, most = most, least
+    rate = (most - middle) * (square - energy * least)
+    a, b = 1.0, math.sqrt(max(1e-30, 1 - (middle - least) * (energy * most - square) / rate))
+    for _ in range(8):
+        a, b = (a + b) / 2, math.sqrt(a * b)
+    return 2 * math.pi / a * math.sqrt(most * middle * least / rate)
 
 
 @lru_cache(maxsize=64)

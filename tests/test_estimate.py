@@ -219,3 +219,10 @@ def test_the_same_steps_are_no_estimate(tmp_path):
         return told(folder)._replace(summary=told(folder).summary | {"dofs": 260, "steps": 4})
     found = estimate.settle(tmp_path, disc.values, True, disc.solve, read)
     assert found["estimated_error"] is None and "a second run took the same ones" in found["warnings"][0]
+
+
+def test_runs_that_saw_different_touches_say_so():
+    """Where the runs of a pair have different numbers of intervals of contact a warning says that, and how many; where they have the same nothing does."""
+    told, = estimate.touches({"contact_intervals": 3}, {"contact_intervals": 2})
+    assert told.startswith("touches: the run has 3 intervals of contact, one with 1.4 times larger elements and steps 2")
+    assert not estimate.touches({"contact_intervals": 3}, {"contact_intervals": 3})

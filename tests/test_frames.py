@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from orchestrate import approach, scene
+from orchestrate import scene
 from orchestrate.multibody import read
 from orchestrate.run import run
 

@@ -98,14 +98,14 @@ def test_lost_ellipticity_is_a_warning(block):
 
 # ---- a file of one's own
 
-def test_the_folder_of_a_scene_of_ones_own(mine):
+def test_the_folder_of_a_scene_of_ones_own(mine, tmp_path):
     """Mesh, data file, scene as used, with the mesh's checksum: read again they are the same scene, which is not run again."""
     found, path = mine
     s = found.summary
     assert {"mesh.msh", "scene.dat", "scene.toml", "history.csv", "summary.json", "fields.pvd"} <= {each.name for each in found.folder.iterdir()}
     assert s["provenance"]["mesh"] == run._sha256(found.folder / "mesh.msh") and s["provenance"]["gmsh"]
-    again = assembly.assemble(scene.load(str(found.folder / "scene.toml")))
-    assert again.data == (found.folder / "scene.dat").read_text()
+    scene.load(str(found.folder / "scene.toml")).prepare(tmp_path)
+    assert (tmp_path / "scene.dat").read_text() == (found.folder / "scene.dat").read_text()
     assert run.run(scene.load(str(path)), {}, found.folder).reused
     assert not run.reusable(scene.load(str(path)).override({"body.2.young": 5e6}), found.folder)
     assert s["rebound_vx_2"] != 0 and s["energy_drift"] < 1e-8 and s["estimated_error"] is not None
@@ -425,3 +425,16 @@ def test_a_sweep_over_friction_sets_both(tmp_path):
         (tmp_path / "friction.toml").write_text(f'scene = "disc-oblique"\n{more}[product]\nfriction_static = [0.7, 0.3]\n')
         found = sweep.load(str(tmp_path / "friction.toml"))
         assert [scene.load(found.scene).override(found.base | point).description()["used"]["friction_dynamic"] for point in found.points] == wanted
+
+
+def test_nonsense_that_is_set_is_refused_in_words():
+    """Whatever stands in the place of a table or an entry, beside entries that others follow: accepted, or BadInput; nothing else."""
+    bowl, refused = scene.load("disc-bowl"), 0
+    for name in ("body", "body.1", "obstacle", "obstacle.1", "contact", "contact.pair", "body.1.radius", "contact.penalty", "dt", "contact.friction_dynamic"):
+        for text in ("3", "x", "[3]", "[]", "{}", "[{}]", "{pair = 3}", "{pair = [3]}", "{penalty = {a = 1}}", "true", "1979-05-27", "[[[1]]]", "nan"):
+            try:
+                bowl.override({name: text, "young": 3e6, "contact.exponent" if name != "contact" else "gravity": 2, "contact.friction_static" if name != "contact" else "density": 0.1})
+            except BadInput as error:
+                refused += 1
+                assert len(str(error)) < 800
+    assert refused > 100

@@ -4,7 +4,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 
 from .paper_judging import AGREES, CONSTANT, DIFFERS, PARTLY, Finding, History, Results, both_times, finished, of_both, states, total, when
 

@@ -1,0 +1,158 @@
+"""Free flights of rigid bodies, whatever their length, to the first touch, and the end of a run: when they meet nothing any more."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from orchestrate import approach, multibody, run, scene
+from orchestrate.failure import BadInput
+
+RUBBER = {"young": 7e6, "nu": 0.3, "density": 1722, "law": "neohookean", "accuracy": 0.1}
+STEEL = RUBBER | {"young": 2e11, "density": 7800}
+DISC = {"shape": "disc", "radius": 0.05}
+FLOOR = {"kind": "plane", "point": [0, 0], "normal": [0, 1]}
+ROOM = {"kind": "polyline", "vertices": [[-1, 0], [3, 0], [3, 1]]}
+
+
+def read(*bodies: dict, obstacles: tuple = (), **more) -> multibody.Multibody:
+    return multibody.read(RUBBER | more | {"body": [*bodies], "obstacle": [*obstacles]}, Path("."), "flights")
+
+
+def go(tmp_path: Path, given: multibody.Multibody | scene.Scene, values: dict | None = None) -> tuple[pd.DataFrame, run.RunResult]:
+    found = run.run(given, values or {}, tmp_path / "out", estimate=False)
+    return pd.read_csv(found.folder / "contacts.csv"), found
+
+
+# ---- first touch, by closed forms
+
+FALL = math.sqrt(2 * (30 - 0.05) / 9.81)
+TURNS = 2 * math.pi * 100 + math.pi / 4 - math.radians(10)       # [rad] until the corner of a square is lowest
+TOUCHES = {
+    "two discs, 6 m apart": (read(DISC | {"position": [-3, 0], "velocity": [1, 0]}, DISC | {"position": [3, 0]}), 5.9),
+    "30 m above the floor": (read(DISC | {"position": [0, 30]}, obstacles=(FLOOR,), gravity=9.81), FALL),
+    "thrown up": (read(DISC | {"position": [0, 1], "velocity": [0, 100]}, obstacles=(FLOOR,), gravity=9.81), (100 + math.sqrt(1e4 + 2 * 9.81 * 0.95)) / 9.81),
+    "up, away from a post, and back": (read(DISC | {"position": [0, 1], "velocity": [0, 20]}, gravity=10.0,
+                                            obstacles=({"kind": "circle", "centre": [0, 0], "radius": 0.1},)), (20 + math.sqrt(400 + 20 * 0.85)) / 10),
+    "along the floor to a wall": (read(DISC | {"position": [0, 0.5], "velocity": [1e-3, 0]}, obstacles=(ROOM,)), 2950.0),
+    "across a bowl": (read(DISC | {"position": [0, 0], "velocity": [1e-3, 0]}, obstacles=({"kind": "bowl", "centre": [0, 0], "radius": 10},)), 9950.0),
+    "a hundred turns": (read({"shape": "rectangle", "width": 0.1, "height": 0.1, "angle": 10, "position": [0, 1 + math.sqrt(0.005)],
+                              "velocity": [0, -1], "spin": TURNS}, obstacles=(FLOOR,)), 1.0),
+}
+
+
+@pytest.mark.parametrize("case", TOUCHES)
+def test_the_first_touch_is_that_of_the_closed_form(case):
+    """Whatever the length of a flight, its end is known to 1e-9 of it; of corners that pass as near as round-off, to the root of that."""
+    given, expected = TOUCHES[case]
+    first = approach.meetings(given)[0]
+    assert first.time == pytest.approx(expected, rel=1e-4 if "turns" in case else 1e-9) and not first.never
+
+
+MISSES = {
+    "discs that pass": read(DISC | {"position": [-100, 0.101], "velocity": [1, 0], "spin": 50}, DISC | {"position": [100, 0]}),
+    "discs that part": read(DISC | {"position": [-1, 0], "velocity": [-1, 0]}, DISC | {"position": [1, 0]}),
+    "falls beside a post": read(DISC | {"position": [0.2, 1], "velocity": [0, 30]}, gravity=9.81, obstacles=({"kind": "circle", "centre": [0, 0], "radius": 0.1},)),
+    "along the floor": read(DISC | {"position": [0, 0.06], "velocity": [1, 0]}, obstacles=(FLOOR,)),
+}
+
+
+@pytest.mark.parametrize("case", MISSES)
+def test_what_misses_never_touches(case):
+    """Bodies that pass each other by a millimetre are said to miss, those alone."""
+    assert [one.never for one in approach.meetings(MISSES[case])] == [True]
+
+
+LONG = {"two discs": (read(DISC | {"position": [-3, 0], "velocity": [1, 0]}, DISC | {"position": [3, 0]}), {}, 5.9),
+        "disc, 30 m": (scene.load("disc-normal"), STEEL | {"height": 30, "speed": 0, "gravity": 9.81, "penalty": "auto"}, math.sqrt(60 / 9.81))}
+
+
+@pytest.mark.parametrize("case", LONG)
+def test_long_flights_end_at_the_touch(tmp_path, case):
+    """After a flight of more than a million transits, or of sixty diameters, a body bounces: the first contact point touches when the closed form says
+    (to the curvature between points, 1e-6)."""
+    given, values, expected = LONG[case]
+    rows, found = go(tmp_path, given, values)
+    assert rows.start[0] == pytest.approx(expected, rel=2e-6) and found.history["t"][1] <= rows.start[0]
+    assert found.summary["contact_time"] < 0.01 * expected and rows.restitution[0] > 0.9
+
+
+def test_a_steel_bead_bounces(tmp_path):
+    """A bead of 1 mm dropped 1 m is in contact for Hertz' time, with an end_time and without."""
+    bead = STEEL | {"radius": 5e-4, "height": 1, "speed": 0, "gravity": 9.81, "penalty": "auto", "accuracy": 0.02}
+    stiff, speed, mass = 2e11 / (1 - 0.3**2), math.sqrt(2 * 9.81), 7800 * 4 / 3 * math.pi * 5e-4**3
+    for more in ({"end_time": 0.45153}, {}):
+        _, found = go(tmp_path / str(len(more)), scene.load("ball-axisymmetric"), bead | more)
+        assert found.summary["contact_time"] == pytest.approx(2.868 * (mass**2 / (5e-4 * stiff**2 * speed))**0.2, rel=0.025)      # a finite ball's is 2 % less
+        assert found.summary["rebound_vy"] == pytest.approx(speed, rel=0.01)
+    assert any(one.startswith("falls back") and "t = 1.35" in one for one in found.summary["warnings"])
+
+
+def test_a_body_tumbles_for_long(tmp_path):
+    """After 30 s of free tumbling, some seventy turns, the spin is that of Euler's equations in small steps, and angular momentum stays."""
+    box = {"shape": "box", "width": 0.1, "height": 0.06, "depth": 0.03, "mesh_size": 0.015, "contact_mesh_size": 0.015, "position": [0, 100, 0],
+           "velocity": [0, 0.1, 0], "spin": [3.0, 14.0, 1.0]}
+    given = read(box, obstacles=({"kind": "plane", "point": [0, 0, 0], "normal": [0, 1, 0]},), dimension="3d", end_time=30.0, accuracy=0.2)
+    _, found = go(tmp_path, given)
+    moments, spin, h = np.array([0.06**2 + 0.03**2, 0.1**2 + 0.03**2, 0.1**2 + 0.06**2]), np.array(box["spin"]), 1e-3
+    for _ in range(round(30 / h)):
+        rates = [np.cross(moments * spin, spin) / moments]
+        for part in (0.5, 0.5, 1):
+            w = spin + part * h * rates[-1]
+            rates.append(np.cross(moments * w, w) / moments)
+        spin = spin + h / 6 * (rates[0] + 2 * rates[1] + 2 * rates[2] + rates[3])
+    last = [found.history[name][-1] for name in ("spin_x", "spin_y", "spin")]
+    assert np.linalg.norm(last) == pytest.approx(np.linalg.norm(spin), rel=1e-6)          # seen from the body
+    before, after = ([found.history[f"angular_momentum{of}"][k] for of in ("_x", "_y", "")] for k in (0, -1))
+    assert after == pytest.approx(before, abs=1e-8 * np.linalg.norm(before))
+
+
+# ---- the end
+
+def test_a_run_ends_when_all_that_follows_is_over(tmp_path):
+    """A disc that comes from the floor to a wall of the same obstacle leaves after both; where nothing follows the run ends at once."""
+    rows, found = go(tmp_path, read(DISC | {"position": [2.9, 0.06], "velocity": [2, -2]}, obstacles=(ROOM,)))
+    assert rows.normal_y[0] == pytest.approx(1) and rows.normal_x.iloc[-1] == pytest.approx(-1)
+    s = found.summary
+    assert s["rebound_vx"] < -1.8 and s["rebound_vy"] > 1.8 and s["energy_drift"] < 1e-9
+    assert found.history["t"][-1] - s["contact_start"] - s["contact_time"] < 0.15 * s["contact_time"]
+
+
+def test_a_body_that_vibrates_is_not_gone(tmp_path):
+    """A slotted ring leaves the floor slowly after its first touch, most of its energy in vibration: others follow, and all are there that a run of
+    twice the time has."""
+    half, gap = np.linspace(0, 2 * np.pi - 0.5, 41) + 0.25, np.linspace(2 * np.pi - 0.25, 0.25, 41)
+    ring = np.vstack([0.05 * np.column_stack([np.cos(half), np.sin(half)]), 0.035 * np.column_stack([np.cos(gap), np.sin(gap)])])
+    body = {"shape": "polygon", "vertices": ring.tolist(), "position": [0, 0.06], "velocity": [0, -7]}
+    rows, found = go(tmp_path / "open", read(body, obstacles=(FLOOR,)))
+    _, longer = go(tmp_path / "longer", read(body, obstacles=(FLOOR,), end_time=2 * float(found.history["t"][-1])))
+    assert rows.vibration_energy[0] > rows.translation_energy[0] and len(rows) >= 4
+    assert (found.summary["contact_intervals"], found.summary["impulse"]) == pytest.approx((longer.summary["contact_intervals"], longer.summary["impulse"]), rel=1e-9)
+
+
+def test_what_falls_back_is_told(tmp_path):
+    """Under gravity a run without end_time ends after the first impact, and says when the body is back: by the parabola."""
+    _, found = go(tmp_path, scene.load("disc-normal"), {"law": "neohookean", "accuracy": 0.1, "speed": 2, "gravity": 9.81})
+    s = found.summary
+    told, = [one for one in s["warnings"] if one.startswith("falls back")]
+    assert float(told.split("t = ")[1].split(" s")[0]) == pytest.approx(s["contact_start"] + s["contact_time"] + 2 * s["rebound_vy"] / 9.81, rel=0.03)
+
+
+def test_a_body_set_down_is_refused_at_once():
+    """A square on the floor, also with a ceiling that touches it, never leaves: without end_time that is said before anything is computed."""
+    square = {"shape": "rectangle", "width": 0.1, "height": 0.1, "position": [0, 0.05]}
+    for more in ((), ({"kind": "plane", "point": [0, 0.1], "normal": [0, -1]},)):
+        given = read(square, obstacles=(FLOOR, *more), gravity=9.81)
+        with pytest.raises(BadInput, match="end_time: 0 .* 'body1' is set down on 'obstacle1'"):
+            approach.refuse_nothing(given, approach.meetings(given))
+
+
+def test_corners_that_follow_are_fine():
+    """A square that falls on a corner turns and strikes with the next one: both are meetings of the pair, the second with a corner lowest."""
+    square = {"shape": "rectangle", "width": 0.1, "height": 0.1, "position": [0, 0.08], "angle": 20, "velocity": [0, -2]}
+    first, second = approach.meetings(read(square, obstacles=(FLOOR,)))
+    assert first.time < math.inf and second.closing < first.closing
+    x = [one.outlines[0].points[one.outlines[0].points[:, 1].argmin(), 0] for one in (first, second)]
+    assert x[0] < -0.02 and x[1] > 0.02

@@ -1,0 +1,122 @@
+"""What small obstacles, corners and edges do: elements that resolve them, contact that begins when they touch, penetration that is measured, words that name them."""
+
+import math
+from pathlib import Path
+
+import pytest
+
+from orchestrate import approach, assembly, multibody, run
+from orchestrate.describe import describe
+
+DISC = {"name": "disc", "shape": "disc", "radius": 0.05, "position": [0, 0.0651], "velocity": [0, -3]}
+RUBBER = {"law": "neohookean", "young": 7e6, "nu": 0.3, "density": 1722, "accuracy": 0.1}
+MASS = 1722 * math.pi * 0.05**2           # kg/m
+FLAT = {"mesh_size": 0.0125, "contact_mesh_size": 0.0125}
+FLOOR = {"name": "floor", "kind": "plane", "point": [0, 0], "normal": [0, 1]}
+
+
+def peg(radius: float, kind: str = "circle", axes: int = 2) -> dict:
+    """Its top is at y = 0.015."""
+    return {"name": "peg", "kind": kind, "centre": [0, 0.015 - radius, 0][:axes], "radius": radius}
+
+
+def scene(body, obstacle, **more) -> multibody.Multibody:
+    tables = RUBBER | more | {"body": body if isinstance(body, list) else [body], "obstacle": obstacle if isinstance(obstacle, list) else [obstacle]}
+    return multibody.read(tables, Path(), "meeting")
+
+
+def go(tmp_path, *tables, **more) -> run.RunResult:
+    return run.run(scene(*tables, **more), {}, tmp_path / "out", estimate=False)
+
+
+def said(found: run.RunResult, name: str) -> list[str]:
+    return [one for one in found.summary["warnings"] if one.startswith(name + ": ")]
+
+
+@pytest.mark.parametrize("radius", [0.01, 0.005, 0.0025, 0.001])
+def test_a_disc_rebounds_from_a_peg(tmp_path, radius):
+    """A disc of 50 mm at 3 m/s gets 80 N s/m from a peg of any radius: the elements follow the smaller radius, and so does an open penalty."""
+    found = go(tmp_path, DISC, peg(radius))
+    assert MASS * (found.summary["rebound_vy"] + 3) == pytest.approx(80.3, abs=0.8)
+    assert not said(found, "small obstacle") and not said(found, "penetration") and found.summary["max_penetration"] < 0.05 * radius
+
+
+def test_steps_do_not_pass_a_peg(tmp_path):
+    """Marched through its flight, in steps of three diameters of the peg, the disc still touches it when it is there."""
+    found = go(tmp_path, DISC | {"position": [0, 0.085]}, peg(0.0002), without="flight", accuracy=0.4, end_time=0.00675)
+    assert 3 * found.history["dt"].max() > 0.0012 and found.summary["contact_start"] == pytest.approx(0.02 / 3, rel=5e-3)
+    assert found.summary["max_penetration"] < 1e-5
+
+
+def test_a_peg_between_the_points_is_measured_and_named(tmp_path):
+    """On elements far larger than the peg it goes in between the contact points: how deep is in max_penetration, and the words name peg, radius and elements, not
+    the floor beside it."""
+    coarse = DISC | FLAT | {"position": [0.004, 0.0651]}
+    found = go(tmp_path, coarse, [FLOOR | {"point": [0, -1]}, peg(0.001)], end_time=0.01)
+    assert found.summary["max_penetration"] == pytest.approx(0.03, abs=0.003)
+    (small,), (deep,) = said(found, "small obstacle"), said(found, "penetration")
+    assert "disc and peg meet where its radius is 0.001 m" in small and "how far disc and peg overlap" in deep
+
+
+def test_a_spike_is_measured_and_named(tmp_path):
+    """A corner without a rounding is resolved by no elements: the words say so, and the depth is that of its tip, not of the contact points beside it."""
+    spike = {"name": "spike", "kind": "polyline", "closed": True, "vertices": [[0, 0.015], [0.01, -0.1], [-0.01, -0.1]]}
+    found = go(tmp_path, DISC | {"position": [0.004, 0.0661]}, spike, end_time=0.002)
+    (sentence,) = said(found, "sharp corner")
+    assert "disc and spike meet at one without a rounding" in sentence and found.summary["max_penetration"] > 0.004
+
+
+def test_a_square_touches_with_its_corner_when_it_does(tmp_path):
+    """A square on its corner feels the floor when the corner is there, not when the first point inside an edge is; its penetration is the corner's."""
+    square = {"name": "square", "shape": "rectangle", "width": 0.1, "height": 0.1, "angle": 45, "position": [0, 0.075], "velocity": [0, -2]}
+    found = go(tmp_path, square | FLAT, FLOOR, end_time=0.004)
+    assert found.summary["contact_start"] == pytest.approx((0.075 - 0.05 * math.sqrt(2)) / 2, rel=1e-9)
+    assert found.summary["max_penetration"] > 1e-4
+
+
+def test_a_cone_touches_with_its_tip_when_it_does(tmp_path):
+    """The tip of a body of revolution lies on the axis, where no area is, and begins the contact all the same."""
+    cone = {"name": "cone", "shape": "polygon", "vertices": [[0, 0], [0.04, 0.06], [0, 0.06]], "position": 0.05, "velocity": -2}
+    found = go(tmp_path, cone | FLAT, FLOOR, dimension="axisymmetric", end_time=0.004)
+    assert found.summary["contact_start"] == pytest.approx((0.05 - 0.75 * 0.06) / 2, rel=1e-9)
+
+
+def test_a_cube_touches_with_its_corner_when_it_does(tmp_path):
+    """The same of a cube on its corner in three dimensions."""
+    turn = math.degrees(math.acos(1 / math.sqrt(3))) / math.sqrt(2)
+    cube = {"name": "cube", "shape": "box", "width": 0.1, "height": 0.1, "depth": 0.1, "turn": [-turn, 0, turn], "position": [0, 0.09, 0], "velocity": [0, -2, 0]}
+    coarse = {"mesh_size": 0.05, "contact_mesh_size": 0.03}
+    found = go(tmp_path, cube | coarse, FLOOR | {"point": [0, 0, 0], "normal": [0, 1, 0]}, dimension="3d", symmetry="full", accuracy=0.4, end_time=0.0018)
+    assert found.summary["contact_start"] == pytest.approx((0.09 - 0.05 * math.sqrt(3)) / 2, rel=1e-9)
+
+
+def test_crossed_edges_are_measured_and_named(tmp_path):
+    """Two bars that meet with crossed edges between their contact points: how far they overlap is measured, and named."""
+    bar = {"shape": "box", "height": 0.05} | FLAT
+    upper = bar | {"name": "upper", "width": 0.1, "depth": 0.05, "turn": [45, 0, 0], "position": [0, 0.0712, 0], "velocity": [0, -1, 0]}
+    lower = bar | {"name": "lower", "width": 0.05, "depth": 0.1, "turn": [0, 0, 45], "position": [0, 0, 0], "velocity": [0, 1, 0]}
+    found = go(tmp_path, [upper, lower], [], dimension="3d", symmetry="full", accuracy=0.4, end_time=0.0008)
+    overlap = 2 * 0.0008 - (0.0712 - 0.05 * math.sqrt(2))
+    assert found.summary["max_penetration"] == pytest.approx(overlap / math.sqrt(2), rel=0.02)
+    (sentence,) = said(found, "unseen contact")
+    assert "upper and lower overlap by" in sentence and "in between contact points" in sentence
+
+
+@pytest.mark.parametrize("dimension, kind", [("plane-strain", "circle"), ("axisymmetric", "sphere"), ("3d", "sphere")])
+def test_elements_follow_the_radius_of_an_obstacle(dimension, kind):
+    """In any dimension a tenth of the obstacle makes a tenth of the elements where they meet, and ten times the penalty, and neither where it is no smaller."""
+    axes = 3 if dimension == "3d" else 2
+    body = DISC | {"shape": "disc" if kind == "circle" else "ball", "position": [0, 0.0651, 0][:axes], "velocity": [0, -3, 0][:axes]}
+    if dimension == "axisymmetric":
+        body |= {"position": 0.0651, "velocity": -3}
+    sizes, penalties = [], []
+    for radius in (0.005, 0.0005, 0.05, 50):
+        tables = scene(body, peg(radius, kind, axes), dimension=dimension)
+        ask = assembly.Asker(tables, approach.meetings(tables), lambda values: describe(values, tables.dimension.like))
+        values = assembly.contact_values(tables.bodies, tables.contact, ask, "contact")
+        sizes.append(assembly._sizes(0, ask).contact)
+        own = [assembly.pair_values(pair, ask, values) for pair in assembly._with_small_obstacles(tables, ask)]
+        penalties.append(own[0]["penalty"] if own else values["penalty"])
+    assert sizes[1] == pytest.approx(sizes[0] / 10, rel=0.05) and sizes[0] <= 0.005 / 4 * 1.01
+    assert penalties[1] == pytest.approx(10 * penalties[0], rel=0.05) and penalties[2] == penalties[3]
+    assert sizes[2] == pytest.approx(sizes[3], rel=0.05)
