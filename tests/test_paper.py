@@ -14,7 +14,8 @@ from orchestrate.failure import Failure
 from orchestrate.report import figures, paper, paper_bodies, paper_friction, paper_judging, paper_page, report
 from orchestrate.report.paper_judging import AGREES, DIFFERS, OPEN, PARTLY, STATEMENTS, Finding, maxima
 from orchestrate.parameters import ROOT
-from orchestrate.sweeps import sweep
+from orchestrate.studies import stick_slip
+from orchestrate.sweeps import sweep, sweep_figures
 from paper_results import BLOCK, BLOCK_END, CHATTERS, END, IMPACT, JUMPS, KEPT, LEAKS, Memory, NEAR, PUSH, SLIDES, SMOOTH, base, forces, jump, pairs, speeds, steps, waves
 
 FIND = {find.__name__: find for _, _, find in STATEMENTS}
@@ -482,3 +483,25 @@ def test_values_are_listed_as_numbers(tmp_path):
         (tmp_path / str(k)).mkdir()
         fake_freefem.write_scene(tmp_path / str(k), dict(speed=str(speed)))
     assert "speed: 9 values from 0.5 to 12.1" in paper_page._provenance(sorted(tmp_path.iterdir()))
+
+
+def test_the_map_of_the_oblique_disc_has_both_angles(tmp_path):
+    """A row of maps for each angle to the plane, a column for each mesh; what is said of the level names both."""
+    wanted = sweep.load(OBLIQUE)
+    table = pd.DataFrame(wanted.points).assign(exit=0, contact_time=4.4e-3)
+    table.loc[table.penalty < 5e8, "contact_time"] = 5e-3
+    sweep_figures.draw(wanted, table, tmp_path)
+    said = "\n".join(sweep_figures.findings(wanted, table, tmp_path))
+    assert figures.plt.imread(tmp_path / "sweep.png").std() > 0
+    assert all(f"angle = {angle} deg, mesh size = {size} m: contact time = 4.5" in said for angle in (60, 30) for size in (0.01, 0.008))
+
+
+def test_the_search_is_drawn_for_both_angles(tmp_path):
+    """Sliding and sticking at 60 and 30 degrees from the plane, for both laws: a point a run, counted by angle and law."""
+    axes = {name: values[-2:] for name, values in stick_slip.AXES.items()}
+    table = pd.DataFrame(stick_slip.grid(axes)).assign(exit=0, contact_time=4.5e-3, first=1.0, second=0.9, last=0.3, work_last=0.01, quiet=True, time=True)
+    table["order"] = stick_slip.as_told(table)
+    stick_slip.draw(table, axes, tmp_path / "map.png")
+    said = stick_slip.report(table)
+    assert (tmp_path / "map.png").stat().st_size > 10_000
+    assert all(f"{angle} degrees, {stick_slip.LAWS[law]}: of 8 runs 8 slide first" in said for angle in (60, 30) for law in stick_slip.LAW)

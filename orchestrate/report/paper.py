@@ -15,7 +15,8 @@ from ..folder import result_folder
 from ..places import COMMAND, RESULTS, ROOT, shown
 from ..studies import stick_slip, study
 from ..sweeps import sweep
-from . import paper_judging as judging, paper_limits, paper_friction, paper_impacts, paper_making, paper_pairs, paper_bodies, paper_times   # noqa: F401: these register the statements, in this order
+from . import paper_judging as judging, paper_making
+from . import paper_limits, paper_friction, paper_impacts, paper_pairs, paper_bodies, paper_times   # noqa: F401: these register the statements, in this order
 from .paper_page import COLOURS, page, verification
 
 RUNS = {"disc-normal": ("force",), "disc-normal-neohookean": (), "disc-oblique": ("flight", "force", "energies"), "disc-oblique-svk": ("flight", "force", "rolling", "energies"),

@@ -13,7 +13,8 @@ DISC, DISC_NEO, BALL, BALL_NEO = "disc-normal", "disc-normal-neohookean", "ball-
 ACCELERATIONS = "-and-".join((DISC, DISC_NEO, BALL, BALL_NEO)) + ".png"   # make ball-comparison
 STEPS, SOLID, SOLID_MAP = "conservation", "ball", "calibrate-ball-3d"
 SAME = 0.005                # by which two runs of one ball may differ besides their estimated errors, as two programs in V12
-SOLID_NUMBERS = {"impulse": ("impulse", "N s"), "rebound_vy": ("rebound", "m/s"), "thresholded_contact_time": ("thresholded_contact_time", "s")}   # and their errors' names
+# names of its answers: (of their errors, unit)
+SOLID_NUMBERS = {"impulse": ("impulse", "N s"), "rebound_vy": ("rebound", "m/s"), "thresholded_contact_time": ("thresholded_contact_time", "s")}
 
 
 @states("Section 3.2", "a disc at 10 m/s on a free block: the disc is reflected")
@@ -53,9 +54,11 @@ def passes(results: Results) -> Finding:
         after = max(np.ptp(own[flight]) if len(own[flight]) > 1 else np.inf for own in (disc, block)) / 100
         shares = [100 * end[f"vibration_energy_{b}"] / end["energy_initial"] for b in (1, 2)]
         return disc[-1] < disc[0] and block[-1] > block[0] and after < CONSTANT, (
-            f"the disc keeps {disc[-1]:.1f} % ({shares[0]:.1f} % as vibration), the block has {block[-1]:.1f} % ({shares[1]:.1f} %), each constant to {after:.0e}; "
+            f"the disc keeps {disc[-1]:.1f} % ({shares[0]:.1f} % as vibration), the block has {block[-1]:.1f} % ({shares[1]:.1f} %), each constant to "
+            f"{after:.0e}; "
             f"in the contact the disc was down to {disc.min():.1f} %, at {1e3 * history['t'][disc.argmin()]:.0f} ms")
-    return _on_block(of, "After the contact, of the energy at the start", ". After the contact kinetic and elastic energy of each go on to change into each other.",
+    return _on_block(of, "After the contact, of the energy at the start", ". After the contact kinetic and elastic energy of each go on to change into each "
+                                                                          "other.",
                      [results.picture("disc-block", "energies")], results)
 
 
@@ -93,10 +96,13 @@ def converges(results: Results) -> Finding:
         drift, dt = group.energy_drift.to_numpy(), group.dt.to_numpy()
         order = np.log(drift[0] / drift[-1]) / np.log(dt[0] / dt[-1]) if len(group) > 2 else -np.inf
         tells[scheme] = bool(order >= 0.5 and (np.diff(drift) < 0).all())
-        words.append(f"{scheme}: drift {drift[0]:.0e} to {drift[-1]:.0e} (order {order:.1f}), rebound {group.rebound_vy.iloc[0]:.3f} to {group.rebound_vy.iloc[-1]:.3f} m/s")
+        words.append(f"{scheme}: drift {drift[0]:.0e} to {drift[-1]:.0e} (order {order:.1f}), rebound {group.rebound_vy.iloc[0]:.3f} to "
+                     f"{group.rebound_vy.iloc[-1]:.3f} m/s")
     bdf2, own = (tells.get(scheme, False) for scheme in ("bdf2", "energy-momentum"))
-    return Finding(AGREES if bdf2 and own else PARTLY if bdf2 else DIFFERS, f"from the step {1e6 * rows.dt.max():g} to {1e6 * rows.dt.min():g} μs on one mesh; {'; '.join(words)}. "
-                   + ("" if own else "A scheme that conserves at any step says nothing of convergence by it: error bars here are from refined meshes and steps."),
+    return Finding(AGREES if bdf2 and own else PARTLY if bdf2 else DIFFERS, f"from the step {1e6 * rows.dt.max():g} to {1e6 * rows.dt.min():g} μs on one "
+                                                                            f"mesh; {'; '.join(words)}. "
+                   + ("" if own else "A scheme that conserves at any step says nothing of convergence by it: error bars here are from refined meshes and "
+                                     "steps."),
                    results.drawn(STEPS), results.sweep_runs(STEPS), list(rows.ellipticity_lost_time))
 
 
@@ -111,18 +117,21 @@ def conserves(results: Results) -> Finding:
 
 @states("Section 3.3", "the approach extends to three-dimensional bodies, and contact is modelled in an identical way")
 def in_space(results: Results) -> Finding:
-    """Agrees where impulse, rebound (over the speed) and the time above 1 % of the peak of the neo-Hookean ball in three dimensions are those of the body of revolution,
-    to 0.5 % and both estimated errors, and every run in three dimensions, those with SVK on coarse meshes too, keeps its energy to 1e-9; partly where the energy alone is kept."""
+    """Agrees where impulse, rebound (over the speed) and the time above 1 % of the peak of the neo-Hookean ball in three dimensions are those of the body of
+    revolution, to 0.5 % and both estimated errors, and every run in three dimensions, those with SVK on coarse meshes too, keeps its energy to 1e-9; partly
+    where the energy alone is kept."""
     solid, plane = results.summary(SOLID), results.summary(BALL_NEO)
     coarse, words, same = finished(results, SOLID_MAP), [], []
     for name, (key, unit) in SOLID_NUMBERS.items():
         error = sum((end["estimated_error"] or {}).get(key, np.nan) for end in (solid, plane))
         apart = abs(solid[name] - plane[name]) / (results.scene(SOLID)["speed"] if key == "rebound" else abs(plane[name]))
         same.append(bool(apart <= SAME + error))
-        words.append(f"{name.replace('_', ' ')} {solid[name]:.5g} and {plane[name]:.5g} {unit}, {100 * apart:.2f} % apart (errors together {100 * error:.2f} %)")
+        words.append(f"{name.replace('_', ' ')} {solid[name]:.5g} and {plane[name]:.5g} {unit}, {100 * apart:.2f} % apart (errors together {100 * error:.2f} "
+                     f"%)")
     drift = max(solid["energy_drift"], coarse.energy_drift.max() if len(coarse) else np.inf)
     verdict = DIFFERS if not drift < CONSTANT else AGREES if all(same) else PARTLY
-    return Finding(verdict, f"neo-Hookean, in three dimensions and as a body of revolution: {'; '.join(words)}. Energy constant to {drift:.0e} in all {1 + len(coarse)} runs in three "
+    return Finding(verdict, f"neo-Hookean, in three dimensions and as a body of revolution: {'; '.join(words)}. Energy constant to {drift:.0e} in all "
+                            f"{1 + len(coarse)} runs in three "
                    f"dimensions, {len(coarse)} of them with SVK on coarse meshes.", [results.picture(SOLID, "shapes"), results.picture(SOLID, "force")],
                    [results.run(SOLID), results.run(BALL_NEO), *results.sweep_runs(SOLID_MAP)])
 

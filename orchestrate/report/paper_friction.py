@@ -27,7 +27,8 @@ def impact(results: Results, law: str, static: float = VALUES["friction_static"]
     return results.histories(JUMP, law=law, friction_static=static)
 
 
-@states("Figure 3, equations (12), (13)", "the regularisations φ¹, φ², φ³ with ε = 0.1, φ³ with v/(2ε) between −ε and ε, and the law with μ_e = 0.7 below ε and "
+@states("Figure 3, equations (12), (13)", "the regularisations φ¹, φ², φ³ with ε = 0.1, φ³ with v/(2ε) between −ε and ε, and the law with μ_e = 0.7 below ε "
+                                          "and "
         "μ_d = 0.5 above")
 def friction_laws(results: Results) -> Finding:
     """Agrees where every tabulated curve is its formula, φ³ in the form linear-printed, to 1e-9."""
@@ -98,17 +99,19 @@ def oscillates(results: Results) -> Finding:
 
 @states("Section 3.1, figure 5a", "the oscillations are due to the multiple reflections of the impact waves on the disc's boundary")
 def reflected(results: Results) -> Finding:
-    """By the spectrum of the force less its slow push, beside the natural modes of the disc (modes.csv): what waves between its boundaries make up. With SVK, of the peaks that
-    both meshes have: partly where some, agrees where all lie nearer to a mode with 1 % of the vibration than the contact time tells frequencies apart, 1/(2T); but not decided
-    where most of the frequencies do, as then any peak would; not where none does."""
+    """By the spectrum of the force less its slow push, beside the natural modes of the disc (modes.csv): what waves between its boundaries make up. With SVK,
+    of the peaks that both meshes have: partly where some, agrees where all lie nearer to a mode with 1 % of the vibration than the contact time tells
+    frequencies apart, 1/(2T); but not decided where most of the frequencies do, as then any peak would; not where none does."""
     found, words = {}, []
     for law in LAWS:
         peaks, modes, width, chance = zip(*(_oscillation(*each) for each in zip(impact(results, law), results.modes(JUMP, law=law, friction_static=VALUES["friction_static"]))))
         common = [peak for peak in peaks[0] if any(abs(peak - other) < max(width) for other in peaks[1])]
         near = [peak for peak in common if all(np.abs(each - peak).min(initial=np.inf) < width[0] for each in modes)]
         found[law] = common, near, max(chance)
-        words.append(f"{LAWS[law]}: peaks of both meshes at {', '.join(f'{peak:.0f}' for peak in common) or 'no frequency'} Hz, {len(near)} of {len(common)} within {width[0]:.0f} Hz "
-                     f"of such a mode, as are {100 * max(chance):.0f} % of all frequencies from {min(each.min() for each in modes):.0f} to {max(each.max() for each in modes):.0f} Hz")
+        words.append(f"{LAWS[law]}: peaks of both meshes at {', '.join(f'{peak:.0f}' for peak in common) or 'no frequency'} Hz, {len(near)} of {len(common)} "
+                     f"within {width[0]:.0f} Hz "
+                     f"of such a mode, as are {100 * max(chance):.0f} % of all frequencies from {min(each.min() for each in modes):.0f} to "
+                     f"{max(each.max() for each in modes):.0f} Hz")
     common, near, chance = found["svk"]
     verdict = DIFFERS if not near else OPEN if chance > 0.5 else AGREES if len(near) == len(common) else PARTLY
     said = " The modes lie nearer to each other than an impact of this length tells apart." if verdict == OPEN else ""
@@ -116,8 +119,9 @@ def reflected(results: Results) -> Finding:
 
 
 def _oscillation(history: History, modes: pd.DataFrame) -> tuple[np.ndarray, np.ndarray, float, float]:
-    """Of the normal force less the half sine and the sine that fit it best: peaks of its spectrum [Hz] from the lowest to the highest mode, a quarter of the largest or more; the
-    modes with 1 % of the vibration; half of what the contact time tells apart; the share of all frequencies that is as near to such a mode."""
+    """Of the normal force less the half sine and the sine that fit it best: peaks of its spectrum [Hz] from the lowest to the highest mode, a quarter of the
+    largest or more; the modes with 1 % of the vibration; half of what the contact time tells apart; the share of all frequencies that is as near to such a
+    mode."""
     steps = touching(history)
     t, dt, force = (history[name][steps] for name in ("t", "dt", "normal_force"))
     start, length = t[0] - dt[0], t[-1] - t[0] + dt[0]
@@ -144,22 +148,25 @@ def alternates(results: Results) -> Finding:
         words.append(f"{LAWS[law]}: {' and '.join(f'{n:.1f}' for n in jump)} times, in the control {' and '.join(f'{n:.1f}' for n in control)}")
     alternate, more = found["svk"]
     said = "" if more else " The points alternate between sliding and sticking, but the jump of the coefficient is not what makes them: equal coefficients do the same."
-    return Finding(DIFFERS if not alternate else AGREES if more else PARTLY, "how many times the whole load changes between sliding and sticking, on two meshes; "
+    return Finding(DIFFERS if not alternate else AGREES if more else PARTLY, "how many times the whole load changes between sliding and sticking, on two "
+                                                                             "meshes; "
                    + "; ".join(words) + "." + said, [*results.drawn(JUMP), results.picture("disc-oblique-svk", "rolling")], results.sweep_runs(JUMP), lost(results))
 
 
 @states("Section 3.1, figure 5b", "the instability is characterised by a discontinuity in the acceleration due to the sudden change in the type of friction")
 def discontinuous(results: Results) -> Finding:
-    """With SVK, on the acceleration of the centre along the plane (friction force over mass) with steps of 20 and 5 μs: it jumps where its largest changes from step to step
-    (mean of five) fall by less than the square root of the steps, while those of the acceleration across the plane fall by more. Agrees where it jumps, and by at least half of
-    what μ_e exceeds μ_d by more than with equal coefficients; partly where it jumps with equal coefficients alike; not where it does not."""
+    """With SVK, on the acceleration of the centre along the plane (friction force over mass) with steps of 20 and 5 μs: it jumps where its largest changes from
+    step to step (mean of five) fall by less than the square root of the steps, while those of the acceleration across the plane fall by more. Agrees where
+    it jumps, and by at least half of what μ_e exceeds μ_d by more than with equal coefficients; partly where it jumps with equal coefficients alike; not
+    where it does not."""
     found, words = {}, []
     for law in LAWS:
         jump, control = ([_changes(history) for history in results.histories(STEPS, law=law, friction_static=VALUES[name])] for name in ("friction_static", "friction_dynamic"))
         (along, across), (ratio, _) = (_orders(*each) for each in (jump, control))
         excess = min(mine[0] / other[0] for mine, other in zip(jump, control))
         found[law] = along < 0.5 < across, excess > (1 + VALUES["friction_static"] / VALUES["friction_dynamic"]) / 2
-        words.append(f"{LAWS[law]}: {' to '.join(f'{change:.0f}' for change, _ in jump)} m/s² along the plane (as the step to the power {along:.2f}; across it {across:.2f}), "
+        words.append(f"{LAWS[law]}: {' to '.join(f'{change:.0f}' for change, _ in jump)} m/s² along the plane (as the step to the power {along:.2f}; across "
+                     f"it {across:.2f}), "
                      f"with equal coefficients {' to '.join(f'{change:.0f}' for change, _ in control)} ({ratio:.2f})")
     jumps, more = found["svk"]
     said = "" if more or not jumps else " Equal coefficients, where nothing changes suddenly but the direction, do the same."
@@ -194,7 +201,8 @@ def energy(results: Results) -> Finding:
         after, grows, lost = (max(values) for values in zip(*map(_losses, impact(results, law))))
         return after < CONSTANT and grows < CONSTANT and lost > CONSTANT, f"constant to {after:.0e} after the contact, rises in it by at most {grows:.0e}, {100 * lost:.1f} % lost"
     verdict, words = of_both(of)
-    return Finding(verdict, f"before the contact the flight is exact; {words}.", [results.picture("disc-oblique-svk", "energies"), results.picture("disc-oblique", "energies")],
+    return Finding(verdict, f"before the contact the flight is exact; "
+                            f"{words}.", [results.picture("disc-oblique-svk", "energies"), results.picture("disc-oblique", "energies")],
                    results.sweep_runs(JUMP), lost(results))
 
 
@@ -234,22 +242,25 @@ def _exchange(history: History) -> tuple[float, float, float, int]:
 
 @states("Section 3.1", "the disc slides first and sticks in about the last third of the contact, in which the energy is constant again")
 def sliding_first(results: Results) -> Finding:
-    """Over the search of ε, k, ν with SVK, at 60° (the paper calls normal incidence π/2) and at 30° from the plane: agrees where all runs of one angle do both, partly where
-    some of any do. Constant energy: at most 5 % of the friction work in the last third."""
+    """Over the search of ε, k, ν with SVK, at 60° (the paper calls normal incidence π/2) and at 30° from the plane: agrees where all runs of one angle do both,
+    partly where some of any do. Constant energy: at most 5 % of the friction work in the last third."""
     every = results.stick_slip()
     every = every[every.exit == 0]
     told, counts = [], {}
     for (angle, law), rows in every.groupby(["angle", "law"], sort=False):
         order, both = int(rows["order"].sum()), int((rows["order"] & rows["quiet"]).sum())
         counts |= {angle: (both, len(rows))} if law == "svk" else {}
-        told.append(f"{angle:g}°, {LAWS[law]}: {order} of {len(rows)} runs, {both} of them with at most {100 * stick_slip.QUIET:g} % of the friction work in the last third")
+        told.append(f"{angle:g}°, {LAWS[law]}: {order} of {len(rows)} runs, {both} of them with at most {100 * stick_slip.QUIET:g} % of the friction work in "
+                    f"the last third")
     restitution = {name: results.summary(name)["rebound_vy"] / _normal() for name in ("disc-oblique-svk", "disc-oblique")}
     shares = " and ".join(f"{slip_share(e):.2f} with the e = {e:.3f} of {name}" for name, e in restitution.items())
     met = [angle for angle, (both, _) in counts.items() if both]
     explained = "" if ANGLE in met else ", which explains it: the disc sticks long before two thirds, and slips back at the end"
     only = f" With SVK the order appears only at {FLAT:g}° from the plane, which is π/3 from the normal." if met == [FLAT] else ""
-    return Finding(AGREES if any(both == runs for both, runs in counts.values()) else PARTLY if met else DIFFERS, f"slides first and sticks last: {'; '.join(told)}. "
-                   f"The slip of a rigid disc ends at the share v_t/(3 μ_d (1 + e) v_n) of the normal impulse, {shares}{explained}. At {FLAT:g}° from the plane it would end at "
+    return Finding(AGREES if any(both == runs for both, runs in counts.values()) else PARTLY if met else DIFFERS, f"slides first and sticks last: "
+                                                                                                                  f"{'; '.join(told)}. "
+                   f"The slip of a rigid disc ends at the share v_t/(3 μ_d (1 + e) v_n) of the normal impulse, {shares}{explained}. At {FLAT:g}° from the "
+                   f"plane it would end at "
                    f"{slip_share(restitution['disc-oblique'], FLAT):.2f}.{only}",
                    [results.folder / "stick-slip/stick-slip.png"],
                    [*(study.place(results.folder / "stick-slip", point) for point in stick_slip.grid(stick_slip.AXES)), *map(results.run, restitution)],
@@ -272,7 +283,8 @@ def rolls(results: Results) -> Finding:
 
     def of(law: str) -> tuple[bool, str]:
         means = [_last_third(history, radius) for history in impact(results, law)]
-        return all(abs(rim - centre) < 0.05 * abs(centre) for centre, rim in means), " and ".join(f"v_x = {centre:.2f}, −ω R = {rim:.2f} m/s" for centre, rim in means)
+        return all(abs(rim - centre) < 0.05 * abs(centre) for centre, rim in means), " and ".join(f"v_x = {centre:.2f}, −ω R = {rim:.2f} "
+                                                                                                  f"m/s" for centre, rim in means)
     verdict, words = of_both(of)
     end, used = results.summary("disc-rolling"), results.scene("disc-rolling")
     return Finding(verdict, f"means over the last third, on two meshes; {words}. (Set down on the plane, in a scene of our own that the "
@@ -301,5 +313,6 @@ def smooth_slip(results: Results) -> Finding:
             shares.append(float(history["dt"][steps][slides].sum() / history["dt"][steps].sum()))
         return min(shares) >= 0.05, " and ".join(f"{100 * share:.0f} %" for share in shares)
     verdict, words = of_both(of)
-    return Finding(verdict, f"share of the contact time in which all of the load slides, on two meshes; {words}.", [results.picture("disc-oblique-svk", "rolling")],
+    return Finding(verdict, f"share of the contact time in which all of the load slides, on two meshes; "
+                            f"{words}.", [results.picture("disc-oblique-svk", "rolling")],
                    results.sweep_runs(JUMP), lost(results))

@@ -41,7 +41,8 @@ def reflections(results: Results) -> Finding:
         steps += trend.established
         words.append(f"ν = {nu:g}: {trend.established} rises beyond twice their error bar; " + ", ".join(
             f"{first:.2f} to {last:.2f} transits of {wave} waves" for wave, (first, last) in counts.items()))
-    return Finding(OPEN if not steps else AGREES if all(as_many) else DIFFERS, f"{'; '.join(words)}. By these numbers the curve would have at most {fewer} such steps.", *where)
+    return Finding(OPEN if not steps else AGREES if all(as_many) else DIFFERS, f"{'; '.join(words)}. By these numbers the curve would have at most {fewer} "
+                                                                               f"such steps.", *where)
 
 
 def _transits(used: dict, nu: float) -> dict[str, float]:
@@ -55,7 +56,8 @@ def _transits(used: dict, nu: float) -> dict[str, float]:
 def same_at_low_speed(results: Results) -> Finding:
     """Agrees where they differ in L2 over time by no more than what mesh and step change; partly where by less than 10 %."""
     distance, error = _distance(results, 1)
-    return Finding(AGREES if distance <= error else PARTLY if distance < 0.1 else DIFFERS, f"they differ by {100 * distance:.1f} % in L2 over time (mesh and step change {100 * error:.1f} %).",
+    return Finding(AGREES if distance <= error else PARTLY if distance < 0.1 else DIFFERS, f"they differ by {100 * distance:.1f} % in L2 over time (mesh and "
+                                                                                           f"step change {100 * error:.1f} %).",
                    results.drawn(FORCES), results.sweep_runs(FORCES), _lost(results, 1))
 
 
@@ -72,7 +74,8 @@ def longer_at_high_speed(results: Results) -> Finding:
     return Finding(AGREES if svk - neo > of_svk + of_neo else DIFFERS,
                    f"SVK {1e3 * svk:.3f} ± {1e3 * of_svk:.3f} ms, {when(lost[-1], 'ellipticity lost')}; neo-Hookean {1e3 * neo:.3f} ± {1e3 * of_neo:.3f} ms "
                    f"(above 1 % of the peak force "
-                   f"{thresholded[0]:.3f} and {thresholded[1]:.3f} ms); the histories differ by {100 * distance:.0f} % in L2.", results.drawn(FORCES), results.sweep_runs(FORCES), lost)
+                   f"{thresholded[0]:.3f} and {thresholded[1]:.3f} ms); the histories differ by {100 * distance:.0f} % in "
+                   f"L2.", results.drawn(FORCES), results.sweep_runs(FORCES), lost)
 
 
 @states("Figure 8", "normal impact, neo-Hookean: the contact time falls monotonically with the speed")
@@ -160,7 +163,8 @@ def _trends(results: Results, name: str) -> tuple[list[sweep_figures.Trend | Non
         trends.append(trend)
         words.append(f"ν = {nu:g}: {1e3 * trend.first:.3f} to {1e3 * trend.last:.3f} ms (± {1e3 * trend.typical:.3f} ms rms), {trend.against} of "
                      f"{trend.steps} steps rise, {trend.beyond} of them by more than their error bar, {trend.established} by more than twice "
-                     f"(of the time above 1 % of the peak force {above.beyond} and {above.established})" if trend and above else f"ν = {nu:g}: too few runs finished")
+                     f"(of the time above 1 % of the peak force {above.beyond} and {above.established})" if trend and above else f"ν = {nu:g}: too few runs "
+                     f"finished")
         if np.isfinite(end):
             words[-1] += f"; judged below {end:g} m/s, where ellipticity is lost"
     return trends, "; ".join(words) + "."

@@ -21,7 +21,8 @@ def incompressible(results: Results) -> Finding:
     if not results.has(INCOMPRESSIBLE):
         return Finding(DIFFERS, f"not met: there is no run with law = incompressible. {beside}", runs=used)
     off = abs(results.summary(INCOMPRESSIBLE)["min_jacobian"] - 1)
-    return Finding(AGREES if off < ISOCHORIC else DIFFERS, f"the run with law = incompressible keeps J = 1 to {off:.0e}. {beside}", runs=[*used, results.run(INCOMPRESSIBLE)])
+    return Finding(AGREES if off < ISOCHORIC else DIFFERS, f"the run with law = incompressible keeps J = 1 to {off:.0e}. "
+                                                           f"{beside}", runs=[*used, results.run(INCOMPRESSIBLE)])
 
 
 @states("Section 2.2, equations (7), (10)", "for a sufficiently large k the regularised contact (10) approximates Signorini's condition (7)")
@@ -40,24 +41,29 @@ def stiff_limit(results: Results) -> Finding:
         if not good:
             return False, "no run"
         first, last = (max(depth[end] for depth in depths) for end in (0, 1))
-        return all(good), f"for {sum(good)} of {len(good)} ν, penetration from up to {1e3 * first:.2g} down to {1e3 * last:.2g} mm, rebound {'; '.join(dict.fromkeys((left[0], left[-1])))} m/s"
+        ends = "; ".join(dict.fromkeys((left[0], left[-1])))
+        return all(good), f"for {sum(good)} of {len(good)} ν, penetration from up to {1e3 * first:.2g} down to {1e3 * last:.2g} mm, rebound {ends} m/s"
     verdict, words = of_both(of)
-    return Finding(verdict, f"largest penetration, and what each larger k still changes of the rebound with the first and the last ν, from k = {rows.penalty.min():.0e} to {rows.penalty.max():.0e} Pa/m; {words}.",
+    return Finding(verdict, f"largest penetration, and what each larger k still changes of the rebound with the first and the last ν, from k = "
+                            f"{rows.penalty.min():.0e} to {rows.penalty.max():.0e} Pa/m; {words}.",
                    results.drawn(STIFFNESS), results.sweep_runs(STIFFNESS), lost)
 
 
 @states("Section 2.3, equation (12)", "for ε → 0 φ^1, φ^2, φ^3 tend to the step, and a sufficiently small ε serves")
 def slip_limit(results: Results) -> Finding:
-    """Agrees where every tabulated φ rises and reaches 0.95 at 4 ε (they hang on v/ε alone), and on the oblique neo-Hookean impact, which converges, rebound and friction
-    work settle as ε falls; partly where the functions do alone."""
+    """Agrees where every tabulated φ rises and reaches 0.95 at 4 ε (they hang on v/ε alone), and on the oblique neo-Hookean impact, which converges, rebound
+    and friction work settle as ε falls; partly where the functions do alone."""
     laws, rows = results.friction_laws(), finished(results, SLIP).sort_values("slip_velocity", ascending=False)
     reach = {words: _rises(laws[(laws.panel == "b") & (laws.law == law) & (laws.v >= 0)]) for law, words in FORMULAS.items()}
     numbers = ("rebound_vx", "friction_work")
     runs = len(rows) > 2 and all(settles(rows, name) for name in numbers)
     functions = min(reach.values()) >= 0.95
-    return Finding(AGREES if functions and runs else PARTLY if functions else DIFFERS, f"at the largest tabulated v, {', '.join(f'{words} = {value:.3f}' for words, value in reach.items())} "
-                   f"(friction-laws/laws.csv). What each smaller ε, {rows.slip_velocity.max():g} to {rows.slip_velocity.min():g} m/s, still changes: of the velocity along the plane "
-                   f"{_changes(rows, 'rebound_vx')} m/s, of the friction work {_changes(rows, 'friction_work')} J/m.", [*results.drawn(SLIP), results.folder / "friction-laws/friction-laws.png"],
+    return Finding(AGREES if functions and runs else PARTLY if functions else DIFFERS, f"at the largest tabulated v, "
+                                                                                       f"{', '.join(f'{words} = {value:.3f}' for words, value in reach.items())} "
+                   f"(friction-laws/laws.csv). What each smaller ε, {rows.slip_velocity.max():g} to {rows.slip_velocity.min():g} m/s, still changes: of the "
+                   f"velocity along the plane "
+                   f"{_changes(rows, 'rebound_vx')} m/s, of the friction work {_changes(rows, 'friction_work')} "
+                   f"J/m.", [*results.drawn(SLIP), results.folder / "friction-laws/friction-laws.png"],
                    results.sweep_runs(SLIP))
 
 

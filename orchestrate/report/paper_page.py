@@ -52,7 +52,7 @@ details {{ font-size: .85em }} pre {{ white-space: pre-wrap }}
 <p>Buezas, Rosales and Filipich, <i>Nonlinear deformable bodies with unilateral contact including friction</i>. The paper states neither ν (only
 “ν → 0.5”) nor the contact stiffness, ε, mesh or step; a number that it prints is taken as known to half a unit of its last digit.
 Error bars of ours are what refining mesh and step changes. Verdicts follow from the numbers by fixed rules
-(orchestrate/report/paper_limits.py, paper_friction.py, paper_impacts.py, paper_pairs.py, paper_bodies.py, paper_times.py): a statement on St. Venant–Kirchhoff is decided by runs with
+(orchestrate/report/paper_*.py): a statement on St. Venant–Kirchhoff is decided by runs with
 that law; where it loses ellipticity in them “agrees” becomes “partly”, as then the mesh decides, but not of energy and momentum, which every
 step keeps on any mesh; “not decided” means that the effect is smaller than the errors. “As the paper may have run it”: on a coarse mesh of linear triangles.</p>
 <p><b>{counts}</b></p>

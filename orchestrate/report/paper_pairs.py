@@ -12,15 +12,17 @@ PRINTED = {"pairwise": "with a repulsion that vanishes at ε", "pairwise-printed
 
 @states("Section 3.2, equation (9)", "the minimum distance is found at each instant at the cost of CPU time")
 def search_costs(results: Results) -> Finding:
-    """By shares of each run, which scatter less than seconds: agrees where the search for closest points takes more than a tenth of the processor time on both meshes,
-    partly where on one."""
+    """By shares of each run, which scatter less than seconds: agrees where the search for closest points takes more than a tenth of the processor time on both
+    meshes, partly where on one."""
     ends = {pairing: results.summaries(PAIRS, pairing=pairing, pairing_range="auto") for pairing in ("closest-point", *PRINTED)}
     shares = {pairing: [end["phase_seconds"]["search"] / end["cpu_seconds"] for end in each] for pairing, each in ends.items()}
     dear = [share > DEAR for share in shares["closest-point"]]
     words = {"closest-point": "closest points (9)"} | {pairing: f"(14), (15) {how}" for pairing, how in PRINTED.items()}
-    told = "; ".join(f"{words[pairing]} {' and '.join(f'{100 * share:.0f} %' for share in found)} of {' and '.join(format(end['cpu_seconds'], '.1f') for end in ends[pairing])} s"
+    told = "; ".join(f"{words[pairing]} {' and '.join(f'{100 * share:.0f} %' for share in found)} of "
+                     f"{' and '.join(format(end['cpu_seconds'], '.1f') for end in ends[pairing])} s"
                      for pairing, found in shares.items())
-    return Finding(AGREES if all(dear) else PARTLY if any(dear) else DIFFERS, f"the search's share of the processor time, on two meshes: {told}. More than {100 * DEAR:g} % is asked; boxes "
+    return Finding(AGREES if all(dear) else PARTLY if any(dear) else DIFFERS, f"the search's share of the processor time, on two meshes: {told}. More than "
+                                                                              f"{100 * DEAR:g} % is asked; boxes "
                    "leave few edges to a point.", results.drawn(PAIRS), _pair_runs(results, "auto"), _pairs_lost(results))
 
 
@@ -31,7 +33,8 @@ def sum_of_points(results: Results) -> Finding:
     return _beside_closest(results, "auto", "ε an element where the bodies touch")
 
 
-@states("Section 3.2, equation (15)", "with ε of the order of the separation of the points and a large k a point meets a single one of the other body, and nothing has to be sought")
+@states("Section 3.2, equation (15)", "with ε of the order of the separation of the points and a large k a point meets a single one of the other body, and "
+                                      "nothing has to be sought")
 def single_point(results: Results) -> Finding:
     """As (14), (15) with that ε: judged by the answers, not by the number of points."""
     return _beside_closest(results, _separation(results), "ε the separation of the points")
@@ -53,7 +56,8 @@ def _beside_closest(results: Results, width: str | float, words: str) -> Finding
         slip = any("slip through" in said for end in ends for said in end["warnings"])
         same[pairing] = max(apart) <= SAME and not slip
         as_often[pairing] = all(end["contact_intervals"] <= near["contact_intervals"] for end, near in zip(ends, nearest))
-        told.append(f"{how} {' and '.join(f'{100 * each:.1f} %' for each in apart)} off, touching {_touches(ends)} times, peak force {peaks} times that of closest points"
+        told.append(f"{how} {' and '.join(f'{100 * each:.1f} %' for each in apart)} off, touching {_touches(ends)} times, peak force {peaks} times that of "
+                    f"closest points"
                     + ", points slip through between each other" * slip)
     holds = same["pairwise-printed"] and as_often["pairwise-printed"]
     return Finding(AGREES if holds else PARTLY if any(same.values()) else DIFFERS, f"{words}, on two meshes (closest points touch "

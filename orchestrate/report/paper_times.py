@@ -1,7 +1,7 @@
 """Sections 3.1 and 3.3: the contact times that the paper prints, each over maps of the nu and k that it does not state, and all of them at once.
 
-A map is a sweep over nu and k, for those that lose ellipticity on several coarse meshes; what lies between its runs is interpolated in the logarithm of k. Runs with
-det F <= 0 are no answers.
+A map is a sweep over nu and k, for those that lose ellipticity on several coarse meshes; what lies between its runs is interpolated in the logarithm of k.
+Runs with det F <= 0 are no answers.
 """
 
 from dataclasses import dataclass
@@ -16,6 +16,7 @@ from .paper_judging import AGREES, DIFFERS, PARTLY, Finding, Results, bar, both_
 
 DISC_MAP, OBLIQUE_MAP, BALL_MAP, SOLID_MAP = "calibrate", "calibrate-oblique", "calibrate-ball", "calibrate-ball-3d"
 MAPS = {"disc": (DISC_MAP,), "oblique disc": (OBLIQUE_MAP,), "ball": (BALL_MAP, SOLID_MAP)}   # of each number of the paper
+EVERY = [name for maps in MAPS.values() for name in maps]
 ANGLE, OTHER = 60.0, 30.0   # degrees from the plane: normal incidence is pi/2 in the paper; and what pi/3 from the normal would be
 FINE = 400                  # values of k between those of the runs
 Ranges = list[tuple[float, float]]
@@ -28,8 +29,10 @@ def oblique_time(results: Results) -> Finding:
     """As the ball's time, at 60 degrees from the plane; 30 degrees stand beside."""
     rows = results.table(OBLIQUE_MAP)
     other, neo = _met(_whole(rows[(rows.exit == 0) & (rows.angle == OTHER)]), OBLIQUE_MAP), finished(results, "oblique")
-    converged = ", ".join(f"{1e3 * time:.2f} ± {1e3 * error:.2f} ms (ν = {nu:g})" for nu, (time, error) in ((nu, bar(neo, "contact_time", nu=nu)) for nu in neo.nu))
-    return _over_meshes(results, OBLIQUE_MAP, rows[rows.angle == ANGLE], f"At {OTHER:g}° from the plane it is met on {_where(other)}. (The run of disc-oblique-svk: "
+    converged = ", ".join(f"{1e3 * time:.2f} ± {1e3 * error:.2f} ms (ν = "
+                          f"{nu:g})" for nu, (time, error) in ((nu, bar(neo, "contact_time", nu=nu)) for nu in neo.nu))
+    return _over_meshes(results, OBLIQUE_MAP, rows[rows.angle == ANGLE], f"At {OTHER:g}° from the plane it is met on {_where(other)}. (The run of "
+                                                                         f"disc-oblique-svk: "
                         f"{both_times(results.summary('disc-oblique-svk'))}; the neo-Hookean disc, another law, converges to {converged}.)",
                         [results.picture("disc-oblique-svk", "force")], [results.run("disc-oblique-svk"), *results.sweep_runs("oblique")])
 
@@ -39,7 +42,8 @@ def disc_time(results: Results) -> Finding:
     """Agrees where some (ν, k) of the map, with ellipticity kept, meet it with SVK: the paper states neither."""
     rows, given = finished(results, DISC_MAP), loaded(DISC_MAP).figure
     rows = rows[(rows.law == "svk") & rows.ellipticity_lost_time.isna()]
-    met, above = ({nu: ranges for nu, ranges in sweep_figures.level_set(given | {"colour": name}, rows).items() if ranges} for name in ("contact_time", "thresholded_contact_time"))
+    met, above = ({nu: ranges for nu, ranges in sweep_figures.level_set(given | {"colour": name}, rows).items() if ranges}
+                  for name in ("contact_time", "thresholded_contact_time"))
     return Finding(AGREES if met else DIFFERS, f"with SVK met for {_each(met) or 'no ν and k'} [Pa/m] (the time above 1 % of the peak force for "
                    f"{'ν = ' + ', '.join(f'{nu:g}' for nu in above) if above else 'no ν'}); the default run (ν = 0.45, k = 10¹⁰ Pa/m) gives "
                    f"{both_times(results.summary(DISC))}.",
@@ -50,14 +54,16 @@ def disc_time(results: Results) -> Finding:
 def ball_time(results: Results) -> Finding:
     """Over a map of (ν, k) on coarse meshes, as the paper states none of these: agrees where some (ν, k) meets it, to half a unit of its last digit, on every
     mesh with ellipticity kept; partly where one meets it on some mesh only, or with ellipticity lost; else not. Runs with det F ≤ 0 are no answers."""
-    return _over_meshes(results, BALL_MAP, results.table(BALL_MAP), f"(The run of {BALL}: {both_times(results.summary(BALL))}; the neo-Hookean ball, another law, "
+    return _over_meshes(results, BALL_MAP, results.table(BALL_MAP), f"(The run of {BALL}: {both_times(results.summary(BALL))}; the neo-Hookean ball, another "
+                                                                    f"law, "
                         f"converges to {both_times(results.summary(BALL_NEO))}.)", [results.picture(BALL, "force")], [results.run(BALL), results.run(BALL_NEO)])
 
 
 @states("Section 3.3, figure 10", "ball, SVK, 8 m/s: contact time 0.00603 s, as the paper may have run it: in three dimensions")
 def ball_time_3d(results: Results) -> Finding:
     """As the ball's time as a body of revolution, on meshes of tetrahedra."""
-    return _over_meshes(results, SOLID_MAP, results.table(SOLID_MAP), f"(The neo-Hookean ball in three dimensions, another law, gives {both_times(results.summary('ball'))}.)",
+    return _over_meshes(results, SOLID_MAP, results.table(SOLID_MAP), f"(The neo-Hookean ball in three dimensions, another law, gives "
+                                                                      f"{both_times(results.summary('ball'))}.)",
                         [], [results.run("ball")])
 
 
@@ -69,11 +75,14 @@ def _over_meshes(results: Results, name: str, every: pd.DataFrame, beside: str, 
     independent = [nu for nu in rows.nu.unique() if _together([sound.get((h, nu), []) for h in meshes])]
     nearest = whole.loc[(whole.contact_time - time).abs().idxmin()] if len(whole) else None
     same = "" if nearest is None else f"; nearest ν = {nearest.nu:g}, k = {nearest.penalty:.2g}: " + ", ".join(
-        f"{1e3 * row.contact_time:.3f} ms on {1e3 * row.mesh_size:g} mm ({when(row.ellipticity_lost_time, 'ellipticity lost')}, {when(row.breakdown_time, 'det F ≤ 0')})"
+        f"{1e3 * row.contact_time:.3f} ms on {1e3 * row.mesh_size:g} mm ({when(row.ellipticity_lost_time, 'ellipticity lost')}, "
+        f"{when(row.breakdown_time, 'det F ≤ 0')})"
         for row in rows[(rows.nu == nearest.nu) & (rows.penalty == nearest.penalty)].itertuples())
     return Finding(AGREES if independent else PARTLY if met else DIFFERS,
-                   f"of {len(rows)} runs over ν, k and mesh {len(rows) - len(whole)} invert elements (det F ≤ 0). Between the others it is met on {_where(met)}; with ellipticity kept "
-                   f"on {_where(sound)}; so on all meshes for {'ν = ' + ', '.join(f'{nu:g}' for nu in independent) if independent else 'no ν and k: the number is not mesh-independent'}"
+                   f"of {len(rows)} runs over ν, k and mesh {len(rows) - len(whole)} invert elements (det F ≤ 0). Between the others it is met on "
+                   f"{_where(met)}; with ellipticity kept "
+                   f"on {_where(sound)}; so on all meshes for "
+                   f"{'ν = ' + ', '.join(f'{nu:g}' for nu in independent) if independent else 'no ν and k: the number is not mesh-independent'}"
                    f"{same}. {beside}", [*results.drawn(name), *figures], [*results.sweep_runs(name), *runs])
 
 
@@ -112,8 +121,9 @@ def _each(met: dict[float, Ranges]) -> str:
 
 @states("Sections 3.1, 3.3", "one material and one contact for all: with the same ν and k 4.8 ms of the disc, 4.5 ms of the oblique disc, 6.03 ms of the ball")
 def at_once(results: Results) -> Finding:
-    """On the ν that all maps have, with SVK, the angle from the plane or the normal. A number is met where it lies, to half a unit of its last digit, within the error
-    bar of the runs, or, on coarse meshes, between them. Agrees where some (ν, k) meets all three with ellipticity kept; partly where one does whatever is lost; else not."""
+    """On the ν that all maps have, with SVK, the angle from the plane or the normal. A number is met where it lies, to half a unit of its last digit, within
+    the error bar of the runs, or, on coarse meshes, between them. Agrees where some (ν, k) meets all three with ellipticity kept; partly where one does
+    whatever is lost; else not."""
     whole, sound = ({angle: _joint(results, angle, kept) for angle in (ANGLE, OTHER)} for kept in (False, True))
     met, kept = ({angle: {each.nu: each.met for each in maps if each.met} for angle, maps in found.items()} for found in (whole, sound))
     words = []
@@ -124,13 +134,14 @@ def at_once(results: Results) -> Finding:
     each = {name: _alone(results, name, ANGLE) for name in MAPS}
     alone = ". ".join(f"{name}: {_each(found) or 'nowhere'}" for name, found in each.items())
     pairs = ". ".join(f"{first} and {second}: {_each(_common(each[first], each[second])) or 'nowhere'}" for first, second in combinations(MAPS, 2))
-    return Finding(AGREES if any(kept.values()) else PARTLY if any(met.values()) else DIFFERS, f"{'. '.join(words)}. Two at once, oblique at {ANGLE:g}° [Pa/m]: {pairs}. Each alone: {alone}.",
-                   [picture for maps in MAPS.values() for name in maps for picture in results.drawn(name)], [run for maps in MAPS.values() for name in maps for run in results.sweep_runs(name)])
+    return Finding(AGREES if any(kept.values()) else PARTLY if any(met.values()) else DIFFERS, f"{'. '.join(words)}. Two at once, oblique at {ANGLE:g}° "
+                                                                                               f"[Pa/m]: {pairs}. Each alone: {alone}.",
+                   [picture for name in EVERY for picture in results.drawn(name)], [run for name in EVERY for run in results.sweep_runs(name)])
 
 
 @dataclass(frozen=True)
 class Together:
-    """Of a ν of all maps: the ranges of k [Pa/m] that meet all numbers; the k that misses them by least, by which share of one, and the times there in words."""
+    """Of a ν of all maps: the ranges of k [Pa/m] that meet all numbers; the k that misses them by least, by what share of one, and the times there."""
 
     nu: float
     met: Ranges
@@ -182,7 +193,8 @@ def _bounds(k: np.ndarray, each: pd.DataFrame) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _between(results: Results, number: str, angle: float, kept: bool) -> dict[float, pd.DataFrame]:
-    """For each ν of the maps of a number with two k or more: low and high, the smallest and the largest contact time of the runs on all meshes, error bars included, by k."""
+    """For each ν of the maps of a number with two k or more: low and high, the smallest and the largest contact time of the runs on all meshes, error bars
+    included, by k."""
     parts = []
     for name in MAPS[number]:
         rows = finished(results, name)
@@ -217,8 +229,9 @@ def always_longer(results: Results) -> Finding:
             f"{1e3 * excess:+.2f} ms (ν = {nu:g})" for nu, excess in least.items())
     verdict, words = of_both(of)
     lost = [results.summary(name)["ellipticity_lost_time"] for name in (DISC, BALL)]
-    return Finding(verdict, f"{words}.", [*results.drawn(DISC_MAP), *results.drawn(BALL_MAP), *results.drawn(SOLID_MAP)], [run for name in (DISC_MAP, BALL_MAP, SOLID_MAP) for run in results.sweep_runs(name)]
-                   + [results.run(name) for name in (DISC, BALL, DISC_NEO, BALL_NEO)], lost)
+    maps, runs = (DISC_MAP, BALL_MAP, SOLID_MAP), (DISC, BALL, DISC_NEO, BALL_NEO)
+    return Finding(verdict, f"{words}.", [picture for name in maps for picture in results.drawn(name)],
+                   [run for name in maps for run in results.sweep_runs(name)] + [results.run(name) for name in runs], lost)
 
 
 def _least_excess(results: Results) -> dict[float, float]:
