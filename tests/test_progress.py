@@ -37,6 +37,7 @@ def shown(monkeypatch) -> list[Bar]:
     monkeypatch.setitem(sys.modules, "ipykernel", types.ModuleType("ipykernel"))
     monkeypatch.setitem(sys.modules, "tqdm.auto", types.SimpleNamespace(tqdm=Bar))
     bars.clear()
+    progress.forward(None)
     return bars
 
 

@@ -172,7 +172,7 @@ def test_bad_input_of_a_point_is_said_with_its_code(fake, tmp_path, capsys):
     """A point that cannot be run is a row like any other, and the sweep ends with its exit code and one line."""
     assert main(["sweep", str(write(tmp_path, "[product]\nmesh_size = [0.02, 1.0]\n")), "--out", str(tmp_path / "out")]) == 10
     said = capsys.readouterr()
-    assert said.err.count("\n") == 1 and "1 of 2 points have no answer, first: mesh_size: 1 is larger than the radius 0.05" in said.err
+    assert said.err.count("\n") == 1 and "1 of 2 points have no answer, first: mesh_size=1.0: mesh_size: 1 is larger than the radius 0.05" in said.err
     assert table(tmp_path / "out").exit.tolist() == [0, 10] and "again" not in said.err
 
 
