@@ -6,7 +6,7 @@ SWEEPS := oblique friction-jump friction-steps slip-limit contact-time-svk law-c
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws $(SWEEPS) stick-slip verify paper movie pictures test robustness bench bench-quick textbook skipping costs promise scaling materials disc-block-errors pairing-comparison oblique-angles refine refine-oblique clean
+.PHONY: help setup docs disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws $(SWEEPS) stick-slip verify paper movie pictures test robustness bench bench-quick textbook skipping costs promise scaling materials disc-block-errors pairing-comparison oblique-angles refine refine-oblique clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z0-9-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
@@ -72,6 +72,11 @@ paper: $(READY) ## all of the above, and results/paper/report.html
 movie: CASE := disc-oblique
 movie: $(READY) ## a film of a scene, built in or a file: make movie CASE=disc-oblique
 	@$(PYTHON) -m orchestrate $@ $(CASE) $(ARGS)
+
+docs: $(READY) ## a site of README and docs/: results/site/html (installs MkDocs with its theme)
+	@$(PYTHON) -m pip install -q --disable-pip-version-check "mkdocs>=1.6,<2" "mkdocs-material>=9.5,<10"
+	@$(PYTHON) -m orchestrate pages --site results/site/docs
+	@$(PYTHON) -m mkdocs build -q -s && echo "results/site/html/index.html"
 
 pictures: disc-normal disc-oblique ## the README's pictures, again from the present runs
 	@$(PYTHON) -c "from PIL import Image; [Image.open(f'results/{a}.png').convert('RGB').quantize(256).save(b, optimize=True) for a, b in \

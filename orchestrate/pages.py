@@ -2,10 +2,11 @@
 
 import argparse
 import re
+import shutil
 from pathlib import Path
 
 from .describe import describe
-from .places import ROOT, shown
+from .places import COMMAND, ROOT, shown
 
 RESULTS = """# Results
 The folder of a run, or of a direct `FreeFem++ edp/….edp -out DIR`. Written by `python -m orchestrate pages` from what the scripts say of themselves.
@@ -45,12 +46,28 @@ MARKS = "<!-- equations -->\n", "<!-- end of equations -->\n"
 
 
 def main(argv: list[str]) -> int:
-    """Writes the pages below the source folder."""
-    argparse.ArgumentParser(prog="python -m orchestrate pages", description=__doc__).parse_args(argv)
+    """Writes the pages below the source folder; with --site what MkDocs makes a site of."""
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} pages", description=__doc__)
+    parser.add_argument("--site", metavar="DIR", type=Path, help="also put README and docs/ there, for MkDocs (make docs)")
+    options = parser.parse_args(argv)
     for path, text in pages().items():
         path.write_text(text)
         print(shown(path))
+    if options.site:
+        site(options.site)
     return 0
+
+
+def site(folder: Path) -> None:
+    """README as index.md, the pages of docs/ and the pictures; links to files of the program are words there."""
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    for path in [ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]:
+        text = path.read_text().replace("](docs/", "](").replace("](../README.md", "](index.md").replace("](../CONTRIBUTING.md", "](CONTRIBUTING.md")
+        text = re.sub(r"\[([^]]+)\]\((?:\.\./)*(?:edp|orchestrate|verification|LICENSE|CITATION)[^)]*\)", r"`\1`", text)
+        (folder / ("index.md" if path.name == "README.md" else path.name)).write_text(text)
+    for path in ROOT.glob("*.png"):
+        shutil.copy(path, folder)
 
 
 def pages() -> dict[Path, str]:
