@@ -71,11 +71,11 @@ def test_forces_on_a_plane(ran, name, given):
 
 @pytest.mark.parametrize("given", [{}, {"pairing": "pairwise"}, {"angle": 60, "friction_static": 0.4}])
 def test_both_bodies_bear_the_force_between_them(ran, given):
-    """Of two bodies each carries the normal force once (each takes both roles: to 10 % on coarse elements), both together twice of it exactly."""
+    """Of two bodies each carries the normal load once (each takes both roles: to 10 % on coarse elements), both together twice of it exactly."""
     result = ran("disc-block", **given)
     forces, there = summed(result)
     if "pairing" not in given:      # its forces differ in direction
-        np.testing.assert_allclose(forces.pressure[[1, 2]].sum(axis=1), 2 * there.normal_force, rtol=1e-6)
+        np.testing.assert_allclose(forces.pressure[[1, 2]].sum(axis=1), 2 * there.normal_load, rtol=1e-6)
     shares = contact.read(result.folder).eval("load = pressure * weight").groupby("body").load.sum()
     assert shares[1] == pytest.approx(shares[2], rel=0.1)
     np.testing.assert_allclose(forces.shear[1].sum(), forces.shear[2].sum(), rtol=0.1, atol=1e-9)
