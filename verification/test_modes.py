@@ -65,7 +65,7 @@ def test_spectrum_of_a_force(tmp_path):
     table, found = of(tmp_path, "disc-normal", {"accuracy": 0.3, "modes": 12})
     assert len(vibration.read(found.folder)) == 12 and (figure := vibration.draw(table, found.history, "/m")) and len(figure.axes) == 2
     (found.folder / "modes.csv").write_text("mode\n1\n")
-    with pytest.raises(Unreadable, match="modes.csv lacks the columns frequency"):
+    with pytest.raises(Unreadable, match="modes.csv cannot be read: it is not as the run has written it"):
         vibration.read(found.folder)
 
 
