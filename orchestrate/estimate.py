@@ -194,7 +194,7 @@ def largest(estimated: Mapping[str, float]) -> float:
 def touches(fine: Mapping, coarse: Mapping) -> list[str]:
     """A sentence where the runs of a pair saw different numbers of touches, so that what they differ by estimates nothing."""
     seen, other = (summary.get("contact_intervals") for summary in (fine, coarse))
-    return [f"touches: the run has {seen} intervals of contact, one with {COARSER:.1f} times larger elements and steps {other}: answers that are beyond the accuracy asked for "
+    return [f"touches: contact intervals are {seen} in the run and {other} in one with {COARSER:.1f} times larger elements and steps: answers that are beyond the accuracy asked for "
             "are known to no more than that: look at contacts.csv for what each touch does, or ask for a smaller accuracy"] if seen != other else []
 
 

@@ -224,5 +224,5 @@ def test_the_same_steps_are_no_estimate(tmp_path):
 def test_runs_that_saw_different_touches_say_so():
     """Where the runs of a pair have different numbers of intervals of contact a warning says that, and how many; where they have the same nothing does."""
     told, = estimate.touches({"contact_intervals": 3}, {"contact_intervals": 2})
-    assert told.startswith("touches: the run has 3 intervals of contact, one with 1.4 times larger elements and steps 2")
+    assert told.startswith("touches: contact intervals are 3 in the run and 2 in one with 1.4 times larger elements and steps")
     assert not estimate.touches({"contact_intervals": 3}, {"contact_intervals": 3})
