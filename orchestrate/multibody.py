@@ -112,6 +112,11 @@ class Multibody:
         return scene.of_bodies("columns", describe(script=self.script), len(self.bodies))
 
     @property
+    def of_files(self) -> bool:
+        """Whether a body has the mesh of a file, which no other run refines."""
+        return any(bool(body.mesh) for body in self.bodies)
+
+    @property
     def meshed(self) -> bool:
         """Whether Python makes the mesh, with gmsh."""
         return True

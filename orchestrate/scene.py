@@ -69,6 +69,11 @@ class Scene:
         return of_bodies("columns", describe(script=self.script))
 
     @property
+    def of_files(self) -> bool:
+        """Never: a mesh of the user's comes beside the scene."""
+        return False
+
+    @property
     def meshed(self) -> bool:
         """Whether Python makes the mesh, with gmsh; else the script does."""
         return self.script in parameters.table()["mesh"].scripts
