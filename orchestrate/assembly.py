@@ -388,7 +388,7 @@ def data_file(scene: Multibody, disc: dict[str, Value], centres: np.ndarray, rou
         head = [("ffimpact-bodies", 1)]
         starts = [(*body.position, body.angle, *body.velocity, body.spin) for body in scene.bodies]
     lines = [*head, ("disc", *(float(disc[name]) for name in LIKE)), ("bodies", len(scene.bodies))]
-    lines += [(body.name, body.law, body.young, body.nu, body.density, *centre, *start) for body, centre, start in zip(scene.bodies, centres, starts)]
+    lines += [(body.name, body.law + (f":{body.law_parameters}" if body.law_parameters != "none" else ""), body.young, body.nu, body.density, *centre, *start) for body, centre, start in zip(scene.bodies, centres, starts)]
     lines += rounds
     lines += [("files", len(files := [k for k, given in enumerate(scene.given["body"]) if "file" in given])), *((k,) for k in files)]
     lines += [("obstacles", len(scene.obstacles))]

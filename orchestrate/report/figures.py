@@ -23,7 +23,7 @@ from ..parameters import Value
 from ..places import COMMAND
 from ..results import Contents, check_files, read_history, read_json, read_scene
 
-LAWS = {"svk": "St. Venant–Kirchhoff", "neohookean": "neo-Hookean", "incompressible": "incompressible neo-Hookean"}
+LAWS = {"svk": "St. Venant–Kirchhoff", "neohookean": "neo-Hookean", "mooney-rivlin": "Mooney–Rivlin"}
 BLUE, ORANGE, GREEN, PURPLE, BLACK, GREY = "#0072b2", "#d55e00", "#009e73", "#aa4499", "#222222", "#999999"
 SMALL = 7.5   # text of legends, of numbers in cells and below figures; all other text has the style's size
 STYLE = {"font.size": 9, "axes.titlesize": 9, "legend.fontsize": SMALL, "figure.titlesize": 9, "axes.spines.top": False, "axes.spines.right": False,
@@ -129,8 +129,9 @@ def title(scene: dict[str, Value]) -> str:
 
 
 def material(one: dict[str, Value]) -> str:
-    """Law, E, nu and density of a body."""
-    return f"{LAWS.get(one['law'], one['law'])}, E = {1e-6 * one['young']:g} MPa, ν = {one['nu']:g}, ρ = {one['density']:g} kg/m³"
+    """Law with its own numbers, E, nu and density of a body."""
+    own = "" if one.get("law_parameters", "none") == "none" else f" ({one['law_parameters']})"
+    return f"{LAWS.get(one['law'], one['law'])}{own}, E = {1e-6 * one['young']:g} MPa, ν = {one['nu']:g}, ρ = {one['density']:g} kg/m³"
 
 
 def as_written(text: str) -> str:
