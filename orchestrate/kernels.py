@@ -35,7 +35,7 @@ def build(command: str, version: str, environment: Mapping[str, str]) -> bool:
         with open(BUILT / "lock", "w") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)   # processes that start together: one builds, the others wait
             if not _built(plugin, loading):
-                _build(maker, plugin, loading, environment)
+                _build(command, maker, plugin, loading, environment)
         return True
     except (OSError, subprocess.SubprocessError):
         with contextlib.suppress(OSError):
@@ -53,11 +53,14 @@ def _built(plugin: Path, loading: str) -> bool:
     return plugin.exists() and null.exists() and null.read_text() == loading
 
 
-def _build(maker: Path, plugin: Path, loading: str, environment: Mapping[str, str]) -> None:
+def _build(command: str, maker: Path, plugin: Path, loading: str, environment: Mapping[str, str]) -> None:
     """The plugin, then the file that loads it: whoever starts meanwhile finds the old, nothing or the new, and all of it."""
     if not plugin.exists():
         with tempfile.TemporaryDirectory(dir=BUILT) as folder:
             subprocess.run([maker, SOURCES / "kernels.cpp", *LIBRARIES], cwd=folder, env=environment, check=True, timeout=300,
+                           stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            (Path(folder) / "try.edp").write_text('load "./kernels"\n')
+            subprocess.run([command, "-nw", "-ne", "-v", "0", "try.edp"], cwd=folder, env=environment, check=True, timeout=60,
                            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
             os.replace(Path(folder) / "kernels.so", plugin)
     part = BUILT / f"null.{os.getpid()}"
