@@ -1,6 +1,7 @@
 // factor.hpp: the tangent A = massScale M + stiffnessScale K in CHOLMOD's hands, A = L L^T with the unknowns that can touch ordered last: those of the
 // list `last`, w. The tail of L is then the factor of their Schur complement, S = A_ww - A_wr A_rr^-1 A_rw = L_ww L_ww^T [N/m], and S^-1 = (A^-1)_ww [m/N] their
-// compliance, without a back-substitution for each. Only the numbers are computed anew while pattern and `last` stay.
+// compliance, without a back-substitution for each. Only the numbers are computed anew while pattern and `last` stay. A small matrix CHOLMOD takes column by
+// column, as L D L^T, which may be indefinite, though not in w; a large one by dense blocks of columns, as L L^T, which may not.
 // What is held has a 1 on the diagonal and no other entries.
 #pragma once
 #include <cholmod.h>
@@ -15,7 +16,6 @@ public:
 
   Factor() {
     cholmod_start(&common);
-    common.supernodal = CHOLMOD_SUPERNODAL;
     common.print = 0;                      // that A is not positive definite is an answer, not an error
   }
 
@@ -83,12 +83,14 @@ public:
     common.method[0].ordering = CHOLMOD_GIVEN;
   }
 
-  // A = L L^T. Returns 0, or 1: A is not positive definite (or holds what is not a number).
+  // L. Returns 0, or 1: A is indefinite, or S is (or it holds what is not a number).
   int factorise() {
     inverse.clear();
+    tail.assign(last.size() * last.size(), 0.);
     cholmod_factorize(&A, L, &common);
     if (common.status != CHOLMOD_OK || L->minor < L->n) return 1;
-    takeTail();
+    if (L->is_super) takeBlocks(); else takeColumns();
+    for (size_t j = 0; j < last.size(); j++) if (!(tail[j * last.size() + j] > 0)) return 1;
     return 0;
   }
 
@@ -143,17 +145,28 @@ private:
     return X;
   }
 
-  // L_ww, out of the supernodes: dense columns that have their rows in common.
-  void takeTail() {
+  // L_ww, out of blocks of columns that have their rows in common.
+  void takeBlocks() {
     int n = int(last.size()), first = int(A.nrow) - n;
     const int *super = (int *)L->super, *pi = (int *)L->pi, *px = (int *)L->px, *rows = (int *)L->s;
     const double *x = (double *)L->x;
-    tail.assign(size_t(n) * n, 0.);
     for (int s = int(L->nsuper) - 1; s >= 0 && super[s + 1] > first; s--) {
       int height = pi[s + 1] - pi[s];
       for (int j = std::max(first, super[s]); j < super[s + 1]; j++)
         for (int k = j - super[s]; k < height; k++)
           tail[size_t(j - first) * n + rows[pi[s] + k] - first] = x[px[s] + size_t(j - super[s]) * height + k];
+    }
+  }
+
+  // L_ww, out of the columns of a unit triangle with D on its diagonal: times the root of D, not a number where that is negative.
+  void takeColumns() {
+    int n = int(last.size()), first = int(A.nrow) - n;
+    const int *p = (int *)L->p, *count = (int *)L->nz, *rows = (int *)L->i;
+    const double *x = (double *)L->x;
+    for (int j = first; j < int(A.nrow); j++) {
+      double scale = L->is_ll ? 1 : std::sqrt(x[p[j]]), *column = &tail[size_t(j - first) * n];
+      for (int k = p[j]; k < p[j] + count[j]; k++) column[rows[k] - first] = x[k] * scale;
+      if (!L->is_ll) column[j - first] = scale;
     }
   }
 };
