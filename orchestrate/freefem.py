@@ -12,6 +12,7 @@ from functools import cache, partial
 from pathlib import Path
 from typing import NamedTuple
 
+from . import kernels
 from .failure import NotInstalled
 from .places import INSTALLED, PACKAGE, ROOT
 
@@ -70,6 +71,7 @@ def _find(variables: tuple[tuple[str, str], ...]) -> FreeFem:
         raise NotInstalled(f"{command} lacks its plugin Element_QF or does not start; {HOW}")
     if tuple(map(int, version.split(".")[:2])) < OLDEST:
         raise NotInstalled(f"{command} is version {version}, needed is {OLDEST[0]}.{OLDEST[1]} or newer; {HOW}")
+    kernels.build(command, version, environment)
     return FreeFem(command, version, environment)
 
 

@@ -202,8 +202,8 @@ def reusable(scene: Scene | Multibody, folder: Path, mesh_file: Path | None = No
 
 
 def code_hash() -> str:
-    """sha256 over what decides a result besides the scene: the FreeFEM scripts and what makes meshes and scene.dat."""
-    return _hash(sorted(imported(ENTRANCE) - HARMLESS), sorted(path for path in (ROOT / "edp").rglob("*") if path.suffix in (".edp", ".idp")))
+    """sha256 over what decides a result besides the scene: the FreeFEM scripts, their kernels and what makes meshes and scene.dat."""
+    return _hash(sorted(imported(ENTRANCE) - HARMLESS), sorted(path for path in (ROOT / "edp").rglob("*") if path.suffix in (".edp", ".idp", ".hpp", ".cpp")))
 
 
 @cache
