@@ -85,7 +85,7 @@ def test_the_lock_is_within_the_ranges():
         return tuple(map(int, version.split(".")))
     pins = dict(line.split("==") for line in (ROOT / "requirements.lock").read_text().splitlines() if not line.startswith("#"))
     for wanted in PROJECT["project"]["dependencies"] + PROJECT["project"]["optional-dependencies"]["test"]:
-        name, low, high = re.fullmatch(r"(\w+)>=([\d.]+)(?:,<(\d+))?", wanted).groups()
+        name, low, high = re.fullmatch(r"([\w-]+)>=([\d.]+)(?:,<(\d+))?", wanted).groups()
         assert numbers(low) <= numbers(pins[name]) and (not high or numbers(pins[name]) < numbers(high))
 
 
