@@ -92,7 +92,7 @@ def run(scene: Scene | Multibody, overrides: dict[str, Value] | None = None, out
                 _say_where(stage, failure.folder)
                 replace(stage, failure.folder, _same_scene(failure.folder, scene, mesh_file))
             raise
-        provenance |= asked_for | {"git": _git(), "mesh": _sha256(mesh_file or stage / scene.mesh_name) if scene.meshed else None}
+        provenance |= asked_for | {"git": commit(), "mesh": _sha256(mesh_file or stage / scene.mesh_name) if scene.meshed else None}
         _say_where(stage, folder)
         _tell_accuracy(stage / "scene.toml", scene.values["accuracy"])
         _finish(stage, scene, found | {"total_seconds": time.monotonic() - started}, provenance)
@@ -264,12 +264,12 @@ def _sha256(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def _git() -> str:
+def commit(digits: int = 40) -> str:
     """The commit, with -dirty where the tree differs from it; unknown where the program is installed, in whosever folder."""
     if INSTALLED:
         return "unknown"
     try:
-        return subprocess.run(["git", "describe", "--always", "--dirty", "--abbrev=40", "--exclude=*"], cwd=ROOT,
+        return subprocess.run(["git", "describe", "--always", "--dirty", f"--abbrev={digits}", "--exclude=*"], cwd=ROOT,
                               capture_output=True, text=True, check=True).stdout.strip()
     except (OSError, subprocess.CalledProcessError):
         return "unknown"

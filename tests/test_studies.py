@@ -1,6 +1,7 @@
 """The studies: runs in parallel that survive failures, limits and interruption; stress, refine and the textbook on top."""
 
 import os
+import re
 import signal
 import sys
 
@@ -185,3 +186,10 @@ def test_textbook_compares_the_same_problem(tmp_path, capsys):
     assert max(row.energy_drift_ours, row.energy_drift_textbook) < 1e-8
     assert row.ratio == pytest.approx(row.seconds_a_step_textbook / row.seconds_a_step_ours)
     assert code == (row.ratio < textbook.ASKED) and "the answers differ by" in capsys.readouterr().out
+
+
+def test_pages_say_what_measured_them(tmp_path):
+    """At the top of a page stand the command as it was given, the commit, the day and the machine, then the verdict."""
+    study.page(tmp_path / "page.md", "A title", ["promise", "--scenes", "3"], "text\n\nverdict")
+    title, words, _, verdict, _, text = (tmp_path / "page.md").read_text().splitlines()
+    assert re.fullmatch(r"Written by `\S.*promise --scenes 3` at commit \w+(-dirty)?, \d{4}-\d\d-\d\d, on \d+ cores, .+\.", words) and (title, verdict, text) == ("# A title", "verdict", "text")

@@ -70,7 +70,7 @@ def main(argv: list[str]) -> int:
     draw(table, out / "oblique-angles.png")
     text = report(table)
     print(f"{text}\n{shown(out)}/oblique-angles.{{csv,png}}")
-    study.page(options.page, "Disc and ball over the angle of incidence", "make oblique-angles", text)
+    study.page(options.page, "Disc and ball over the angle of incidence", ["oblique-angles", *argv], text)
     return 0 if holds(table) else 1
 
 
