@@ -76,7 +76,7 @@ movie: $(READY) ## a film of a scene, built in or a file: make movie CASE=disc-o
 docs: $(READY) ## a site of README and docs/: results/site/html (installs MkDocs with its theme)
 	@$(PYTHON) -m pip install -q --disable-pip-version-check "mkdocs>=1.6,<2" "mkdocs-material>=9.5,<10"
 	@$(PYTHON) -m orchestrate pages --site results/site/docs
-	@$(PYTHON) -m mkdocs build -q -s && echo "results/site/html/index.html"
+	@NO_MKDOCS_2_WARNING=1 $(PYTHON) -m mkdocs build -q -s && echo "results/site/html/index.html"
 
 pictures: disc-normal disc-oblique ## the README's pictures, again from the present runs
 	@$(PYTHON) -c "from PIL import Image; [Image.open(f'results/{a}.png').convert('RGB').quantize(256).save(b, optimize=True) for a, b in \
