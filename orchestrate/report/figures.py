@@ -34,6 +34,7 @@ STRESS = "von Mises stress [MPa]"
 SHAPES = 9   # small multiples at most
 ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 1), "handlelength": 1.6, "columnspacing": 1.4}   # a legend above its panel
 BELOW = {"loc": "upper center", "bbox_to_anchor": (0.5, 0), "borderaxespad": 5.5}         # one below it, under the numbers and the name of its axis
+BARE = {"xticks": [], "yticks": []}                               # of panels without axes: their ticks would still be laid out
 BAND = "#c8c8c8"   # of what other curves run along
 DASHED = (0, (4, 2))
 filterwarnings("ignore", "Glyph .* missing from", UserWarning)    # a letter that the font lacks is an empty box in the title
@@ -499,7 +500,7 @@ def _shapes(series: list[tuple[float, Path]], half: bool) -> plt.Figure:
     rows = -(-len(bodies) // columns)
     size = 6.4 / columns
     figure, grid = plt.subplots(rows, columns, figsize=(6.4 + 0.8, rows * (size * (high - floor) / (right - left) + 0.25) + 0.3),
-                                squeeze=False)
+                                squeeze=False, subplot_kw=BARE)
     for axes in grid.flat:
         axes.set_axis_off()
     largest = most_stress(bodies)
@@ -508,7 +509,7 @@ def _shapes(series: list[tuple[float, Path]], half: bool) -> plt.Figure:
         picture = draw_body(axes, body, largest)
         axes.set_title(f"{1e3 * t:.2f} ms", pad=2)
     scale_bar(grid[-1, 0])
-    figure.colorbar(picture, ax=grid, label=STRESS, shrink=0.7, aspect=30, extend="max")
+    figure.colorbar(picture, ax=grid[:, -1], label=STRESS, shrink=0.7, aspect=30, extend="max")
     return figure
 
 
@@ -572,4 +573,6 @@ def draw_ground(axes: plt.Axes, view: tuple[float, float, float, float]) -> None
 
 def draw_body(axes: plt.Axes, body: Body, largest: float) -> TriMesh:
     """The body coloured by its stress, on a scale from 0 to `largest` MPa."""
-    return axes.tripcolor(*body.points.T, body.triangles, body.stress, shading="gouraud", cmap="viridis", vmin=0, vmax=largest)
+    picture = axes.tripcolor(*body.points.T, body.triangles, body.stress, shading="gouraud", cmap="viridis", vmin=0, vmax=largest)
+    picture.set_in_layout(False)
+    return picture
