@@ -7,8 +7,10 @@ from textwrap import wrap
 from warnings import filterwarnings
 
 import matplotlib
+import matplotlib.artist
 
 matplotlib.use("Agg")
+matplotlib.artist.kwdoc = lambda artist: ""     # what it would write into its docstrings takes a fifth of its import
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import TriMesh
@@ -100,7 +102,7 @@ def save(figure: plt.Figure, path: Path) -> None:
     """Writes the figure, laid out and drawn once (savefig draws it twice), and closes it."""
     figure.set_dpi(plt.rcParams["savefig.dpi"])
     figure.canvas.draw()
-    Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB").save(path, dpi=(figure.dpi, figure.dpi), compress_level=3)
+    Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB").save(path, dpi=(figure.dpi, figure.dpi), compress_level=1)
     plt.close(figure)
 
 
