@@ -456,8 +456,8 @@ def _pose(t: float, path: Path, history: dict[str, np.ndarray]) -> Pose:
     snapshot = vtu.read(path)
     moved = snapshot.points + snapshot.fields["displacement"][:, :2]
     sides = snapshot.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
-    inner = set(map(tuple, sides[:, ::-1]))
-    following = {a: b for a, b in map(tuple, sides) if (a, b) not in inner}   # along the boundary
+    number = sides @ (len(moved), 1)
+    following = dict(sides[~np.isin(number, sides[:, ::-1] @ (len(moved), 1))].tolist())   # along the boundary: no triangle on the other side
     loop = [next(iter(following))]
     while following[loop[-1]] != loop[0]:
         loop.append(following[loop[-1]])
