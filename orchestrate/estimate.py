@@ -25,6 +25,7 @@ from .parameters import Value
 from .results import Answers, suffixes
 
 COARSER = math.sqrt(2)
+COARSE, FINE = "coarser", "finer"   # folders of the runs beside the main one
 MOST = 2                    # refinements: elements and steps are then half as large as at first
 SIZES = ("mesh_size", "contact_mesh_size", "dt")
 LARGEST = 0.4               # accuracy that the scripts take
@@ -57,7 +58,7 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
     `read` gives the Answers of a folder, `scaled` the entries of the scene with larger or smaller elements and steps (left out: other).
     """
     scaled = scaled or other
-    coarser, finer = stage / "coarser", stage / "finer"
+    coarser, finer = stage / COARSE, stage / FINE
     answers = read(stage)
     summary, used = answers.summary, answers.used
     asked, seconds, refinements, estimated, before, sentences = values["accuracy"], 0.0, 0, None, math.inf, []

@@ -26,7 +26,7 @@ from ..places import COMMAND
 from ..progress import Line, forward
 from ..results import read_json
 
-CORES = len(os.sched_getaffinity(0))
+CORES = freefem.CORES
 TOO_LONG = TooLong("").code   # of a run that its time limit ended
 STOPS = (signal.SIGTERM, signal.SIGHUP, signal.SIGINT)
 LONGEST = 200               # characters of a folder's name
