@@ -24,6 +24,7 @@ from .places import INSTALLED
 FREE, AXIS = 1, 2          # boundary labels
 LIBRARIES = "apt-get install libglu1-mesa libxcursor1 libxft2 libxinerama1 libgomp1"   # that gmsh's wheel needs, with what they need
 GROWTH = 0.3               # element size gained per length of distance from the contact arc
+DIGITS = 10                # decimals of what gmsh is given, in sizes of the body: round-off settles ties, and the mesh would depend on the unit of length
 OWN = 360                  # the region of the triangles of our own discs, whose outline is a circle however long its edges are (edp/core/input/mesh-file.idp)
 
 
