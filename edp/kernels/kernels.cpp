@@ -100,6 +100,11 @@ static long kernelSolve(const Reals &b, const Reals &x) {
   return 0;
 }
 
+static long kernelRespond(const Ints &unknowns, const Reals &b, const Reals &x) {
+  factor.respond(numbers(unknowns), &(*b)[0], &(*x)[0]);
+  return 0;
+}
+
 // C = (A^-1)_uu of the unknowns u (n x n), all of which are in w.
 static long kernelCompliance(const Ints &unknowns, const Table &C) {
   std::vector<int> u = numbers(unknowns), at(body.ndof, -1);
@@ -138,6 +143,7 @@ static void addKernels() {
   add("kernelTangentProduct", kernelTangentProduct);
   add("kernelFactorise", kernelFactorise);
   add("kernelSolve", kernelSolve);
+  add("kernelRespond", kernelRespond);
   add("kernelCompliance", kernelCompliance);
 }
 
