@@ -48,7 +48,7 @@ def test_where_they_cannot_be_built_nothing_loads_them(copy, monkeypatch):
     assert not kernels.build(program.command, program.version, {"PATH": os.environ["PATH"]}) and not (copy / "null").exists()
     assert not kernels.build("/no/such/FreeFem++", program.version, {})
 
-SAME = 1e-12                             # relative; of solutions times what round-off of A makes of them
+SAME = 1e-12
 PLACES = {"plane": ("tangent-disc", {"accuracy": 0.1}), "axisymmetric": ("tangent-ball", {"accuracy": 0.1}),
           "3d": ("tangent-3d", {"mesh_size": 0.025, "contact_mesh_size": 0.015})}
 
@@ -72,5 +72,4 @@ def test_two_bodies_of_different_laws(tmp_path, integrator):
 def equal(found: dict) -> None:
     if not found["built"]:
         pytest.skip("no compiler here")
-    assert found["refused"] == 0 and max(found[name] for name in ("deformed", "forces", "product", "compliance")) < SAME
-    assert found["solve"] < SAME
+    assert found["refused"] == 0 and max(found[name] for name in ("deformed", "forces", "product", "solve", "response", "compliance")) < SAME

@@ -32,6 +32,8 @@ template<int D, int H> struct Stored {
 enum { fine = 0, inverted = 2, notANumber = 3 };
 enum { stepMean = 0, stepMiddle = 1, stepEnd = 2 };   // of normal.idp
 
+const int most = 10;                       // nodes of an element: those of a quadratic tetrahedron
+
 // The arrays of integrators.idp that forces() reads (F0, C0) and fills.
 struct Deformation { double *F0, *C0, *F1, *C1, *jacobian1, *Fs, *Ss; };
 
@@ -153,7 +155,42 @@ public:
         for (int i = 0; i < D; i++) block[size_t(pairOfMass[e]) * D * D + i * D + i] += massScale * massValue[e];
   }
 
+  // At every point, of C: the energy [J/m3], the smallest stretch of the motions there are, ellipticity; of F: Cauchy's stress (6 nq) and von Mises' [Pa].
+  void energies(const double *C, double *W) const { at(C, W, [](const laws::Material &m, const double *c) { return laws::energy(m, c); }); }
+  void ellipticities(const double *C, double *e) const {
+    bool spatial = D == 3;
+    at(C, e, [spatial](const laws::Material &m, const double *c) { return laws::ellipticity(m, c, spatial); });
+  }
+  void smallestStretches(const double *C, double *stretch) const {
+    int D = this->D, H = this->H;
+    at(C, stretch, [D, H](const laws::Material &, const double *c) {
+      double L[3];
+      if (D == 2) return std::sqrt(H == 1 ? std::min(laws::smallerInPlane(c), c[2]) : laws::smallerInPlane(c));
+      laws::principal(c, L);
+      return std::sqrt(std::max(0., L[2]));
+    });
+  }
+  void stresses(const double *F, double *sigma, double *mises) const {
+    for (int q = 0; q < nq; q++) {
+      double f[9], s[6];
+      if (D == 3) whole<3, 0>(F, q, f); else if (H == 1) whole<2, 1>(F, q, f); else whole<2, 0>(F, q, f);
+      mises[q] = laws::cauchy(material[q], f, s);
+      for (int k = 0; k < 6; k++) sigma[k * nq + q] = s[k];
+    }
+  }
+
 private:
+  // values = f(material, C), C of point q, all of it.
+  template<class Function> void at(const double *C, double *values, Function f) const {
+    static const int plane[4] = {0, 1, 3, 2};
+    int n = D == 3 ? 6 : 3 + H;
+    for (int q = 0; q < nq; q++) {
+      double c[6] = {1, 1, 1, 0, 0, 0};
+      for (int k = 0; k < n; k++) c[D == 3 ? k : plane[k]] = C[k * nq + q];
+      values[q] = f(material[q], c);
+    }
+  }
+
   mutable std::vector<double> nodal, pull;
 
   template<int D, int H> int forces(const double *d, const double *history, const double *deadLoad, double massScale, int where, bool breaks,
@@ -179,13 +216,16 @@ private:
     double smallest = 1e300;
     for (size_t g = 0; g + 1 < firstNode.size(); g++) {
       int n = firstNode[g + 1] - firstNode[g];
-      const int *own = &node[firstNode[g]];
       const double *N = &shape[firstShape[g]];
+      double its[most * D];
+      for (int a = 0; a < n; a++) for (int i = 0; i < D; i++) its[a * D + i] = nodal[node[firstNode[g] + a] * D + i];
       for (int p = firstPoint[g]; p < firstPoint[g + 1]; p++) {
         int q = point[p];
         double dF[T::F] = {}, full[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-        for (int a = 0; a < n; a++, N += T::slots)
-          for (int k = 0; k < T::F; k++) dF[k] += N[T::slot(k)] * nodal[own[a] * D + T::component(k)];
+        for (int a = 0; a < n; a++, N += T::slots) {
+          for (int i = 0; i < D; i++) for (int J = 0; J < D; J++) dF[i * D + J] += N[J] * its[a * D + i];
+          if (H) dF[D * D] += N[D] * its[a * D];
+        }
         for (int k = 0; k < T::F; k++) {
           double before = at.F0[k * nq + q], after = before + dF[k];
           at.F1[k * nq + q] = full[3 * T::row(k) + T::column(k)] = after;
@@ -203,8 +243,8 @@ private:
     typedef Stored<D, H> T;
     for (size_t g = 0; g + 1 < firstNode.size(); g++) {
       int n = firstNode[g + 1] - firstNode[g];
-      const int *own = &node[firstNode[g]];
       const double *N = &shape[firstShape[g]];
+      double its[most * D] = {};
       for (int p = firstPoint[g]; p < firstPoint[g + 1]; p++) {
         int q = point[p];
         double F[9], Fs[9], C0[6] = {1, 1, 1, 0, 0, 0}, C1[6], S[6], P[9];
@@ -220,9 +260,12 @@ private:
         for (int k = 0; k < T::C; k++) at.Ss[k * nq + q] = S[T::symmetric(k)];
         laws::nominalStress(Fs, S, P);
         for (int k = 0; k < 9; k++) P[k] *= weight[q];
-        for (int a = 0; a < n; a++, N += T::slots)
-          for (int k = 0; k < T::F; k++) pull[own[a] * D + T::component(k)] += N[T::slot(k)] * P[3 * T::row(k) + T::column(k)];
+        for (int a = 0; a < n; a++, N += T::slots) {
+          for (int i = 0; i < D; i++) for (int J = 0; J < D; J++) its[a * D + i] += N[J] * P[3 * i + J];
+          if (H) its[a * D] += N[D] * P[8];
+        }
       }
+      for (int a = 0; a < n; a++) for (int i = 0; i < D; i++) pull[node[firstNode[g] + a] * D + i] += its[a * D + i];
     }
   }
 

@@ -101,6 +101,26 @@ public:
     std::copy((double *)solution->x, (double *)solution->x + A.nrow * count, x);
   }
 
+  // A x = b, b of entries at u alone, all of which are in w: the rest of L^-1 b is zero, and the way back from there all that is left.
+  void respond(const std::vector<int> &u, const double *b, double *x) {
+    int n = int(last.size()), first = int(A.nrow) - n;
+    std::vector<double> y(A.nrow, 0.);
+    std::vector<int> at(A.nrow);
+    const int *permutation = (int *)L->Perm;
+    for (int k = first; k < int(A.nrow); k++) at[permutation[k]] = k;
+    for (size_t j = 0; j < u.size(); j++) y[at[u[j]]] = b[j];
+    for (int j = 0; j < n; j++) {          // L_ww^-1
+      double *tailY = &y[first];
+      const double *column = &tail[size_t(j) * n];
+      tailY[j] /= column[j];
+      for (int i = j + 1; i < n; i++) tailY[i] -= column[i] * tailY[j];
+    }
+    if (!L->is_super && !L->is_ll) for (int j = 0; j < n; j++) y[first + j] /= tail[size_t(j) * n + j];   // D^-1/2: CHOLMOD's triangle has ones
+    cholmod_dense right = dense(y.data(), 1);
+    cholmod_solve2(CHOLMOD_Lt, L, &right, nullptr, &solution, nullptr, &work1, &work2, &common);
+    for (int k = 0; k < int(A.nrow); k++) x[permutation[k]] = ((double *)solution->x)[k];
+  }
+
   // S^-1 = (A^-1)_ww, whole, by columns.
   const std::vector<double> &compliance() {
     int n = int(last.size()), info = 0;

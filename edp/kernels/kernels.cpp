@@ -58,6 +58,26 @@ static long kernelForces(const Reals &d, const Reals &history, const Reals &dead
   return body.forces(&(*d)[0], &(*history)[0], &(*deadLoad)[0], massScale, int(where), breaks, deformation, &(*residual)[0]);
 }
 
+static long kernelEnergy(const Reals &C, const Reals &W) {
+  body.energies(&(*C)[0], &(*W)[0]);
+  return 0;
+}
+
+static long kernelSmallestStretch(const Reals &C, const Reals &stretch) {
+  body.smallestStretches(&(*C)[0], &(*stretch)[0]);
+  return 0;
+}
+
+static long kernelEllipticity(const Reals &C, const Reals &e) {
+  body.ellipticities(&(*C)[0], &(*e)[0]);
+  return 0;
+}
+
+static long kernelStresses(const Reals &F, const Reals &sigma, const Reals &mises) {
+  body.stresses(&(*F)[0], &(*sigma)[0], &(*mises)[0]);
+  return 0;
+}
+
 static long kernelTangent(const Reals &F, const Reals &S, const double &massScale, const double &stiffnessScale) {
   body.tangent(&(*F)[0], &(*S)[0], massScale, stiffnessScale);
   factor.numbers(body);
@@ -77,6 +97,11 @@ static long kernelFactorise(const Ints &last) {
 
 static long kernelSolve(const Reals &b, const Reals &x) {
   factor.solve(&(*b)[0], &(*x)[0], 1);
+  return 0;
+}
+
+static long kernelRespond(const Ints &unknowns, const Reals &b, const Reals &x) {
+  factor.respond(numbers(unknowns), &(*b)[0], &(*x)[0]);
   return 0;
 }
 
@@ -110,10 +135,15 @@ static void addKernels() {
   add("kernelBodies", kernelBodies);
   add("kernelDeformation", kernelDeformation);
   add("kernelForces", kernelForces);
+  add("kernelEnergy", kernelEnergy);
+  add("kernelSmallestStretch", kernelSmallestStretch);
+  add("kernelEllipticity", kernelEllipticity);
+  add("kernelStresses", kernelStresses);
   add("kernelTangent", kernelTangent);
   add("kernelTangentProduct", kernelTangentProduct);
   add("kernelFactorise", kernelFactorise);
   add("kernelSolve", kernelSolve);
+  add("kernelRespond", kernelRespond);
   add("kernelCompliance", kernelCompliance);
 }
 

@@ -1,6 +1,7 @@
 // laws.hpp: the constitutive laws at one quadrature point (edp/core/law), always in three dimensions: in plane strain F_33 = C_33 = 1.
 // F, P: (i, J) at 3 i + J. Symmetric tensors (C, S): 11, 22, 33, 12, 23, 13. Stresses and moduli in Pa.
 #pragma once
+#include <algorithm>
 #include <cmath>
 
 namespace laws {
@@ -92,6 +93,68 @@ inline void algorithmicStress(const Material &m, const double *C0, const double 
   for (int k = 0; k < 6; k++) H[k] = 0.5 * (C1[k] - C0[k]);
   double e = workExcess(m, M, H) / (2 * contract(H, H) + 1e-300);
   for (int k = 0; k < 6; k++) S[k] += e * H[k];
+}
+
+// W(C) [J/m3], as accurate for small strains as for large ones: neohookeanEnergy() of neohookean.idp.
+inline double energy(const Material &m, const double *C) {
+  double M[6], H[6], S[6];
+  for (int k = 0; k < 6; k++) { M[k] = 0.5 * (C[k] + (k < 3));  H[k] = 0.5 * (C[k] - (k < 3)); }
+  if (!m.neohookean) return m.mu * contract(H, H) + m.lambda / 2 * (H[0] + H[1] + H[2]) * (H[0] + H[1] + H[2]);
+  stress(m, M, S);
+  return workExcess(m, M, H) / 2 + contract(S, H);
+}
+
+// Cauchy's stress F S F^T / det F, and von Mises' of it.
+inline double cauchy(const Material &m, const double *F, double *sigma) {
+  double C[6], S[6], P[9], J = determinant(F), mises = 0;
+  rightCauchyGreen(F, C);
+  stress(m, C, S);
+  nominalStress(F, S, P);
+  for (int i = 0; i < 3; i++)
+    for (int k = i; k < 3; k++) sigma[sym[i][k]] = (P[3 * i] * F[3 * k] + P[3 * i + 1] * F[3 * k + 1] + P[3 * i + 2] * F[3 * k + 2]) / J;
+  for (int k = 0; k < 3; k++) mises += 0.5 * (sigma[k] - sigma[(k + 1) % 3]) * (sigma[k] - sigma[(k + 1) % 3]) + 3 * sigma[3 + k] * sigma[3 + k];
+  return std::sqrt(mises);
+}
+
+// Squared principal stretches, the largest first: principalStretches() of tensors-3d.idp.
+inline void principal(const double *C, double *L) {
+  double q = (C[0] + C[1] + C[2]) / 3, B[6];
+  for (int k = 0; k < 6; k++) B[k] = C[k] - (k < 3 ? q : 0);
+  double p = std::sqrt(contract(B, B) / 6), ratio = determinantOf(B) / std::max(1e-300, 2 * p * p * p);
+  double phi = std::acos(std::max(-1., std::min(1., ratio))) / 3;
+  for (int k = 0; k < 3; k++) L[k] = q + 2 * p * std::cos(phi - 2 * M_PI * k / 3);
+}
+
+// The smaller eigenvalue of the plane block of C.
+inline double smallerInPlane(const double *C) {
+  return 0.5 * (C[0] + C[1] - std::sqrt((C[0] - C[1]) * (C[0] - C[1]) + 4 * C[3] * C[3]));
+}
+
+// The smallest eigenvalue of the acoustic tensor over mu, of waves in a plane with that trace and determinant J^2 of C: planeEllipticity() of svk.idp.
+inline double planeEllipticity(const Material &m, double trace, double J) {
+  double k = 1 + m.lambda / m.mu;
+  if (trace - (1 + k + 1 / (1 + k)) * J > 0)
+    return (k - 1) / 2 * trace - k + (k + 2) * 2 * J * J / (trace + std::sqrt(std::max(0., trace * trace - 4 * J * J)));
+  return (k + 1) * (k - 2) / (2 * k) * trace + 2 * (k + 1) / k * J - k;
+}
+
+// That of all waves of the scene's motions: in the plane of the mesh, or (spatial) in any; svkEllipticity(), neohookeanEllipticity().
+inline double ellipticity(const Material &m, const double *C, bool spatial) {
+  double L[3], least = 1e300, k = 1 + m.lambda / m.mu;
+  if (m.neohookean) {
+    double a = 1 + (1 - 0.5 * std::log(determinantOf(C))) * m.lambda / m.mu;
+    if (!(a < 0)) return 1;
+    if (!spatial) return 1 + a / smallerInPlane(C);
+    principal(C, L);
+    return 1 + a / std::max(0., L[2]);
+  }
+  if (!spatial) return planeEllipticity(m, C[0] + C[1], std::sqrt(C[0] * C[1] - C[3] * C[3])) + (k - 1) / 2 * (C[2] - 1);
+  principal(C, L);
+  for (int i = 0; i < 3; i++) {
+    double a = L[(i + 1) % 3], b = L[(i + 2) % 3];
+    least = std::min(least, planeEllipticity(m, a + b, std::sqrt(std::max(0., a * b))) + (k - 1) / 2 * (L[i] - 1));
+  }
+  return least;
 }
 
 // dP_iJ/dF_kL = delta_ik S_JL + l Q_iJ Q_kL + n (B_ik D_JL + Q_iL Q_kJ), as addModuli() of assembly.idp has it.
