@@ -71,17 +71,18 @@ struct Rows {
 // Newton's matrix at some D, and what solves with it.
 class Newton {
  public:
-  int mostDense = 250, iterations = 0;                             // columns of K that are solved with densely
+  int mostDense = 200, mostIterations = 10;                        // columns of K that are solved with densely; of GMRES with an older P
   bool made = false;
   ~Newton() { forget(); }
-  void forget() { made = false;  if (numeric) umfpack_di_free_numeric(&numeric);  numeric = nullptr; }
+  void forget() { made = false;  iterations = 0;  if (numeric) umfpack_di_free_numeric(&numeric);  numeric = nullptr; }
 
   void make(const Rows &B, const Vector &slopes, const double *C, const double *S) {
-    forget();
     D = slopes;
     assemble(B);
-    if ((int)active.size() <= mostDense) factorDense(B.n, C);
-    else factorSparse(B.n, S);
+    const bool dense = (int)active.size() <= mostDense;
+    if (dense || iterations > mostIterations) forget();
+    if (dense) factorDense(B.n, C);
+    else if (!numeric) factorSparse(B.n, S);
     made = true;
   }
   bool fits(const Rows &B) const { return made && (int)Kp.size() == B.n + 1 && D.size() == (size_t)B.blocks() * B.kinds * B.kinds; }
@@ -99,7 +100,7 @@ class Newton {
     if (m == 0) return;
     product(y, w);
     for (int j = 0; j < m; j++) h[j] = -w[active[j]];
-    dgetrs_("N", &m, &one, LU.data(), &m, pivots.data(), h.data(), &m, &info);
+    dgetrs_("T", &m, &one, LU.data(), &m, pivots.data(), h.data(), &m, &info);
     for (int j = 0; j < m; j++) g[active[j]] += h[j];
     symmetric(n, C, g, y);
   }
@@ -108,7 +109,8 @@ class Newton {
   Vector D, Kx, LU;
   Indices Kp, Ki, active, pivots, Pp, Pi;                          // K by columns; those that have entries; P = K and S where K has entries
   Vector Px;
-  void *numeric = nullptr;
+  void *numeric = nullptr;                                         // the LU of P
+  int iterations = 0;                                              // of the last GMRES
 
   void assemble(const Rows &B) {
     const int n = B.n, k = B.kinds;
@@ -142,15 +144,18 @@ class Newton {
   void factorDense(int n, const double *C) {
     const int m = active.size();
     Indices at(n, -1);
+    Vector soft(m * m);                                            // C, of these
     int info;
     for (int j = 0; j < m; j++) at[active[j]] = j;
-    LU.assign(m * m, 0.);
+    for (int j = 0; j < m; j++) for (int i = 0; i < m; i++) soft[j * m + i] = C[(size_t)n * active[j] + active[i]];
+    LU.assign(m * m, 0.);                                          // transposed: columns are added
     pivots.resize(m);
     for (int j = 0; j < m; j++) {
-      double *column = &LU[j * m];
-      const double *soft = C + (size_t)n * active[j];
-      for (int k : active) for (int e = Kp[k]; e < Kp[k + 1]; e++) column[at[Ki[e]]] += Kx[e] * soft[k];
-      column[j] += 1;
+      for (int e = Kp[active[j]]; e < Kp[active[j] + 1]; e++) {
+        double *row = &LU[at[Ki[e]] * m];
+        for (int i = 0; i < m; i++) row[i] += Kx[e] * soft[j * m + i];
+      }
+      LU[j * m + j] += 1;
     }
     if (m > 0) dgetrf_(&m, &m, LU.data(), &m, pivots.data(), &info);
   }
@@ -178,6 +183,7 @@ class Newton {
     umfpack_di_defaults(control);
     control[UMFPACK_IRSTEP] = 0;
     Vector left = f, w(n);
+    iterations = 0;
     y.assign(n, 0.);
     for (int round = 0; round < 20; round++) {
       const double start = std::sqrt(dot(left, left));
@@ -348,7 +354,7 @@ class Problem {
     // (S + K) y = B^T (t - tau); step = t - tau - D B y of the forces, move = -B C B^T step
     Vector f, y, change;
     B.push(unbalance, f);
-    newton.solve(f, C, S.data(), std::max(1e-6 * std::sqrt(dot(f, f)), 1e-3 * enough), y);
+    newton.solve(f, C, S.data(), std::max(1e-3 * std::sqrt(dot(f, f)), 1e-3 * enough), y);
     B.pull(y, move);
     newton.slope(B, move, change);
     step = unbalance;
