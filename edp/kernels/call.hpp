@@ -7,7 +7,7 @@
 template <class... A> struct Called : E_F0mps {
   long (*f)(A...);
   Expression argument[sizeof...(A)];
-  template <size_t... i> long call(Stack s, std::index_sequence<i...>) const { return f(GetAny<A>((*argument[i])(s))...); }
+  template <size_t... i> long call(Stack s, std::index_sequence<i...>) const { return f(GetAny<std::decay_t<A>>((*argument[i])(s))...); }
   AnyType operator()(Stack s) const { return SetAny<long>(call(s, std::index_sequence_for<A...>())); }
 };
 
@@ -17,7 +17,7 @@ struct Types : ArrayOfaType {
 
 template <class... A> struct Call : OneOperator {
   long (*f)(A...);
-  explicit Call(long (*g)(A...)) : OneOperator(atype<long>(), Types{atype<A>()...}), f(g) {}
+  explicit Call(long (*g)(A...)) : OneOperator(atype<long>(), Types{atype<std::decay_t<A>>()...}), f(g) {}
   E_F0 *code(const basicAC_F0 &given) const {
     auto *called = new Called<A...>;
     called->f = f;
@@ -25,5 +25,5 @@ template <class... A> struct Call : OneOperator {
     return called;
   }
 };
-template <class... A> void addCall(const char *name, long (*f)(A...)) { Global.Add(name, "(", new Call<A...>(f)); }
+template <class... A> void add(const char *name, long (*f)(A...)) { Global.Add(name, "(", new Call<A...>(f)); }
 #endif

@@ -107,12 +107,12 @@ static long solve(Ints slots, Reals q, Reals place, Reals ahead, double dt, long
 }
 
 static void addContact() {
-  addCall("kernelLaw", setLaw);
-  addCall("kernelNormal", normal);
-  addCall("kernelTractions", tractions);
-  addCall("kernelCompliance", setCompliance);
-  addCall("kernelWindow", setWindow);
-  addCall("kernelContact", solve);
+  ::add("kernelLaw", setLaw);
+  ::add("kernelNormal", normal);
+  ::add("kernelTractions", tractions);
+  ::add("kernelSoft", setCompliance);
+  ::add("kernelWindow", setWindow);
+  ::add("kernelContact", solve);
 }
 
 }
