@@ -56,6 +56,35 @@ static long setCompliance(KNM<double> *C) {
   return 0;
 }
 
+static long sortRows(Ints row, Ints column, Reals value, Ints start, Ints unknowns, Reals values) {
+  // Triplets by rows, in their order.
+  const long entries = row->n, rows = start->n - 1;
+  *start = 0L;
+  unknowns->resize(entries);
+  values->resize(entries);
+  for (long k = 0; k < entries; k++) (*start)[(*row)[k] + 1]++;
+  for (long i = 0; i < rows; i++) (*start)[i + 1] += (*start)[i];
+  std::vector<long> next(&(*start)[0], &(*start)[0] + rows);
+  for (long k = 0; k < entries; k++) { const long at = next[(*row)[k]]++;  (*unknowns)[at] = (*column)[k];  (*values)[at] = (*value)[k]; }
+  return 0;
+}
+
+static long take(Reals q, double reach, long kinds, Ints rowStart, Ints rowUnknown, Reals rowValue, Ints springUnknown, Reals springValue, Ints inWindow, Reals outWindow,
+                 Ints slots, Ints index, Ints unknowns) {
+  // The slots with q > -reach join the window's, and the unknowns of all their rows and of the springs its unknowns.
+  const long ns = q->n;
+  std::vector<long> slot(&(*slots)[0], &(*slots)[0] + slots->n), unknown(&(*unknowns)[0], &(*unknowns)[0] + unknowns->n);
+  const auto join = [&](long j, double value) { if (value != 0 && (*index)[j] < 0) { (*index)[j] = unknown.size();  unknown.push_back(j); } };
+  for (long s = 0; s < ns; s++) if ((*inWindow)[s] == 0 && (*q)[s] > -reach) { (*inWindow)[s] = 1;  (*outWindow)[s] = 0;  slot.push_back(s); }
+  for (long s : slot) for (long r = s; r < kinds * ns; r += ns) for (long k = (*rowStart)[r]; k < (*rowStart)[r + 1]; k++) join((*rowUnknown)[k], (*rowValue)[k]);
+  for (long k = 0; k < springUnknown->n; k++) join((*springUnknown)[k], (*springValue)[k]);
+  slots->resize(slot.size());
+  unknowns->resize(unknown.size());
+  std::copy(slot.begin(), slot.end(), &(*slots)[0]);
+  std::copy(unknown.begin(), unknown.end(), &(*unknowns)[0]);
+  return 0;
+}
+
 static long setWindow(Ints slots, Ints index, long unknowns, long ns, Ints rowStart, Ints rowUnknown, Reals rowValue, Ints springOf, Ints springUnknown, Reals springValue, Reals springStiffness) {
   Rows &B = problem.B;
   const int kinds = 1 + law.slips;
@@ -111,6 +140,8 @@ static void addContact() {
   ::add("kernelNormal", normal);
   ::add("kernelTractions", tractions);
   ::add("kernelSoft", setCompliance);
+  ::add("kernelSort", sortRows);
+  ::add("kernelTake", take);
   ::add("kernelWindow", setWindow);
   ::add("kernelContact", solve);
 }
