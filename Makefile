@@ -34,8 +34,9 @@ ball: $(READY) ## the same ball in three dimensions, a quarter of it by symmetry
 ball-oblique: $(READY) ## a ball hits the plane at 60 degrees, with friction, in three dimensions
 	@$(PYTHON) -m orchestrate run $@ $(ARGS)
 
-ball-comparison: $(READY) ## accelerations of the centre of mass: disc with both laws, ball with both laws (figure 11)
+ball-comparison: $(READY) ## accelerations of the centre of mass: disc with both laws, ball with both laws (figure 11); again with the same penalty
 	@$(PYTHON) -m orchestrate compare disc-normal disc-normal-neohookean ball-axisymmetric-svk ball-axisymmetric $(ARGS)
+	@$(PYTHON) -m orchestrate compare disc-normal disc-normal-neohookean ball-axisymmetric-svk ball-axisymmetric --set penalty=1e10 --out results/same-penalty $(ARGS)
 
 disc-block: $(READY) ## a disc falls on a free block of the same material: with the paper's law, and neo-Hookean (section 3.2)
 	@$(PYTHON) -m orchestrate compare disc-block disc-block-neohookean $(ARGS)
