@@ -5,7 +5,7 @@ import os
 import pytest
 
 from orchestrate import freefem, kernels
-from verification.measure import measure, prepared
+from verification.measure import disc, measure, prepared
 
 
 @pytest.fixture
@@ -73,3 +73,28 @@ def equal(found: dict) -> None:
     if not found["built"]:
         pytest.skip("no compiler here")
     assert found["refused"] == 0 and max(found[name] for name in ("deformed", "forces", "product", "solve", "response", "compliance")) < SAME
+
+
+TIGHT = {"law": "neohookean", "nu": 0.4, "accuracy": 0.3, "tolerance": 1e-14}
+RUBBED = {"friction_static": 0.3, "angle": 60}
+MARCHES = {"disc": ("disc-plane", {}), "rubbing disc": ("disc-plane", RUBBED), "svk": ("disc-plane", {"law": "svk", "integrator": "midpoint", "speed": 2, "end_time": 1e-3}),
+           "explicit": ("disc-plane", {"integrator": "central-difference", "end_time": 2e-4}), "ball of revolution": ("ball-axisymmetric", {}),
+           "ball": ("ball-plane", RUBBED | {"end_time": 1e-3}), "two bodies": ("disc-block", RUBBED | {"end_time": 1e-3})}
+WATCHED = ["t", "normal_force", "friction_force", "kinetic", "elastic", "vx", "vy", "min_jacobian", "min_stretch", "min_ellipticity"]
+
+
+@pytest.mark.parametrize("name", MARCHES)
+def test_marches_are_those_of_the_scripts(tmp_path, name):
+    """The same history with kernels and without, up to round-off, and with them to the byte the same again; the summary says which served."""
+    script, flags = MARCHES[name]
+    runs = {folder: disc(tmp_path / folder, script, **TIGHT | flags, without=without)
+            for folder, without in (("with", "none"), ("again", "none"), ("without", "kernels"))}
+    if not runs["with"].summary["kernels"]:
+        pytest.skip("no compiler here")
+    assert not runs["without"].summary["kernels"]
+    assert (tmp_path / "with/history.csv").read_bytes() == (tmp_path / "again/history.csv").read_bytes()
+    for column in WATCHED:
+        ours, theirs = (runs[folder].history[column] for folder in ("with", "without"))
+        assert ours == pytest.approx(theirs, rel=0, abs=1e-9 * max(abs(theirs))), column
+    for number in ("max_von_mises", "max_tension", "max_shear"):
+        assert runs["with"].summary[number] == pytest.approx(runs["without"].summary[number], rel=1e-9)
