@@ -14,7 +14,7 @@ from .places import ROOT
 
 SOURCES = ROOT / "edp/kernels"
 BUILT = ROOT / "edp/dev"                 # edp/kernels.idp says why it is called so
-LIBRARIES = ("-lcholmod",)
+LIBRARIES = ("-lcholmod", "-lumfpack")
 
 
 def build(command: str, version: str, environment: Mapping[str, str]) -> bool:

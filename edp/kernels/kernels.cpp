@@ -1,10 +1,10 @@
 // kernels.cpp: the plugin of FreeFEM that edp/kernels.idp loads: every kernel by its name in the scripts. One process runs one scene: its bodies, and the
 // factorisation of their tangent, are made once and stay.
 #include <cholmod.h>   // first: without SuiteSparse's headers the build ends at once
-#include "ff++.hpp"
-#include "AFunction_ext.hpp"
+#include "call.hpp"
 #include "bodies.hpp"
 #include "factor.hpp"
+#include "contact.hpp"
 
 typedef KN<double> *Reals;                 // real[int]
 typedef KN<long> *Ints;                    // int[int]
@@ -116,19 +116,6 @@ static long kernelCompliance(const Ints &unknowns, const Table &C) {
   return 0;
 }
 
-template<class A> void add(const char *name, long (*f)(const A &)) { Global.Add(name, "(", new OneOperator1_<long, A>(f)); }
-template<class A, class B> void add(const char *name, long (*f)(const A &, const B &)) { Global.Add(name, "(", new OneOperator2_<long, A, B>(f)); }
-template<class A, class B, class C> void add(const char *name, long (*f)(const A &, const B &, const C &)) {
-  Global.Add(name, "(", new OneOperator3_<long, A, B, C>(f));
-}
-template<class A, class B, class C, class D> void add(const char *name, long (*f)(const A &, const B &, const C &, const D &)) {
-  Global.Add(name, "(", new OneOperator4_<long, A, B, C, D>(f));
-}
-template<class A, class B, class C, class D, class E, class F, class G>
-void add(const char *name, long (*f)(const A &, const B &, const C &, const D &, const E &, const F &, const G &)) {
-  Global.Add(name, "(", new OneOperator7_<long, A, B, C, D, E, F, G>(f));
-}
-
 static void addKernels() {
   add("kernelComponent", kernelComponent);
   add("kernelMaterial", kernelMaterial);
@@ -145,6 +132,7 @@ static void addKernels() {
   add("kernelSolve", kernelSolve);
   add("kernelRespond", kernelRespond);
   add("kernelCompliance", kernelCompliance);
+  contact::addContact();
 }
 
 LOADFUNC(addKernels)
