@@ -268,7 +268,7 @@ class Problem {
           newton.make(B, slopes, C, stiffness());
         }
         errorBefore = error;
-        correct();
+        correct(searches ? 1e-6 : 1e-3);                           // a line search asks for the true direction
         if (!advance(searches)) { if (error <= 1e-9 * scale) done = true;  else return -1; }
       }
       if (done) { if (takeSides() == 0) { B.push(tau, force);  return it; }  errorBefore = 0; }
@@ -350,11 +350,11 @@ class Problem {
     evaluate(&at);
   }
 
-  void correct() {
-    // (S + K) y = B^T (t - tau); step = t - tau - D B y of the forces, move = -B C B^T step
+  void correct(double share) {
+    // (S + K) y = B^T (t - tau), to a share of it; step = t - tau - D B y of the forces, move = -B C B^T step
     Vector f, y, change;
     B.push(unbalance, f);
-    newton.solve(f, C, S.data(), std::max(1e-3 * std::sqrt(dot(f, f)), 1e-3 * enough), y);
+    newton.solve(f, C, S.data(), std::max(share * std::sqrt(dot(f, f)), 1e-3 * enough), y);
     B.pull(y, move);
     newton.slope(B, move, change);
     step = unbalance;
