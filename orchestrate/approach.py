@@ -81,8 +81,7 @@ def _rebound(scene: Multibody, one: Meeting) -> Multibody | None:
     """The bodies of a meeting a little later, when they have parted and nothing pulls them on. None where the hit does not turn
     them."""
     n = one.normal
-    point = min((shape.points[other.gap(shape.points).argmin()] for shape, other in (one.outlines, one.outlines[::-1]) if isinstance(shape, Outline)),
-                key=lambda at: max(abs(shape.gap(at[None])[0]) for shape in one.outlines))
+    point = _middle(one)
     fall = _fall(scene) * one.time
     moves = scene.obstacles[-1 - one.second].velocity if one.second < 0 else np.zeros(len(n))    # of the obstacle, which stays where it is
     hit, yields, closing = [], 0.0, 0.0
@@ -107,6 +106,15 @@ def _rebound(scene: Multibody, one: Meeting) -> Multibody | None:
         bodies[k] = replace(body, position=shape.area_centre + (velocity - moves) * soon, angle=body.angle + body.spin * one.time + spin * soon, velocity=velocity, spin=spin)
     still = {name: 0.0 for name in ("gravity", "body_force_x", "body_force_y") if name in scene.values}
     return replace(scene, bodies=bodies, values=scene.values | still)
+
+
+def _middle(one: Meeting) -> np.ndarray:
+    """Where the two bodies of a meeting touch; of a face that lies on another the middle, so that a body that is set down flat is not turned."""
+    points = np.vstack([shape.points for shape in one.outlines if isinstance(shape, Outline)])
+    off = np.max([abs(shape.gap(points)) for shape in one.outlines], axis=0)
+    along = (points - points[off.argmin()]) @ one.normal
+    on = points[(off <= off.min() + CLOSED * one.radius) & (abs(along) <= CLOSED * one.radius)]
+    return (on.min(axis=0) + on.max(axis=0)) / 2
 
 
 def _meeting(scene: Multibody, first: int, second: int) -> Meeting:

@@ -267,22 +267,22 @@ def mesh_body(boundary: list[list[tuple[Curve, float, int]]], sizes: Sizes, scal
     labels = [np.repeat([label for *_, label in loop], [len(nodes) for nodes in each]) for loop, each in zip(boundary, pieces)]
     loops = [np.vstack(each) for each in pieces]
     loops = [nodes if k == 0 else nodes[::-1] for k, nodes in enumerate(loops)]     # a hole has one label
-    unit = 1 / scale                            # gmsh's tolerances are absolute
+    bulk, inside = round(sizes.bulk / scale, mesh.DIGITS), [np.round(nodes / scale, mesh.DIGITS) for nodes in loops]    # gmsh's tolerances are absolute
     with mesh.gmsh_session() as gmsh:
         gmsh.option.setNumber("Mesh.Algorithm", 6)
         for source in ("FromPoints", "FromCurvature", "ExtendFromBoundary"):
             gmsh.option.setNumber(f"Mesh.MeshSize{source}", 0)
-        tags, curves = zip(*(_loop(gmsh.model, nodes * unit) for nodes in loops))
+        tags, curves = zip(*(_loop(gmsh.model, nodes) for nodes in inside))
         gmsh.model.geo.addPlaneSurface([gmsh.model.geo.addCurveLoop(list(lines)) for lines in curves])
         gmsh.model.geo.synchronize()
-        _grade(gmsh.model.mesh.field, loops, curves, sizes, unit)
+        _grade(gmsh.model.mesh.field, inside, curves, bulk)
         gmsh.model.mesh.generate(2)
         node_tags, coordinates, _ = gmsh.model.mesh.getNodes()
         _, triangle_tags = gmsh.model.mesh.getElementsByType(2)
         corner_tags = [gmsh.model.mesh.getNodes(0, tag)[0][0] for tag in np.concatenate(tags)]
     row = np.empty(int(node_tags.max()) + 1, dtype=int)
     row[node_tags] = np.arange(len(node_tags))
-    points, corners = coordinates.reshape(-1, 3)[:, :2] / unit, row[np.array(corner_tags, dtype=int)]
+    points, corners = coordinates.reshape(-1, 3)[:, :2] * scale, row[np.array(corner_tags, dtype=int)]
     points[corners] = np.vstack(loops)
     triangles = mesh.counter_clockwise(points, row[triangle_tags].reshape(-1, 3))
     ends = np.split(corners, np.cumsum([len(nodes) for nodes in loops])[:-1])
@@ -312,19 +312,19 @@ def _loop(model, nodes: np.ndarray) -> tuple[list[int], list[int]]:
     return points, lines
 
 
-def _grade(field, loops: list[np.ndarray], curves: tuple[list[int], ...], sizes: Sizes, unit: float) -> None:
+def _grade(field, loops: list[np.ndarray], curves: tuple[list[int], ...], bulk: float) -> None:
     """Element sizes inside: those of the edges on the outline, growing linearly with the distance from them up to the bulk's. Edges
     of about one length are one source."""
     length = np.concatenate([np.linalg.norm(np.roll(nodes, -1, axis=0) - nodes, axis=1) for nodes in loops])
-    fineness = np.ceil(2 * np.log2(np.maximum(sizes.bulk / length, 1)) - 1e-9).astype(int)     # from bulk down in steps of sqrt(1/2)
+    fineness = np.ceil(2 * np.log2(np.maximum(bulk / length, 1)) - 1e-9).astype(int)     # from bulk down in steps of sqrt(1/2)
     lines, sources = np.concatenate(curves), []
     for level in np.unique(fineness):
-        size = sizes.bulk * np.sqrt(0.5)**level
+        size = bulk * np.sqrt(0.5)**level
         distance, source = field.add("Distance"), field.add("Threshold")
         field.setNumbers(distance, "CurvesList", lines[fineness == level])
         field.setNumber(distance, "Sampling", 5)   # points on a line; of 2 gmsh makes none
-        for name, value in dict(InField=distance, SizeMin=size * unit, SizeMax=sizes.bulk * unit, DistMin=0,
-                                DistMax=max(sizes.bulk - size, 1e-9 * sizes.bulk) / GROWTH * unit).items():
+        for name, value in dict(InField=distance, SizeMin=size, SizeMax=bulk, DistMin=0,
+                                DistMax=max(bulk - size, 1e-9 * bulk) / GROWTH).items():
             field.setNumber(source, name, value)
         sources.append(source)
     least = field.add("Min")
@@ -388,7 +388,7 @@ def data_file(scene: Multibody, disc: dict[str, Value], centres: np.ndarray, rou
         head = [("ffimpact-bodies", 1)]
         starts = [(*body.position, body.angle, *body.velocity, body.spin) for body in scene.bodies]
     lines = [*head, ("disc", *(float(disc[name]) for name in LIKE)), ("bodies", len(scene.bodies))]
-    lines += [(body.name, body.law, body.young, body.nu, body.density, *centre, *start) for body, centre, start in zip(scene.bodies, centres, starts)]
+    lines += [(body.name, body.law + (f":{body.law_parameters}" if body.law_parameters != "none" else ""), body.young, body.nu, body.density, *centre, *start) for body, centre, start in zip(scene.bodies, centres, starts)]
     lines += rounds
     lines += [("files", len(files := [k for k, given in enumerate(scene.given["body"]) if "file" in given])), *((k,) for k in files)]
     lines += [("obstacles", len(scene.obstacles))]

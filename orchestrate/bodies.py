@@ -11,7 +11,7 @@ and in three dimensions shapes and motions are those of revolution.py and solids
     angle = 30                   # turned about it, counter-clockwise [deg]
     velocity = [0, -10]          # [m/s], or: speed = 10, direction = -90 [deg], counter-clockwise from x
     spin = 0                     # [rad/s], counter-clockwise
-    young = 7e6                  # law, young, nu, density: those at the top of the file where they are left out
+    young = 7e6                  # law, young, nu, density, law_parameters: those at the top of the file where they are left out
     mesh_size = 0.1              # mesh_size, contact_mesh_size [m]: from the accuracy where they are left out
 """
 
@@ -31,7 +31,7 @@ from .solids import Solid
 from .tables import SHORTEST, Table
 
 GEOMETRY = {PLANE_STRAIN: flat, AXISYMMETRIC: revolution, SOLID: solids}     # SHAPES with their entries, shape(), MOTION, motion()
-MATERIAL = ("law", "young", "nu", "density")
+MATERIAL = ("law", "young", "nu", "density", "law_parameters")
 SIZES = ("mesh_size", "contact_mesh_size")
 COMMON = ("name", "shape", "position", "velocity", *MATERIAL, *SIZES)
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_.-]*")
@@ -53,6 +53,7 @@ class Body:
     young: float
     nu: float
     density: float
+    law_parameters: str
     mesh_size: float
     contact_mesh_size: float
 
@@ -81,10 +82,10 @@ def _body(path: str, given: dict, top: dict, folder: Path, geometry: ModuleType)
     outline, body_mesh = geometry.shape(table, folder)
     if not outline.half_thickness >= SHORTEST:
         raise BadInput(f"{path}: is {2 * outline.half_thickness:.3g} m thick (accepted: from {2 * SHORTEST:g} m)")
-    law, young, nu, density = _material(table, top)
+    material = dict(zip(MATERIAL, _material(table, top)))
     bulk, contact = _sizes(table, top)
     return Body(checked_name(path, given.get("name", path.replace(".", ""))), outline, body_mesh, **geometry.motion(table),
-                law=law, young=young, nu=nu, density=density, mesh_size=bulk, contact_mesh_size=contact)
+                **material, mesh_size=bulk, contact_mesh_size=contact)
 
 
 def checked_name(path: str, name) -> str:
@@ -94,13 +95,14 @@ def checked_name(path: str, name) -> str:
     return name
 
 
-def _material(table: Table, top: dict) -> tuple[str, float, float, float]:
-    """law, young, nu, density: the body's own, else those at the top of the file; BadInput where one is in neither."""
+def _material(table: Table, top: dict) -> tuple[str, float, float, float, str]:
+    """What MATERIAL names: the body's own, else those at the top of the file; BadInput where one is in neither."""
     found = []
     for key in MATERIAL:
-        if key not in table and key not in top:
-            raise BadInput(f"{table.path}.{key}: is missing, here and at the top of the file (accepted: {parameters.table()[key].accepted})")
-        found.append(table.parameter(key, parameters.table()[key]) if key in table else parameters.table()[key].check(top[key]))
+        rule = parameters.table()[key]
+        if key not in table and key not in top and rule.kind != "numbers":
+            raise BadInput(f"{table.path}.{key}: is missing, here and at the top of the file (accepted: {rule.accepted})")
+        found.append(table.parameter(key, rule) if key in table else rule.check(top.get(key, rule.default)))
     return tuple(found)
 
 

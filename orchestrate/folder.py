@@ -23,7 +23,7 @@ from .results import read_summary, why
 OWN = ("scene.toml", "history.csv", "contacts.csv", "modes.csv", "summary.json", "failure.json", "log.txt", "mesh.msh", "mesh.mesh", "scene.dat", "fields.pvd", "fields/[0-9][0-9][0-9][0-9].vtu", "fields/contact.csv",
        "fields/contact.pvd", "fields/contact-[0-9][0-9][0-9][0-9].vtp",
        "figures/energies.png", "figures/velocity.png", "figures/force.png", "figures/rolling.png", "figures/shapes.png", "figures/flight.png", "figures/contact.png", "figures/bounces.png", "figures/vibration.png",
-       "checkpoint", "checkpoint.json", "checkpoint.part", "checkpoint.state", "scene.part", "history.part", "history.cut", "summary.part", "contacts.part", "modes.part",
+       "checkpoint", "checkpoint.json", "checkpoint.part", "checkpoint.state", "parting", "scene.part", "history.part", "history.cut", "summary.part", "contacts.part", "modes.part",
        "summary.json.part", "fields.pvd.part", "fields.part/[0-9][0-9][0-9][0-9].vtu", "fields.part/contact.csv",
        "fields.part/contact.pvd", "fields.part/contact-[0-9][0-9][0-9][0-9].vtp")
 OURS = {"scene.toml", "failure.json", "scene.part", "history.part", "checkpoint.json"}   # a folder with one of these is the program's

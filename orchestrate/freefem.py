@@ -1,25 +1,30 @@
-"""FreeFem++: find it, check it, run one process and reap it whatever happens."""
+"""FreeFem++: find it, check it, start processes and reap them whatever happens."""
 
 import ctypes
+import fcntl
 import os
 import re
 import shutil
 import signal
 import subprocess
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import cache, partial
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, TextIO
 
+from . import kernels
 from .failure import NotInstalled
 from .places import INSTALLED, PACKAGE, ROOT
 
+CORES = len(os.sched_getaffinity(0))
 OLDEST = (4, 9)                          # the version in the banner; Debian's 4.11 calls itself 4.9
 DEBIAN_PLUGINS = "/usr/lib/freefem++"    # where Debian puts the plugins, and its FreeFem++ does not look
 PROBE = PACKAGE / "probe.edp"
 CLOCK = ROOT / "edp/clock.c"
 SAYS = re.compile(r"progress (\S+) t=(\S+) steps=(\S+)(?: unknowns=(\S+) apart=(\S+))?$")
+UNREAD = 2**20                           # bytes that a process can say while nobody reads; then it waits
 WAYS = ("apt-get install freefem++ libfreefem++; conda install -c conda-forge freefem; a package of https://github.com/FreeFem/FreeFem-sources/releases; "
         "or set FREEFEM to where it is")
 HOW = f"install it: {WAYS}" if INSTALLED else f"run: make setup   (or: {WAYS})"
@@ -70,6 +75,7 @@ def _find(variables: tuple[tuple[str, str], ...]) -> FreeFem:
         raise NotInstalled(f"{command} lacks its plugin Element_QF or does not start; {HOW}")
     if tuple(map(int, version.split(".")[:2])) < OLDEST:
         raise NotInstalled(f"{command} is version {version}, needed is {OLDEST[0]}.{OLDEST[1]} or newer; {HOW}")
+    kernels.build(command, version, environment)
     return FreeFem(command, version, environment)
 
 
@@ -115,12 +121,35 @@ def _probe(command: str, environment: dict[str, str]) -> str | None:
     return match and match[1]
 
 
-def run(freefem: FreeFem, script: str, flags: list[str], log: Path, progress: Progress | None = None, lock: int | None = None) -> tuple[int, str]:
-    """Runs edp/<script>.edp with its output in `log`; the exit code, negative for a signal, and the script's line for the user, or "".
+@dataclass(frozen=True)
+class Process:
+    """A FreeFem++ at work, and the files of its output and of what it says on stderr."""
 
-    The child has a process group of its own, is killed when this function is left in any way, and by the kernel
-    when this process dies. Lines "progress <share> t=<time> steps=<n> ..." go to `progress` as well. It shares the open file
-    `lock`, and so what is locked stays locked until it has ended.
+    child: subprocess.Popen
+    log: TextIO
+    errors: TextIO
+
+    def end(self, progress: Progress | None = None) -> tuple[int, str]:
+        """Its exit code, negative for a signal, and the script's line for the user, or "". Lines "progress <share> t=<time> steps=<n> ..." go to
+        `progress` as well."""
+        for line in self.child.stdout:
+            self.log.write(line)
+            if progress and (match := SAYS.match(line)):
+                progress(At(*(kind(text) for kind, text in zip(At.__annotations__.values(), match.groups()) if text)))
+        code = self.child.wait()
+        self.errors.seek(0)
+        said = self.errors.read()
+        self.log.write(said)
+        lines = [line.removeprefix("ffimpact: ") for line in said.splitlines() if line.startswith("ffimpact: ")]
+        return code, lines[-1] if lines else ""
+
+
+@contextmanager
+def start(freefem: FreeFem, script: str, flags: list[str], log: Path, lock: int | None = None) -> Iterator[Process]:
+    """edp/<script>.edp at work, with its output in `log`.
+
+    The child has a process group of its own, is killed when this is left in any way, and by the kernel when this process dies. It
+    shares the open file `lock`, and so what is locked stays locked until it has ended.
     """
     command = [freefem.command, "-nw", "-ne", "-v", "0", f"edp/{script}.edp", *flags]
     with open(log, "w") as file, open(os.memfd_create("stderr"), "r+", errors="replace") as errors, subprocess.Popen(
@@ -128,20 +157,19 @@ def run(freefem: FreeFem, script: str, flags: list[str], log: Path, progress: Pr
             stderr=errors, text=True, errors="replace", process_group=0, pass_fds=[] if lock is None else [lock],
             preexec_fn=partial(die_with_parent, os.getpid(), signal.SIGKILL)) as child:
         try:
-            for line in child.stdout:
-                file.write(line)
-                if progress and (match := SAYS.match(line)):
-                    progress(At(*(kind(text) for kind, text in zip(At.__annotations__.values(), match.groups()) if text)))
-            code = child.wait()
+            with suppress(OSError):
+                fcntl.fcntl(child.stdout, fcntl.F_SETPIPE_SZ, UNREAD)
+            yield Process(child, file, errors)
         finally:
             if child.poll() is None:
                 os.killpg(child.pid, signal.SIGKILL)
                 child.communicate()   # to the end of its own children, too
-        errors.seek(0)
-        said = errors.read()
-        file.write(said)
-    lines = [line.removeprefix("ffimpact: ") for line in said.splitlines() if line.startswith("ffimpact: ")]
-    return code, lines[-1] if lines else ""
+
+
+def run(freefem: FreeFem, script: str, flags: list[str], log: Path, progress: Progress | None = None, lock: int | None = None) -> tuple[int, str]:
+    """Runs edp/<script>.edp to its end; see start() and Process.end()."""
+    with start(freefem, script, flags, log, lock) as process:
+        return process.end(progress)
 
 
 _libc = ctypes.CDLL(None)

@@ -24,6 +24,7 @@ from .places import INSTALLED
 FREE, AXIS = 1, 2          # boundary labels
 LIBRARIES = "apt-get install libglu1-mesa libxcursor1 libxft2 libxinerama1 libgomp1"   # that gmsh's wheel needs, with what they need
 GROWTH = 0.3               # element size gained per length of distance from the contact arc
+DIGITS = 10                # decimals of what gmsh is given, in sizes of the body: round-off settles ties, and the mesh would depend on the unit of length
 OWN = 360                  # the region of the triangles of our own discs, whose outline is a circle however long its edges are (edp/core/input/mesh-file.idp)
 
 
@@ -79,16 +80,16 @@ def disc(radius: float, mesh_size: float, contact_mesh_size: float, half: bool, 
     The size is contact_mesh_size along the lowest arc of +-contact_arc radians (seen from the centre) and grows
     linearly to mesh_size away from it. Vertices of the circle and of the axis lie on them to rounding.
     """
-    unit = 1.0 / radius    # meshed at radius 1: gmsh's tolerances are absolute
+    bulk, contact, arc = (round(size, DIGITS) for size in (mesh_size / radius, contact_mesh_size / radius, contact_arc))   # gmsh's tolerances are absolute
     with gmsh_session() as gmsh:
         gmsh.option.setNumber("Mesh.Algorithm", 6)   # frontal Delaunay: the best triangles
         for source in ("FromPoints", "FromCurvature", "ExtendFromBoundary"):
             gmsh.option.setNumber(f"Mesh.MeshSize{source}", 0)
-        arcs, axis = _outline(gmsh.model.geo, half, min(contact_arc, 0.99 * math.pi))
+        arcs, axis = _outline(gmsh.model.geo, half, min(arc, 0.99 * math.pi))
         gmsh.model.geo.addPlaneSurface([gmsh.model.geo.addCurveLoop(arcs + axis)])
         gmsh.model.geo.synchronize()
         contact_arcs = arcs[:1] if half else [arcs[0], arcs[-1]]
-        _grade(gmsh.model.mesh.field, contact_arcs, mesh_size * unit, contact_mesh_size * unit, contact_arc)
+        _grade(gmsh.model.mesh.field, contact_arcs, bulk, contact, arc)
         gmsh.model.mesh.generate(2)
         tags, coordinates, _ = gmsh.model.mesh.getNodes()
         _, triangle_tags = gmsh.model.mesh.getElementsByType(2)

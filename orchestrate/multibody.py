@@ -137,9 +137,9 @@ class Multibody:
             raise BadInput("mesh: is of one body (accepted: in a table [[body]], shape = \"mesh\" with file)")
         return {}
 
-    def prepare(self, where: Path, foreign: bytes | None = None) -> tuple[dict[str, Value | Path], str]:
-        """The flags of a run in the folder `where`, and the text of its scene.toml. Puts into the folder what the flags name: the
-        mesh of all bodies, and what bodies.edp reads of them."""
+    def prepare(self, where: Path, foreign: bytes | None = None) -> tuple[dict[str, Value | Path], dict, str]:
+        """The flags of a run in the folder `where`, the scene as it will be used, and the text of its scene.toml. Puts into the folder what the flags
+        name: the mesh of all bodies, and what bodies.edp reads of them."""
         from . import approach, assembly
         if len(self.bodies) == 1 and not self.obstacles:
             raise BadInput("obstacle: is missing, and a second body too (accepted: one table [[obstacle]] or more, or several [[body]])")
@@ -148,7 +148,8 @@ class Multibody:
         approach.refuse_nothing(scene, met)
         built = assembly.assemble(scene, met=met)
         built.write(where)
-        return built.values | {"mesh": where / self.mesh_name, "bodies": where / "scene.dat"}, to_toml(built.used)
+        text = to_toml(built.used)
+        return built.values | {"mesh": where / self.mesh_name, "bodies": where / "scene.dat"}, tomllib.loads(text), text
 
     def scaled(self, values: dict, used: dict, factor: float, own_mesh: bool = True) -> dict[str, Value | list]:
         """What the scene, run as the tables `used`, is overridden by for `factor` times the elements and steps; the contact's own

@@ -67,7 +67,7 @@ class Loop:
 
     def sampled(self, spacing: float) -> np.ndarray:
         """The loop as a polygon with all its corners and sides up to about `spacing`."""
-        counts = [max(1, int(np.ceil(length / spacing))) for length in self.lengths]
+        counts = [max(1, int(np.ceil(length / spacing - 1e-9))) for length in self.lengths]      # not one more by round-off
         return np.vstack([self.at(k, np.arange(n) / n) for k, n in enumerate(counts)])
 
     @cached_property

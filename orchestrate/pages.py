@@ -66,7 +66,7 @@ def site(folder: Path) -> None:
         text = path.read_text().replace("](docs/", "](").replace("](../README.md", "](index.md").replace("](../CONTRIBUTING.md", "](CONTRIBUTING.md")
         text = re.sub(r"\[([^]]+)\]\((?:\.\./)*(?:edp|orchestrate|verification|LICENSE|CITATION)[^)]*\)", r"`\1`", text)
         (folder / ("index.md" if path.name == "README.md" else path.name)).write_text(text)
-    for path in ROOT.glob("*.png"):
+    for path in [*ROOT.glob("*.png"), ROOT / "docs/site.css"]:
         shutil.copy(path, folder)
 
 

@@ -24,7 +24,7 @@ _NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]+)?|\.[0-9]+)([eE][+-]?[0-9]+)?")
 
 @dataclass(frozen=True)
 class Parameter:
-    """One row of the table. `kind` is real, int, word or path; `low`/`high` bound numbers, `words` lists the words that are
+    """One row of the table. `kind` is real, int, word, numbers (text, separated by commas) or path; `low`/`high` bound numbers, `words` lists the words that are
     accepted, beside numbers too (auto); `scripts` those that take it."""
 
     name: str
@@ -40,6 +40,8 @@ class Parameter:
     @property
     def accepted(self) -> str:
         """What is accepted, in the words of the error messages."""
+        if self.kind == "numbers":
+            return "none, or numbers separated by commas"
         return "|".join(self.words) if self.kind == "word" else ", ".join([*self.words, f"{self.low:g} to {self.high:g}"])
 
     def check(self, given: Value) -> Value:
@@ -48,6 +50,11 @@ class Parameter:
             return given
         if self.kind == "word":
             raise BadInput(f"{self.name}: '{brief(given)}' is not known (accepted: {self.accepted})")
+        if self.kind == "numbers":
+            each = given.split(",") if isinstance(given, str) else [str(one) for one in (given if isinstance(given, list) else [given])]
+            if not each or not all(_NUMBER.fullmatch(one.strip()) for one in each):
+                raise BadInput(f"{self.name}: '{brief(given)}' is no list of numbers (accepted: {self.accepted})")
+            return ",".join(one.strip() for one in each)
         wanted = "a whole number" if self.kind == "int" else "a number"
         is_number = _NUMBER.fullmatch(given) if isinstance(given, str) else type(given) in (int, float)
         if not is_number or (self.kind == "int" and not isinstance(given, int) and float(given) % 1 != 0):

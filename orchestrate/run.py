@@ -9,14 +9,11 @@ import json
 import math
 import os
 import re
-import signal
 import subprocess
 import time
 from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
-
-import numpy as np
 
 from . import __version__, estimate as estimates, freefem, mesh
 from .failure import BadInput, Failure, TooLong, Unreadable
@@ -25,15 +22,15 @@ from .multibody import Multibody
 from .parameters import Value
 from .places import INSTALLED, PACKAGE, RESULTS, ROOT, shown
 from .progress import Line
-from .results import RunResult, check_files, files_of, read_answers, read_history, read_json, read_scene, read_summary, write_json
+from .results import RunResult, check_files, files_of, read_answers, read_json, read_scene, read_summary, write_json
 from .scene import Scene
+from .solver import FAILURES, Solver
 from .tables import to_toml
-from .told import Told, runs
+from .told import runs
 
 ENTRANCE = "scene"                     # the module that makes flags, mesh and scene.dat, with all that it imports
 HARMLESS = {"describe", "estimate", "failure", "freefem", "places", "results"}     # of these: what asks, starts, says and reads, and does not decide a result
 ESTIMATING = ("estimate", "results")   # what decides the stated errors besides
-FAILURES = {10: "bad input", 11: "step failed", 12: "material broke down", 13: "not installed", 14: "unreadable"}
 
 
 def run(scene: Scene | Multibody, overrides: dict[str, Value] | None = None, out: Path | None = None, *,
@@ -43,7 +40,7 @@ def run(scene: Scene | Multibody, overrides: dict[str, Value] | None = None, out
     Raises Failure with the exit code of the run contract. `force` runs again, from the start, even if the folder is up to
     date. With a checkpoint_every > 0 a run that is killed goes on from its last checkpoint when it is asked for again.
     `progress` says whether a line shows how far it is (None: on a terminal and in a notebook).
-    With `estimate` a second, coarser run estimates the error, and finer ones follow until it is below the accuracy (estimate.py).
+    With `estimate` a second, coarser run, beside it where there are two cores, estimates the error, and finer ones follow until it is below the accuracy (estimate.py).
     """
     started = time.monotonic()
     scene = scene.override(overrides or {})
@@ -70,19 +67,10 @@ def run(scene: Scene | Multibody, overrides: dict[str, Value] | None = None, out
             clear(stage)
             write_json(stage / "checkpoint.json", asked)
 
-        seconds = []
-
-        def solve(given: dict[str, Value], where: Path) -> None:
-            told = Told(line, scene, mesh_file, "main run" if where == stage else f"{where.name} run", 1 + len(seconds))
-            try:
-                _solve(program, scene.override(given), foreign, where, lock, told)
-                told.at("ready", 1.0)
-            finally:
-                seconds.append((read_json(where / "summary.json") or read_json(where / "failure.json")).get("wall_seconds", 0.0))
-
         try:
-            solve({}, stage)
-            found = estimates.settle(stage, scene.values | scene.sizes, foreign is None and not scene.of_files, solve, read_answers, scene.scaled) if estimate else {}
+            with Solver(program, scene, mesh_file, foreign, stage, lock, line, pair=estimate) as solve:
+                solve({}, stage)
+                found = estimates.settle(stage, scene.values | scene.sizes, solve.own_mesh, solve, read_answers, scene.scaled) if estimate else {}
         except Failure as failure:
             if checkpoints(stage):   # a script that comes to its end, good or bad, removes it
                 failure.folder = stage
@@ -92,7 +80,7 @@ def run(scene: Scene | Multibody, overrides: dict[str, Value] | None = None, out
                 _say_where(stage, failure.folder)
                 replace(stage, failure.folder, _same_scene(failure.folder, scene, mesh_file))
             raise
-        provenance |= asked_for | {"git": _git(), "mesh": _sha256(mesh_file or stage / scene.mesh_name) if scene.meshed else None}
+        provenance |= asked_for | {"git": commit(), "mesh": _sha256(mesh_file or stage / scene.mesh_name) if scene.meshed else None}
         _say_where(stage, folder)
         _tell_accuracy(stage / "scene.toml", scene.values["accuracy"])
         _finish(stage, scene, found | {"total_seconds": time.monotonic() - started}, provenance)
@@ -100,63 +88,10 @@ def run(scene: Scene | Multibody, overrides: dict[str, Value] | None = None, out
     return RunResult(folder, read_summary(folder), reused=False)
 
 
-def _solve(program: freefem.FreeFem, scene: Scene | Multibody, foreign: bytes | None, where: Path, lock: int,
-           told: Told) -> None:
-    """Runs the scene in the folder `where`: from its checkpoint where there is one, not again where it is finished."""
-    if (where / "summary.json").exists():
-        return
-    goes_on = (where / "checkpoint").exists()
-    if not goes_on:
-        where.mkdir(exist_ok=True)
-        if not (where / "checkpoint.json").exists():   # what makes the folder ours
-            write_json(where / "checkpoint.json", scene.asked)
-    told.at("mesh")
-    given, scene_toml = scene.prepare(where, foreign)
-    told.at("set-up")
-    given = given | {"out": where} | ({"restart": where / "checkpoint"} if goes_on else {})
-    flags = [text for name, value in given.items() for text in (f"-{name}", str(value))]
-    exit_code, said = freefem.run(program, scene.script, flags, where / "log.txt", told.show, lock)
-    if scene_toml and (where / "scene.toml").exists():
-        (where / "scene.toml").write_text(scene_toml, "utf-8")
-    _check(where, exit_code, said)
-
-
 def _say_where(stage: Path, folder: Path) -> None:
     """The log names the folder that the run ends up in, not the one it was made in."""
     log = stage / "log.txt"
     log.write_text(log.read_text(errors="replace").replace(str(stage), str(shown(folder))))
-
-
-def _check(stage: Path, exit_code: int, said: str) -> None:
-    """Failure unless FreeFem++ ended well AND left a finished summary and a finite history (0 alone says little).
-
-    Its code is that of the process, its words those of the failure.json that the script wrote, else what it `said`.
-    """
-    if exit_code == 0:
-        try:
-            read_summary(stage)
-            history = read_history(stage)
-        except Unreadable as error:
-            problem = str(error).replace(f"{stage}/", "")
-            raise Failure(f"FreeFem++ ended without a result: {problem}; {_tail(stage)}") from None
-        for name, column in history.items():
-            if not np.isfinite(column).all():
-                raise Failure(f"history.csv: {name} is not finite from row {1 + np.argmin(np.isfinite(column))} on")
-        return
-    log = (stage / "log.txt").read_text()
-    said = read_json(stage / "failure.json").get("message") or said
-    if exit_code in FAILURES and said:
-        raise Failure(said, exit_code)
-    if "Load error" in log:
-        raise Failure(f"FreeFem++ lacks a plugin: {_tail(stage)}; {freefem.HOW}", 13)
-    how = f"was killed by {signal.Signals(-exit_code).name}" if exit_code < 0 else f"stopped with exit code {exit_code}"
-    goes_on = "; the same command goes on from the last checkpoint" if (stage / "checkpoint").exists() else ""
-    raise Failure(f"FreeFem++ {how}; {_tail(stage)}{goes_on}")
-
-
-def _tail(stage: Path) -> str:
-    lines = [line.strip() for line in (stage / "log.txt").read_text().splitlines()]
-    return "end of its log: " + " | ".join([line for line in lines if line and not line.startswith("progress ")][-4:])
 
 
 def _tell_accuracy(path: Path, asked: float) -> None:
@@ -202,8 +137,8 @@ def reusable(scene: Scene | Multibody, folder: Path, mesh_file: Path | None = No
 
 
 def code_hash() -> str:
-    """sha256 over what decides a result besides the scene: the FreeFEM scripts and what makes meshes and scene.dat."""
-    return _hash(sorted(imported(ENTRANCE) - HARMLESS), sorted(path for path in (ROOT / "edp").rglob("*") if path.suffix in (".edp", ".idp")))
+    """sha256 over what decides a result besides the scene: the FreeFEM scripts, their kernels and what makes meshes and scene.dat."""
+    return _hash(sorted(imported(ENTRANCE) - HARMLESS), sorted(path for path in (ROOT / "edp").rglob("*") if path.suffix in (".edp", ".idp", ".hpp", ".cpp")))
 
 
 @cache
@@ -264,12 +199,12 @@ def _sha256(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def _git() -> str:
+def commit(digits: int = 40) -> str:
     """The commit, with -dirty where the tree differs from it; unknown where the program is installed, in whosever folder."""
     if INSTALLED:
         return "unknown"
     try:
-        return subprocess.run(["git", "describe", "--always", "--dirty", "--abbrev=40", "--exclude=*"], cwd=ROOT,
+        return subprocess.run(["git", "describe", "--always", "--dirty", f"--abbrev={digits}", "--exclude=*"], cwd=ROOT,
                               capture_output=True, text=True, check=True).stdout.strip()
     except (OSError, subprocess.CalledProcessError):
         return "unknown"

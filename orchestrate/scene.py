@@ -88,18 +88,18 @@ class Scene:
             file.flush()
             return describe(self.values | {"mesh": file.name}, self.script)
 
-    def prepare(self, where: Path, foreign: bytes | None = None) -> tuple[dict[str, parameters.Value | Path], str]:
-        """The flags of a run in the folder `where`, and the text of its scene.toml, "" where the script writes it. Puts into the folder
-        what the flags name: the mesh, `foreign` or our own, of the sizes and the part of the body that the description says."""
+    def prepare(self, where: Path, foreign: bytes | None = None) -> tuple[dict[str, parameters.Value | Path], dict, str]:
+        """The flags of a run in the folder `where`, the scene as it will be used, and the text of its scene.toml, "" where the script writes it. Puts
+        into the folder what the flags name: the mesh, `foreign` or our own, of the sizes and the part of the body that the description says."""
         said, file = self.description(foreign), where / self.mesh_name
         if not self.meshed:
-            return self.values, ""
+            return self.values, said["used"], ""
         if foreign is not None:
             file.write_bytes(foreign)
         else:
             sizes = (said["used"][name] for name in ("radius", "mesh_size", "contact_mesh_size"))
             mesh.write(mesh.disc(*sizes, said["half"], said["touch_arc"]), file)
-        return self.values | {"mesh": file}, ""
+        return self.values | {"mesh": file}, said["used"], ""
 
 
 def of_bodies(what: str, said: dict, bodies: int = 0) -> list[str]:

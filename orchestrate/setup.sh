@@ -43,21 +43,27 @@ libfontconfig.so.1  libfontconfig1
 libgomp.so.1        libgomp1
 LIBRARIES
 
-if [ ${#missing[@]} -gt 0 ]; then
-  root=""
-  if [ "$(id -u)" != 0 ]; then
-    root=$(command -v sudo) || stop "cannot install without root or sudo; as root run: apt-get install ${missing[*]}"
-  fi
-  command -v apt-get >/dev/null || stop "no apt-get here; install by other means: ${missing[*]}"
+install() {   # packages; 1 without root, sudo or apt-get
+  local root=""
+  if [ "$(id -u)" != 0 ]; then root=$(command -v sudo) || return 1; fi
+  command -v apt-get >/dev/null || return 1
   apt() { $root env DEBIAN_FRONTEND=noninteractive apt-get -qq "$@" </dev/null >/dev/null; }
-  say "installing ${missing[*]}"
+  say "installing $*"
   apt update
-  wanted=()   # where the plugins come with freefem++ itself there is no libfreefem++
-  for package in "${missing[@]}"; do
-    if [ "$package" != libfreefem++ ] || apt-cache show "$package" >/dev/null 2>&1; then wanted+=("$package"); fi
+  local wanted=() package   # where the plugins come with freefem++ itself there is no libfreefem++
+  for package; do
+    if [[ $package != libfreefem++* ]] || apt-cache show "$package" >/dev/null 2>&1; then wanted+=("$package"); fi
   done
   apt install -y --no-install-recommends "${wanted[@]}"
-fi
+}
+if [ ${#missing[@]} -gt 0 ]; then install "${missing[@]}" || stop "cannot install without apt-get and root or sudo; as root run: apt-get install ${missing[*]}"; fi
+
+# What the kernels are compiled with (orchestrate/kernels.py): nobody has to have it.
+installed() { dpkg -s "$1" >/dev/null 2>&1; }
+tools=()
+for package in g++ libsuitesparse-dev; do installed $package || tools+=("$package"); done
+if installed freefem++ && ! installed libfreefem++-dev; then tools+=(libfreefem++-dev); fi   # others bring their headers with them
+if [ ${#tools[@]} -gt 0 ]; then install "${tools[@]}" || say "cannot install ${tools[*]}: runs go without compiled kernels, slower"; fi
 
 # Debian's FreeFem++ looks for its plugins in a folder that does not exist.
 if ! probe; then
@@ -75,5 +81,5 @@ fi
 [ -x .venv/bin/python ] || "$(find_python)" -m venv .venv || stop "no python >= 3.11 with venv found; apt-get install python3 python3-venv"
 .venv/bin/python -m pip install -q --disable-pip-version-check -r requirements.lock
 .venv/bin/python -c 'import gmsh, matplotlib.pyplot'   # they load, and matplotlib's font list is made now, not in the first run
-.venv/bin/python -c 'from orchestrate import freefem; freefem.find()'   # builds edp/libclock.so where there is a compiler
+.venv/bin/python -c 'from orchestrate import freefem; freefem.find()'   # builds edp/libclock.so and the kernels where there is a compiler
 say "ready"

@@ -110,10 +110,12 @@ def unknowns(cells: np.ndarray, degree: int) -> int:
 def mesh_shape(kind: str, lengths: np.ndarray, rotation: np.ndarray, folded: tuple[int, ...], sizes: Sizes, scale: float) -> SolidMesh:
     """The mesh of a ball (radius), box (extents) or cylinder (radius, height, its axis y) about the origin, turned: only what lies on the positive
     side of the planes across the axes `folded`. `scale` [m] is about its size: gmsh's tolerances are absolute."""
-    unit, bulk = 1 / scale, min(sizes.bulk, LARGEST * lengths[0]) if kind == "ball" else sizes.bulk
+    bulk = min(sizes.bulk, LARGEST * lengths[0]) if kind == "ball" else sizes.bulk
+    inside = Sizes(*(np.round(size / scale, mesh.DIGITS) for size in (bulk, min(bulk, sizes.contact), sizes.near, sizes.slack)))
+    sides = np.round(lengths / scale, 12)        # its corners are exact to as much
 
     def build(gmsh) -> None:
-        occ, (a, *more) = gmsh.model.occ, map(float, lengths * unit)
+        occ, (a, *more) = gmsh.model.occ, map(float, sides)
         if kind == "ball":
             tag = occ.addSphere(0, 0, 0, a)
         elif kind == "cylinder":
@@ -125,14 +127,14 @@ def mesh_shape(kind: str, lengths: np.ndarray, rotation: np.ndarray, folded: tup
         else:
             occ.affineTransform([(3, tag)], [*np.column_stack([rotation, np.zeros(3)]).ravel(), 0, 0, 0, 1])
         if folded:
-            far = 4 * np.linalg.norm(lengths) * unit
+            far = 4 * np.linalg.norm(sides)
             corner = [0 if axis in folded else -far for axis in range(3)]
             half = occ.addBox(*corner, *(far - low for low in corner))
             occ.intersect([(3, tag)], [(3, half)])
         occ.synchronize()
 
-    points, cells = generate(build, Sizes(bulk * unit, min(bulk, sizes.contact) * unit, sizes.near * unit, sizes.slack * unit), TURN if kind == "cylinder" else 0)
-    points = points / unit
+    points, cells = generate(build, inside, TURN if kind == "cylinder" else 0)
+    points = points * scale
     faces = boundary(cells)
     labels = np.full(len(faces), FREE)
     for axis in folded:

@@ -2,6 +2,7 @@
 
 import xml.etree.ElementTree as xml
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -78,24 +79,32 @@ def _parts(path: Path) -> tuple[np.ndarray, int, np.ndarray, dict[str, np.ndarra
 
 def _straight(curved: Snapshot) -> Snapshot:
     """Its quadratic triangles (t, 6: corners, then the middles of 01, 12, 20) as n * n straight ones each, on points where the quadratic functions are."""
-    cells, corners = curved.triangles, curved.triangles[:, :3]
-    n = int(np.clip(np.sqrt(MOST / max(1, len(cells))), 2, FINEST))
+    cells = curved.triangles
+    values, first, triangles = _split(cells.tobytes(), len(cells))
+    at = lambda field: np.tensordot(field[cells], values, axes=(1, 1)).swapaxes(1, -1).reshape(-1, *field.shape[1:])[first]   # noqa: E731
+    return Snapshot(at(curved.points), triangles, Contents({name: at(field) for name, field in curved.fields.items()}, curved.fields.path))
+
+
+@lru_cache(1)          # snapshots of a run have the same triangles
+def _split(cells: bytes, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Of so many quadratic triangles the functions (points of a cell, 6), the row of each point among those of all cells, and the straight triangles."""
+    corners = np.frombuffer(cells, dtype=int).reshape(count, 6)[:, :3]
+    n = int(np.clip(np.sqrt(MOST / max(1, count)), 2, FINEST))
     lattice = [(i, j) for j in range(n + 1) for i in range(n + 1 - j)]
     place = {each: k for k, each in enumerate(lattice)}
     b, c = np.array(lattice).T / n
     a = 1 - b - c
     values = np.stack([a * (2 * a - 1), b * (2 * b - 1), c * (2 * c - 1), 4 * a * b, 4 * b * c, 4 * c * a], axis=1)        # (points of a cell, 6)
     # a point of a side is one for both neighbours: it is known by its corners and their shares
-    shares = np.rint(n * np.stack([a, b, c], axis=1)).astype(int)[None].repeat(len(cells), axis=0)                          # (cells, points, 3)
+    shares = np.rint(n * np.stack([a, b, c], axis=1)).astype(int)[None].repeat(count, axis=0)                          # (cells, points, 3)
     owners = np.where(shares > 0, corners[:, None, :], -1)
     order = np.argsort(owners, axis=2)
     known = np.concatenate([np.take_along_axis(each, order, axis=2) for each in (owners, shares)], axis=2).reshape(-1, 6)
     _, first, which = np.unique(known, axis=0, return_index=True, return_inverse=True)
-    at = lambda field: np.tensordot(field[cells], values, axes=(1, 1)).swapaxes(1, -1).reshape(-1, *field.shape[1:])[first]   # noqa: E731
     up = [(place[i, j], place[i + 1, j], place[i, j + 1]) for i, j in lattice if i + j < n]
     down = [(place[i + 1, j], place[i + 1, j + 1], place[i, j + 1]) for i, j in lattice if i + j < n - 1]
-    triangles = which.reshape(len(cells), -1)[:, np.array(up + down)].reshape(-1, 3)
-    return Snapshot(at(curved.points), triangles, Contents({name: at(field) for name, field in curved.fields.items()}, curved.fields.path))
+    triangles = which.reshape(count, -1)[:, np.array(up + down)].reshape(-1, 3)
+    return values, first, triangles
 
 
 def _in_plane(tetrahedra: np.ndarray, on_plane: np.ndarray, points: np.ndarray) -> np.ndarray:

@@ -55,6 +55,8 @@ def test_a_disc_beside_a_ball(result, tmp_path, monkeypatch):
     compare.draw({"disc": disc, "ball": result}, tmp_path / "both.png")
     force, _, energy, _ = compare.plt.gcf().axes
     assert "acceleration" in force.get_ylabel() and "over that at the start" in energy.get_ylabel()
+    totals = [line for line in energy.lines if line.get_linewidth() > 2]
+    assert len({line._unscaled_dash_pattern[0] for line in totals}) == len(totals) == 2     # totals that lie on one another: dashes in turn
     h, line = result.history, [line for line in force.lines if len(line.get_ydata()) > 2][1]     # not the marks of the last touch
     inside = slice(1, None)
     np.testing.assert_allclose(1e3 * line.get_ydata()[inside], np.diff(h["vy"]) / h["dt"][inside], rtol=1e-6, atol=1e-3)

@@ -7,6 +7,7 @@ import pytest
 from orchestrate import run, scene
 from orchestrate.failure import Unreadable
 from orchestrate.report import contact, report
+from orchestrate.report.figures import plt
 from orchestrate.results import RunResult
 
 CORNER = """
@@ -121,3 +122,14 @@ def test_picture_and_broken_tables(ran):
     (result.folder / "fields/contact.csv").write_text("t,body\n1,2\n")
     with pytest.raises(Unreadable, match="contact.csv cannot be read: it is not as the run has written it"):
         contact.read(result.folder)
+
+
+def test_a_profile_is_a_line_alone():
+    """Where the pressure has a projection it is drawn as a line, without its points; where it has none the points are."""
+    table = pd.DataFrame({"t": 1e-3, "s": [-1e-3, 0, 1e-3], "pressure": [1e5, 3e5, 1e5], "projected_pressure": [1e5, 2e5, 1e5]})
+    for line, drawn in (("-", ("-", "")), ("", ("None", "."))):
+        figure, axes = plt.subplots()
+        contact._profiles(axes, table, "along the outline", line)
+        only, = axes.lines
+        assert (only.get_linestyle(), only.get_marker()) == drawn
+        plt.close(figure)

@@ -12,7 +12,7 @@ import pytest
 
 from orchestrate import freefem, parameters, results, run, scene, vtu
 from orchestrate.describe import describe
-from orchestrate.failure import NotInstalled
+from orchestrate.failure import Failure, NotInstalled
 from orchestrate.report import report
 
 COLUMNS = ("t dt normal_force normal_load friction_force kinetic elastic contact friction_work external_work balance momentum_x momentum_y "
@@ -288,6 +288,12 @@ def test_a_step_far_too_large_for_friction_ends_early(tmp_path):
     process = direct(*given, "-dt", "4e-4", "-out", str(tmp_path / "out"))
     assert process.returncode == 11 and re.search(r"dt = 0.0004 s is too long for its friction, .* take dt = 0, or up to 0.00024\d+ s", process.stderr)
     assert process.stderr.count("\n") == 1 and json.loads((tmp_path / "out/failure.json").read_text())["steps"] < 4
+
+
+def test_a_step_longer_than_the_contact_ends_in_its_first_try(tmp_path):
+    """In three dimensions, too, a step of ten contact times under friction is given up after the usual work of one step, without a second try."""
+    with pytest.raises(Failure, match=r"smallest step tried 0\.05 s.* dt = 0\.05 s is too long for its friction"):
+        run.run(scene.load("ball-oblique"), {"dt": 0.05, "accuracy": 0.4, "fields": 0}, tmp_path / "out", estimate=False)
 
 
 # ---- chatter

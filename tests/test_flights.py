@@ -156,3 +156,18 @@ def test_corners_that_follow_are_fine():
     assert first.time < math.inf and second.closing < first.closing
     x = [one.outlines[0].points[one.outlines[0].points[:, 1].argmin(), 0] for one in (first, second)]
     assert x[0] < -0.02 and x[1] > 0.02
+
+
+def test_what_would_touch_for_ever_is_told(tmp_path):
+    """Between two walls, without friction, a run without end_time is the first impact, the very same as one that ends there, and says when the body is at the other wall."""
+    walls = (FLOOR | {"name": "floor"}, {"name": "ceiling", "kind": "plane", "point": [0, 0.12], "normal": [0, -1]})
+    given = DISC | {"position": [0, 0.06], "velocity": [0, -2]}
+    rows, found = go(tmp_path / "open", read(given, obstacles=walls, accuracy=0.2))
+    _, alone = go(tmp_path / "alone", read(given, obstacles=walls, accuracy=0.2, end_time=float(found.history["t"][-1])))
+    s = found.summary
+    told, = [one for one in s["warnings"] if one.startswith("touches again")]
+    arrives = s["contact_start"] + s["contact_time"] + 0.02 / s["rebound_vy"]
+    assert float(told.split("t = ")[1].split(" s")[0]) == pytest.approx(arrives, rel=0.1) and "end_time > 0" in told
+    assert len(rows) == s["contact_intervals"] == 1 and len(found.history["t"]) == s["steps"] + 1
+    for name in ("impulse", "contact_time", "rebound_vy", "vibration_energy", "steps", "max_pressure", "energy_final"):
+        assert s[name] == pytest.approx(alone.summary[name], rel=1e-9), name

@@ -53,3 +53,30 @@ def test_a_disc_is_meshed_finely_where_it_touches_whatever_its_angle(tmp_path):
         touching = found.bodies[0].position * 0 - met.normal
         assert found.bodies[0].angle - math.pi / 2 == pytest.approx(math.atan2(touching[1], touching[0]), abs=1e-6)
         assert met.closing == pytest.approx(6 * math.sqrt(1 - 0.2**2), rel=1e-7) and met.sliding == pytest.approx(6 * 0.2, rel=1e-6)
+
+
+SHAPES = [{"shape": "disc", "radius": 0.05}, {"shape": "ring", "radius": 0.05, "inner_radius": 0.03}, {"shape": "polygon", "vertices": [[0, 0], [0.07, 0.01], [0.05, 0.06], [0.02, 0.04]]},
+          {"shape": "box", "width": 0.05, "height": 0.07, "depth": 0.04, "turn": [10, 0, 20]}, {"shape": "cylinder", "radius": 0.03, "height": 0.07, "turn": [10, 0, 20]}]
+POWERS = {"position": 1, "velocity": 1, "radius": 1, "inner_radius": 1, "width": 1, "height": 1, "depth": 1, "vertices": 1, "gravity": 1, "young": -1, "density": -3}   # of a length
+
+
+def in_unit(given: dict, metre: int) -> dict:
+    """The same tables where a metre is so many lengths."""
+    def times(value, factor: float):
+        return [times(one, factor) for one in value] if isinstance(value, list) else float(f"{value * factor:.12g}")
+    return {key: times(value, metre**POWERS[key]) if key in POWERS else value for key, value in given.items()}
+
+
+@pytest.mark.parametrize("shape", SHAPES, ids=[one["shape"] for one in SHAPES])
+def test_no_mesh_depends_on_the_unit_of_length(shape, tmp_path):
+    """In metres, centimetres and millimetres a body has the same mesh, but for round-off."""
+    from orchestrate import approach, assembly
+    solid, found = shape["shape"] in ("box", "cylinder"), []
+    body = shape | {"position": [0.0, 0.07, 0.0][:3 if solid else 2], "velocity": [0.3, -2.0, 0.0][:3 if solid else 2]}
+    floor = {"kind": "plane", "point": [0.0, 0.0, 0.0][:len(body["position"])], "normal": [0.0, 1.0, 0.0][:len(body["position"])]}
+    for metre in (1, 100, 1000):
+        tables = in_unit(MATERIAL | {"gravity": 9.81}, metre) | {"body": [in_unit(body, metre)], "obstacle": [floor], "dimension": "3d" if solid else "plane-strain"}
+        tables = approach.turned(read(tables, tmp_path, "unit"))
+        found.append(assembly.assemble(tables, met=approach.meetings(tables)).mesh.points / metre)
+    assert found[1].shape == found[0].shape == found[2].shape
+    assert max(abs(one - found[0]).max() for one in found) < 1e-12

@@ -25,7 +25,7 @@ accuracy = 0.2
 speed = [4, 8, 11]
 """
 ROUTES = ("run", "checkpoints", "sweep", "direct", "direct-checkpoints")
-ALWAYS = 10                             # of them in every `make test`, all in `make robustness`
+ALWAYS = 6                             # of them in every `make test`, all in `make robustness`
 
 
 def kills() -> list:

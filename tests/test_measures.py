@@ -61,6 +61,7 @@ def test_bench_of_the_ball(tmp_path, monkeypatch):
     assert asked[0][1]["scene"] == "ball" and asked[0][1]["penalty"] == 1.5e10 and (tmp_path / "ball-axisymmetric/runs").is_dir()
 
 
+@pytest.mark.robustness
 def test_bench_of_two_bodies(tmp_path, monkeypatch):
     """The disc on the block: errors of both bodies' answers, and the other program's against the same reference, or why it gave none."""
     monkeypatch.setattr(bench, "settings", lambda *_: {"adaptive, P2": [{"accuracy": 0.1}]})

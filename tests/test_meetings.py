@@ -120,3 +120,15 @@ def test_elements_follow_the_radius_of_an_obstacle(dimension, kind):
     assert sizes[1] == pytest.approx(sizes[0] / 10, rel=0.05) and sizes[0] <= 0.005 / 4 * 1.01
     assert penalties[1] == pytest.approx(10 * penalties[0], rel=0.05) and penalties[2] == penalties[3]
     assert sizes[2] == pytest.approx(sizes[3], rel=0.05)
+
+
+@pytest.mark.parametrize("gravity", [0, 9.81])
+def test_a_body_set_down_flat_is_not_turned(gravity):
+    """However slowly a square comes down flat on the floor, all of its face touches at once: its elements are those of a fast one, to a tenth."""
+    sizes = []
+    for speed in (1e-13, 0.1):
+        square = {"name": "square", "shape": "rectangle", "width": 0.1, "height": 0.1, "position": [0, 0.05], "velocity": [0, -speed]}
+        tables = scene(square, FLOOR, gravity=gravity)
+        ask = assembly.Asker(tables, approach.meetings(tables), lambda values: describe(values, tables.dimension.like))
+        sizes.append(assembly._sizes(0, ask).contact)
+    assert sizes[0] == pytest.approx(sizes[1], rel=0.1) and sizes[0] > 0.005

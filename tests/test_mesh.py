@@ -168,6 +168,12 @@ def test_same_input_same_mesh():
     assert np.array_equal(first.points, second.points)
 
 
+def test_no_mesh_depends_on_the_unit_of_length():
+    """In metres and in millimetres a disc has the same mesh, but for round-off."""
+    metres, millimetres = (mesh.disc(0.05 * metre, 0.011313708499 * metre, 0.0028 * metre, False, 1.2) for metre in (1, 1000))
+    assert metres.points.shape == millimetres.points.shape and abs(1000 * metres.points - millimetres.points).max() < 1e-11 * 50
+
+
 @pytest.mark.parametrize("values, words", [
     ({"mesh_size": 0.001, "contact_mesh_size": 0.002}, "contact_mesh_size: 0.002 is larger than mesh_size 0.001"),
     ({"mesh_size": 0.06}, "mesh_size: 0.06 is larger than the radius 0.05"),

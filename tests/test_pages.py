@@ -55,3 +55,11 @@ def test_links_lead_somewhere(path):
     """Every file that a page links to is there."""
     links = {link.partition("#")[0] for link in re.findall(r"\]\(([^)\s]+)\)", path.read_text()) if "://" not in link}
     assert not [link for link in links if link and not (path.parent / link).exists()]
+
+
+@pytest.mark.parametrize("path", [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))], ids=lambda path: path.name)
+def test_tables_and_lists_begin_after_a_heading_or_an_empty_line(path):
+    """Without one MkDocs takes them for text."""
+    prose = re.sub(r"(?ms)^```.*?^```$", "```", path.read_text()).splitlines()
+    starts = [(before, line) for before, line in zip(prose, prose[1:]) if line.startswith(("| ", "- ")) and not before.startswith((line[:2], "|", "#", "<!--", "  "))]
+    assert not [line for before, line in starts if before.strip()]

@@ -177,6 +177,7 @@ def test_worlds_are_one_impact():
         assert all(set(point) == set(scaling.CASES[case]) | {"young", "density", "radius", "speed", "accuracy"} for point in points.values())
 
 
+@pytest.mark.robustness
 def test_a_coarse_impact_scales(tmp_path, monkeypatch):
     """Real runs in every world at accuracy 0.02: the same dimensionless answers to 1e-6, or within ten times the scatter of a nudge of 1e-14."""
     monkeypatch.setattr(scaling, "CASES", {"normal": scaling.CASES["normal"]})

@@ -129,26 +129,20 @@ def test_entries_are_set_on_the_command_line(mine):
 def test_a_killed_run_goes_on(mine, monkeypatch):
     """A run of bodies that ends at a checkpoint goes on from there when asked again, to the same answer."""
     found, path = mine
-    wanted, real, calls = scene.load(str(path)).override({"checkpoint_every": 5}), freefem.run, []
+    wanted, real = scene.load(str(path)).override({"checkpoint_every": 5}), freefem.Process.end
 
-    def once_killed(program, script, flags, log, progress, lock):
-        calls.append(flags)
-        if len(calls) > 1:
-            return real(program, script, flags, log, progress, lock)
-        with subprocess.Popen([program.command, "-nw", "-ne", "-v", "0", f"edp/{script}.edp", *flags], cwd=parameters.ROOT, env=program.environment,
-                              stdout=subprocess.PIPE, pass_fds=[lock], process_group=0) as child:
-            while not (log.parent / "checkpoint").exists() and child.poll() is None:
-                pass
-            child.kill()
-            child.communicate()   # to the end of its children too: one that moves a file into place has the lock
-        log.write_text("")
-        return -9, ""
-    monkeypatch.setattr(freefem, "run", once_killed)
+    def killed(process, progress=None):
+        while not (out.with_name("killed.part") / "checkpoint").exists() and process.child.poll() is None:
+            pass
+        process.child.kill()
+        return real(process, progress)
+    monkeypatch.setattr(freefem.Process, "end", killed)
     out = path.parent / "killed"
     with pytest.raises(Failure, match="goes on from the last checkpoint"):
         run.run(wanted, {}, out, estimate=False)
+    monkeypatch.setattr(freefem.Process, "end", real)
     result = run.run(wanted, {}, out, estimate=False)
-    assert "-restart" in calls[1] and result.summary["resumed_at"] > 0
+    assert result.summary["resumed_at"] > 0
     assert result.summary["impulse"] == pytest.approx(found.summary["impulse"], rel=1e-9)
 
 

@@ -1,6 +1,7 @@
 """The studies: runs in parallel that survive failures, limits and interruption; stress, refine and the textbook on top."""
 
 import os
+import re
 import signal
 import sys
 
@@ -40,7 +41,7 @@ def test_failing_points_are_rows(fake, tmp_path, mode, code, words):
 
 
 @pytest.mark.parametrize("sizes", [{"mesh_size": 0.02, "contact_mesh_size": 0.01}, {"accuracy": 0.04}], ids=["sizes", "accuracy"])
-@pytest.mark.parametrize("mode, again", [("ok", 0), ("step", 0), ("material", 0), ("chatter", 0), ("crash", 4)])
+@pytest.mark.parametrize("mode, again", [("ok", 0), ("step", 0), *(pytest.param(mode, 0, marks=pytest.mark.robustness) for mode in ("material", "chatter")), ("crash", 4)])
 def test_what_is_done_is_not_done_again(fake, tmp_path, monkeypatch, mode, again, sizes):
     """Finished runs and failures of the same code are reused, crashes are not; with other code all is run again."""
     fake(mode)
@@ -97,7 +98,7 @@ def test_table_is_markdown():
         "|        law |   drift |", "| ---------: | ------: |", "|        svk | 1.0e-11 |", "| neohookean |         |"]
 
 
-@pytest.mark.parametrize("mode, returned, words", [("ok", 0, "requirement holds"), ("material", 0, "exit 12: law"),
+@pytest.mark.parametrize("mode, returned, words", [pytest.param("ok", 0, "requirement holds", marks=pytest.mark.robustness), ("material", 0, "exit 12: law"),
                                                    ("crash", 1, "requirement FAILS for 6 sets")])
 def test_stress_reports(fake, tmp_path, capsys, mode, returned, words):
     """The verdict follows the requirement; every set that did not finish is listed; CSV and figure are there."""
@@ -132,6 +133,7 @@ def test_stress_requirement(row, kind, good):
     assert rows.outcome[0] == kind and stress.holds(rows)[0] == good
 
 
+@pytest.mark.robustness
 def test_stress_holds_on_real_runs(tmp_path, monkeypatch, capsys):
     """A few hard sets with the real FreeFem++ do what is required."""
     monkeypatch.setattr(stress, "AXES", {"law": ("svk", "neohookean"), "nu": (0.49,), "speed": (10.0,), "penalty": (1e12,),
@@ -175,6 +177,7 @@ def test_refine_series_go_from_coarse_to_fine(scene, factors):
     assert all(list(wanted[name].points) == sorted(wanted[name].points, reverse=True) for name in ("mesh", "step", "accuracy"))
 
 
+@pytest.mark.robustness
 def test_textbook_compares_the_same_problem(tmp_path, capsys):
     """Same mesh, same step, answers that agree, both energies kept; the verdict is about the ratio."""
     code = textbook.main(["--quick", "--out", str(tmp_path)])
@@ -183,3 +186,10 @@ def test_textbook_compares_the_same_problem(tmp_path, capsys):
     assert max(row.energy_drift_ours, row.energy_drift_textbook) < 1e-8
     assert row.ratio == pytest.approx(row.seconds_a_step_textbook / row.seconds_a_step_ours)
     assert code == (row.ratio < textbook.ASKED) and "the answers differ by" in capsys.readouterr().out
+
+
+def test_pages_say_what_measured_them(tmp_path):
+    """At the top of a page stand the command as it was given, the commit, the day and the machine, then the verdict."""
+    study.page(tmp_path / "page.md", "A title", ["promise", "--scenes", "3"], "text\n\nverdict")
+    title, words, _, verdict, _, text = (tmp_path / "page.md").read_text().splitlines()
+    assert re.fullmatch(r"Written by `\S.*promise --scenes 3` at commit \w+(-dirty)?, \d{4}-\d\d-\d\d, on \d+ cores, .+\.", words) and (title, verdict, text) == ("# A title", "verdict", "text")

@@ -235,7 +235,7 @@ def orphans(out: Path) -> list[Path]:
     return [path for path in (out / "runs").glob("*.part")] if (out / "runs").exists() else []
 
 
-@pytest.mark.parametrize("after", [0.0, 0.3, 0.8])
+@pytest.mark.parametrize("after", [pytest.param(0.0, marks=pytest.mark.robustness), 0.3, pytest.param(0.8, marks=pytest.mark.robustness)])
 def test_killed_driver_leaves_nothing_running_and_is_taken_up(fake, tmp_path, monkeypatch, after):
     """kill -9 of the driver ends its FreeFem++; the same command runs only what is not finished; the table is the same."""
     path, out, calm = write(tmp_path, DRAWN), tmp_path / "out", tmp_path / "calm"

@@ -14,6 +14,7 @@ def test_half_width_and_pressure_of_hertz(tmp_path, law, nu):
     assert max(row.error for row in fine) < max(row.error for row in coarse)
 
 
+@pytest.mark.robustness
 def test_finest_cylinder_of_the_report(tmp_path):
     """Elements of a twenty-seventh of the half-width, steps that take the cylinder to rest at once: hard for the line search."""
     assert max(row.error for row in hertz(tmp_path, 0.0375)) < 5e-3

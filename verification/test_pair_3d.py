@@ -99,7 +99,7 @@ def oblique(friction: float) -> Scene:
                  pairs=[(0, 1, 1e9, friction, 0.7 * friction)])
 
 
-@pytest.mark.parametrize("friction", [0.0, 0.4])
+@pytest.mark.parametrize("friction", [pytest.param(0.0, marks=pytest.mark.robustness), 0.4])
 def test_two_bodies_conserve(march, friction):
     """Linear momentum to 1e-13, angular momentum about all axes to 1e-9, energy with the work of friction to 1e-9 (1e-8), from the flight to the last row."""
     run = march(oblique(friction), friction_static=friction)
@@ -153,6 +153,7 @@ def test_unlike_meshes_carry_a_constant_pressure(measure, tmp_path):
     assert unlike["uneven"] < 1e-2 and unlike["most"] < 1.015 * unlike["mean"] and unlike["least"] > 0.985 * unlike["mean"]
 
 
+@pytest.mark.robustness
 def test_ball_on_a_block(march):
     """A ball falls obliquely on a free block with friction: it rebounds, the block goes away, everything is kept."""
     block = brick((-0.1, -0.2, -0.1), (0.1, -0.12, 0.1), (3, 2, 3), shift=(0, 0.12, 0))
@@ -201,6 +202,7 @@ def test_tumbling_flight(march):
     assert run.summary["contact_intervals"] >= 1 and np.abs(history["balance"]).max() < 1e-8 * scale
 
 
+@pytest.mark.robustness
 def test_parts_of_bodies(march):
     """Half and quarter of a ball in a bowl and on a moving sphere: the answers of the whole one, to the tolerance of the step."""
     obstacles = [("sphere", (0, -0.2, 0, 0.2), (0, 0.3, 0)), ("bowl", (0, 0.3, 0, 0.4), (0, 0, 0))]

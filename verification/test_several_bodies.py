@@ -50,9 +50,9 @@ MEASURES = ("impulse", "contact_time", "peak_force")
 
 
 def test_two_equal_discs_are_a_disc_on_a_plane_of_doubled_penalty(march):
-    """Head-on, to 0.5 %: impulse, contact time, rebound."""
-    two = march(scene(disc(-0.0501, 0, 4, 0), disc(0.0501, 0, -4, 0), penalty=1e10))
-    one = march(scene(disc(-0.0501, 0, 4, 0), obstacles=(plane(normal=(-1, 0)),), penalty=2e10))
+    """Head-on, to the 0.5 % that are asked for: impulse, contact time, rebound."""
+    two = march(scene(disc(-0.0501, 0, 4, 0), disc(0.0501, 0, -4, 0), penalty=1e10, accuracy=5e-3))
+    one = march(scene(disc(-0.0501, 0, 4, 0), obstacles=(plane(normal=(-1, 0)),), penalty=2e10, accuracy=5e-3))
     assert differ(two, one, "impulse", "contact_time") < 5e-3
     assert two.summary["rebound_vx_1"] == pytest.approx(one.summary["rebound_vx"], rel=5e-3)
 
@@ -84,7 +84,7 @@ def test_obstacle_of_great_radius_is_a_plane(march, kind, side):
     assert 1e-9 < differ(curved, flat, *MEASURES) < 1e-4
 
 
-@pytest.mark.parametrize("angle, friction, scatter", [(30, 0, 1e-3), (137, 0, 1e-3), (137, 0.3, 5e-3)])
+@pytest.mark.parametrize("angle, friction, scatter", [(30, 0, 1e-3), pytest.param(137, 0, 1e-3, marks=pytest.mark.robustness), (137, 0.3, 5e-3)])
 def test_inclined_scene_is_the_level_one_turned(march, angle, friction, scatter):
     """Plane, motion, body and load turned together: to what the tolerance of the steps leaves, and with friction to the scatter it makes of that."""
     c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
@@ -129,7 +129,7 @@ def test_disc_between_two_others(march):
     assert run.summary["rebound_vx_1"] == pytest.approx(-run.summary["rebound_vx_3"], rel=0.01)
 
 
-@pytest.mark.parametrize("friction", [0, 0.3])
+@pytest.mark.parametrize("friction", [pytest.param(0, marks=pytest.mark.robustness), 0.3])
 def test_disc_slides_over_many_elements(march, friction):
     """A small disc in a long touch passes over seven elements of a block: energy exact, and no step changes the force by a tenth of its peak."""
     small = {"shape": "disc", "radius": 0.02, "position": [-0.06, 0.0201], "velocity": [12, -0.3]}

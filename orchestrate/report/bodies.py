@@ -12,7 +12,7 @@ from .. import dimension, obstacles, vtu
 from ..obstacles import Obstacle
 from ..parameters import Value
 from ..results import suffixes
-from .figures import (BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SHAPES, STRESS, Body, as_written, deformed, draw_body, is_half, least,
+from .figures import (BARE, BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SHAPES, STRESS, Body, as_written, deformed, draw_body, is_half, least,
                       material, most_stress, over_time, per_metre, scale_bar)
 
 ALONE = ("disc-plane", "ball-axisymmetric", "ball-plane")     # scripts of one body on the plane
@@ -178,7 +178,8 @@ def shapes(series: list[tuple[float, Path]], scene: dict[str, Value]) -> plt.Fig
     left, right, low, high = view = limits(found)
     columns = min(3, len(found)) if right - left < 3 * (high - low) else min(2, len(found))
     rows, size = -(-len(found) // columns), 7.0 / columns
-    figure, grid = plt.subplots(rows, columns, figsize=(7.8, rows * (size * (high - low) / (right - left) + 0.25) + 0.5), squeeze=False)
+    figure, grid = plt.subplots(rows, columns, figsize=(7.8, rows * (size * (high - low) / (right - left) + 0.25) + 0.5), squeeze=False,
+                                subplot_kw=BARE)
     for axes in grid.flat:
         axes.set_axis_off()
     largest, rigid = most_stress(found), obstacles_of(scene)
@@ -187,7 +188,7 @@ def shapes(series: list[tuple[float, Path]], scene: dict[str, Value]) -> plt.Fig
         picture = draw_body(axes, body, largest)
         axes.set_title(f"{1e3 * t:.2f} ms", pad=2)
     scale_bar(grid[-1, 0])
-    figure.colorbar(picture, ax=grid, label=STRESS, shrink=0.7, aspect=30, extend="max")
+    figure.colorbar(picture, ax=grid[:, -1], label=STRESS, shrink=0.7, aspect=30, extend="max")
     return figure
 
 

@@ -50,7 +50,7 @@ def main(argv: list[str]) -> int:
 def draw(results: dict[str, RunResult], path: Path) -> None:
     """Normal force, friction force, total energy and velocities (of each body) over time, a colour a run; friction only where there is any.
 
-    Of discs, per metre, and balls together: the acceleration of the centre of mass (figure 11), of several bodies the first one's, for the force, energies over
+    Totals, which often lie on one another, are dashes of the runs in turn. Of discs, per metre, and balls together: the acceleration of the centre of mass (figure 11), of several bodies the first one's, for the force, energies over
     that at the start.
     """
     mixed = len({per_metre(result.scene) for result in results.values()}) > 1
@@ -66,8 +66,8 @@ def draw(results: dict[str, RunResult], path: Path) -> None:
                        label=f"{name}: {_material(used)}{result.summary['dofs']} dofs{_doubts(result.summary)}")
             _contact(force, result, colour)
             drag.plot(t, 1e-3 * h["friction_force"] / heavy if rubs else h["max_penetration"] * 1e3, color=colour)
-            energy.plot(t, (h["kinetic"] + h["elastic"] + h["contact"]) / start, color=colour, linewidth=max(1.0, 3.4 - 0.8 * k))   # one on another is seen
-            energy.plot(t, h["elastic"] / start, color=colour, linestyle="--")
+            energy.plot(t, (h["kinetic"] + h["elastic"] + h["contact"]) / start, color=colour, linewidth=2.4, linestyle=(2 * k, (2, 2 * len(results) - 2)))
+            energy.plot(t, h["elastic"] / start, color=colour, linewidth=0.9)
             for of, body in zip(suffixes(h), names(used)):
                 if of and colour == BLUE:                            # once
                     velocity.annotate(body, (t[-1], h[f"vy{of}"][-1]), xytext=(-4, 4), textcoords="offset points", ha="right")
@@ -82,7 +82,7 @@ def draw(results: dict[str, RunResult], path: Path) -> None:
         energy.set(ylabel="energy over that at the start" if mixed else f"energy [J{per}]", ylim=(0, None), xlabel="time [ms]")
         stated = any(each.scene.get("law") == "svk" and numbers_of_the_paper(each.scene, "contact_time") for each in results.values())
         _key(force, {"end of the contact": ":", "by the paper": "-."} if stated else {"end of the contact": ":"})
-        _key(energy, {"total": "-", "elastic": "--"})
+        _key(energy, {"total": "--", "elastic": "-"})
         velocity.set(ylabel="velocity [m/s]", xlabel="time [ms]")
         _key(velocity, {"$v_x$": "-", "$v_y$": "--", r"$-\omega R$": ":"} if rubs else {"$v_y$": "--"})
         force.margins(x=0)

@@ -176,14 +176,13 @@ def _instants(table: pd.DataFrame, most: int = INSTANTS) -> list[tuple[float, pd
 
 def _profiles(axes: plt.Axes, own: pd.DataFrame, words: str, line: str) -> None:
     """Pressure [MPa] over s [mm], which is the distance in these words, at up to INSTANTS times: along a line its projection on the outline's own
-    functions, where it is more than nothing, and small the points."""
+    functions, where it is more than nothing; without a line the points."""
     for t, now, colour in _instants(own):
         now = now.sort_values("s")
         if line:
-            near = now[now.projected_pressure.abs() > 0.01 * now.projected_pressure.max()]
-            axes.plot(1e3 * near.s, 1e-6 * near.projected_pressure, color=colour, linestyle=line, linewidth=1.1, label=f"{1e3 * t:.3g} ms")
-            now = now[now.pressure > 0]
-        axes.plot(1e3 * now.s, 1e-6 * now.pressure, color=colour, linestyle="", marker=".", markersize=1.5 if line else 2.5, label=None if line else f"{1e3 * t:.3g} ms")
+            now = now[now.projected_pressure.abs() > 0.01 * now.projected_pressure.max()]
+        axes.plot(1e3 * now.s, 1e-6 * (now.projected_pressure if line else now.pressure), color=colour, linestyle=line, marker="" if line else ".", linewidth=1.1,
+                  markersize=2.5, label=f"{1e3 * t:.3g} ms")
     axes.set(xlabel=f"{words} [mm]", ylabel=PRESSURE, ylim=(0, None))
     axes.legend(**ABOVE)
 

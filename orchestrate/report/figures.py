@@ -7,8 +7,10 @@ from textwrap import wrap
 from warnings import filterwarnings
 
 import matplotlib
+import matplotlib.artist
 
 matplotlib.use("Agg")
+matplotlib.artist.kwdoc = lambda artist: ""     # what it would write into its docstrings takes a fifth of its import
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import TriMesh
@@ -23,7 +25,7 @@ from ..parameters import Value
 from ..places import COMMAND
 from ..results import Contents, check_files, read_history, read_json, read_scene
 
-LAWS = {"svk": "St. Venant–Kirchhoff", "neohookean": "neo-Hookean", "incompressible": "incompressible neo-Hookean"}
+LAWS = {"svk": "St. Venant–Kirchhoff", "neohookean": "neo-Hookean", "mooney-rivlin": "Mooney–Rivlin"}
 BLUE, ORANGE, GREEN, PURPLE, BLACK, GREY = "#0072b2", "#d55e00", "#009e73", "#aa4499", "#222222", "#999999"
 SMALL = 7.5   # text of legends, of numbers in cells and below figures; all other text has the style's size
 STYLE = {"font.size": 9, "axes.titlesize": 9, "legend.fontsize": SMALL, "figure.titlesize": 9, "axes.spines.top": False, "axes.spines.right": False,
@@ -34,6 +36,7 @@ STRESS = "von Mises stress [MPa]"
 SHAPES = 9   # small multiples at most
 ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 1), "handlelength": 1.6, "columnspacing": 1.4}   # a legend above its panel
 BELOW = {"loc": "upper center", "bbox_to_anchor": (0.5, 0), "borderaxespad": 5.5}         # one below it, under the numbers and the name of its axis
+BARE = {"xticks": [], "yticks": []}                               # of panels without axes: their ticks would still be laid out
 BAND = "#c8c8c8"   # of what other curves run along
 DASHED = (0, (4, 2))
 filterwarnings("ignore", "Glyph .* missing from", UserWarning)    # a letter that the font lacks is an empty box in the title
@@ -99,7 +102,7 @@ def save(figure: plt.Figure, path: Path) -> None:
     """Writes the figure, laid out and drawn once (savefig draws it twice), and closes it."""
     figure.set_dpi(plt.rcParams["savefig.dpi"])
     figure.canvas.draw()
-    Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB").save(path, dpi=(figure.dpi, figure.dpi), compress_level=3)
+    Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB").save(path, dpi=(figure.dpi, figure.dpi), compress_level=1)
     plt.close(figure)
 
 
@@ -129,8 +132,9 @@ def title(scene: dict[str, Value]) -> str:
 
 
 def material(one: dict[str, Value]) -> str:
-    """Law, E, nu and density of a body."""
-    return f"{LAWS.get(one['law'], one['law'])}, E = {1e-6 * one['young']:g} MPa, ν = {one['nu']:g}, ρ = {one['density']:g} kg/m³"
+    """Law with its own numbers, E, nu and density of a body."""
+    own = "" if one.get("law_parameters", "none") == "none" else f" ({one['law_parameters']})"
+    return f"{LAWS.get(one['law'], one['law'])}{own}, E = {1e-6 * one['young']:g} MPa, ν = {one['nu']:g}, ρ = {one['density']:g} kg/m³"
 
 
 def as_written(text: str) -> str:
@@ -452,8 +456,8 @@ def _pose(t: float, path: Path, history: dict[str, np.ndarray]) -> Pose:
     snapshot = vtu.read(path)
     moved = snapshot.points + snapshot.fields["displacement"][:, :2]
     sides = snapshot.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
-    inner = set(map(tuple, sides[:, ::-1]))
-    following = {a: b for a, b in map(tuple, sides) if (a, b) not in inner}   # along the boundary
+    number = sides @ (len(moved), 1)
+    following = dict(sides[~np.isin(number, sides[:, ::-1] @ (len(moved), 1))].tolist())   # along the boundary: no triangle on the other side
     loop = [next(iter(following))]
     while following[loop[-1]] != loop[0]:
         loop.append(following[loop[-1]])
@@ -498,7 +502,7 @@ def _shapes(series: list[tuple[float, Path]], half: bool) -> plt.Figure:
     rows = -(-len(bodies) // columns)
     size = 6.4 / columns
     figure, grid = plt.subplots(rows, columns, figsize=(6.4 + 0.8, rows * (size * (high - floor) / (right - left) + 0.25) + 0.3),
-                                squeeze=False)
+                                squeeze=False, subplot_kw=BARE)
     for axes in grid.flat:
         axes.set_axis_off()
     largest = most_stress(bodies)
@@ -507,7 +511,7 @@ def _shapes(series: list[tuple[float, Path]], half: bool) -> plt.Figure:
         picture = draw_body(axes, body, largest)
         axes.set_title(f"{1e3 * t:.2f} ms", pad=2)
     scale_bar(grid[-1, 0])
-    figure.colorbar(picture, ax=grid, label=STRESS, shrink=0.7, aspect=30, extend="max")
+    figure.colorbar(picture, ax=grid[:, -1], label=STRESS, shrink=0.7, aspect=30, extend="max")
     return figure
 
 
@@ -571,4 +575,6 @@ def draw_ground(axes: plt.Axes, view: tuple[float, float, float, float]) -> None
 
 def draw_body(axes: plt.Axes, body: Body, largest: float) -> TriMesh:
     """The body coloured by its stress, on a scale from 0 to `largest` MPa."""
-    return axes.tripcolor(*body.points.T, body.triangles, body.stress, shading="gouraud", cmap="viridis", vmin=0, vmax=largest)
+    picture = axes.tripcolor(*body.points.T, body.triangles, body.stress, shading="gouraud", cmap="viridis", vmin=0, vmax=largest)
+    picture.set_in_layout(False)
+    return picture

@@ -59,7 +59,7 @@ def _cases(results: judging.Results) -> list[str]:
     """The targets of the runs that are not there."""
     missing = [TARGETS.get(name, name) for name, pictures in RUNS.items() if not _holds([(results.run(name), scene.load(name))])
                or not all(results.picture(name, picture).exists() for picture in pictures)]
-    return missing + ["ball-comparison"] * (not (results.folder / paper_bodies.ACCELERATIONS).exists())
+    return missing + ["ball-comparison"] * (not all((results.folder / drawn).exists() for drawn in (paper_bodies.ACCELERATIONS, paper_bodies.LIKE_FOR_LIKE)))
 
 
 def _sweeps(results: judging.Results) -> list[str]:

@@ -11,6 +11,7 @@ BLOCK = {"svk": "disc-block", "neohookean": "disc-block-neohookean"}
 MOMENTUM = 1e-8             # of the disc's momentum: below, that of both bodies is kept
 DISC, DISC_NEO, BALL, BALL_NEO = "disc-normal", "disc-normal-neohookean", "ball-axisymmetric-svk", "ball-axisymmetric"
 ACCELERATIONS = "-and-".join((DISC, DISC_NEO, BALL, BALL_NEO)) + ".png"   # make ball-comparison
+LIKE_FOR_LIKE = "same-penalty/" + ACCELERATIONS                           # the same four runs, all with k = 1e10 Pa/m
 STEPS, SOLID, SOLID_MAP = "conservation", "ball", "calibrate-ball-3d"
 SAME = 0.005                # by which two runs of one ball may differ besides their estimated errors, as two programs in V12
 # names of its answers: (of their errors, unit)
@@ -144,7 +145,7 @@ def longest(results: Results) -> Finding:
     lost = ends[BALL]["ellipticity_lost_time"]
     return Finding(AGREES if longer else DIFFERS,
                    f"ball SVK {both_times(ends[BALL])}, {when(lost, 'ellipticity lost')}; disc SVK {both_times(ends[DISC])}, "
-                   f"neo-Hookean {both_times(ends[DISC_NEO])}. (Neo-Hookean ball: {both_times(results.summary(BALL_NEO))}.)", [results.folder / ACCELERATIONS],
+                   f"neo-Hookean {both_times(ends[DISC_NEO])}. (Neo-Hookean ball: {both_times(results.summary(BALL_NEO))}.)", [results.folder / ACCELERATIONS, results.folder / LIKE_FOR_LIKE],
                    [results.run(name) for name in (*ends, BALL_NEO)], [ends[name]["ellipticity_lost_time"] for name in (DISC, BALL)])
 
 
@@ -160,7 +161,7 @@ def accelerations(results: Results) -> Finding:
         words.append(f"{name} {1e-3 * force.max() / mass:.2f} at {1e3 * history['t'][force.argmax()]:.2f} ms")
     return Finding(AGREES if max(apart) < MOMENTUM else DIFFERS,
                    f"force and change of momentum are the same to {max(apart):.0e}; largest acceleration [10³ m/s²]: {', '.join(words)}.",
-                   [results.folder / ACCELERATIONS], [results.run(name) for name in (DISC, DISC_NEO, BALL)],
+                   [results.folder / ACCELERATIONS, results.folder / LIKE_FOR_LIKE], [results.run(name) for name in (DISC, DISC_NEO, BALL)],
                    [results.summary(name)["ellipticity_lost_time"] for name in (DISC, BALL)])
 
 

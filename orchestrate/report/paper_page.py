@@ -99,7 +99,7 @@ def caption(path: Path) -> str:
         return f"{sweep.load(path.parent.name).title} (make {path.parent.name})"
     if path.parent.name == "figures" and path.parent.parent.name in scene.built_in():
         return f"{path.parent.parent.name}: {scene.load(path.parent.parent.name).title}: {SHOWN.get(path.stem, path.stem)}"
-    return TITLES.get(path.stem, path.stem.replace("-", " "))
+    return TITLES.get(path.stem, path.stem.replace("-", " ")) + (", all with k = 1e10 Pa/m" if path.parent.name == "same-penalty" else "")
 
 
 def verification(folder: Path) -> str:

@@ -96,15 +96,14 @@ def main(argv: list[str]) -> int:
         tables.append(rows)
         pages.append(page(name, rows, bars))
     study.save(pd.concat(tables), out / "bench.csv")
-    text = HEAD + "\n\n".join(pages) + "\n"
+    text = f"# Run time against error\n{study.measured(['bench', *argv])}\n\n{HEAD}" + "\n\n".join(pages) + "\n"
     with study.complete(out / "bench.md") as part:
         part.write_text(text)
     print(text + f"\n{shown(out)}/bench.csv, bench.md, " + ", ".join(f"{name}.png" for name in cases))
     return 0
 
 
-HEAD = """# Run time against error
-One process, one thread; seconds are processor time: of ours the whole process, start-up and set-up included; of the other programs the
+HEAD = """One process, one thread; seconds are processor time: of ours the whole process, start-up and set-up included; of the other programs the
 march alone, without imports and set-up (up to 0.4 s). Errors are
 relative to the mean of our two finest runs; ± is half their difference, and no error below it is known. The force error is the L2
 norm over time of the difference of the force histories over that of the reference.

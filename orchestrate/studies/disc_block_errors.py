@@ -51,7 +51,7 @@ def main(argv: list[str]) -> int:
     study.save(others, out / "disc-block-peers.csv")
     text = report(table, others, reason)
     print(f"{text}\n{shown(out)}/disc-block-errors.csv")
-    study.page(options.page, "A disc on a free block, with error bars", "make disc-block-errors", text)
+    study.page(options.page, "A disc on a free block, with error bars", ["disc-block-errors", *argv], text)
     return 1 if violations(table) else 0
 
 

@@ -28,7 +28,7 @@ def main(argv: list[str]) -> int:
     study.save(table, options.out / "materials.csv")
     text = report(table)
     print(f"{text}\n{shown(result_folder(options.out))}/materials.csv")
-    study.page(options.page, "Twelve materials at three speeds", "make materials", text)
+    study.page(options.page, "Twelve materials at three speeds", ["materials", *argv], text)
     return 0 if table.holds.all() else 1
 
 
@@ -56,7 +56,8 @@ def compare(materials: list[str], out: Path) -> pd.DataFrame:
 
 def report(table: pd.DataFrame) -> str:
     """The table, differences in %, and the verdict."""
-    percent = table.assign(**{answer: 100 * table[answer] for answer in ANSWERS})
+    names = ["; ".join(sentence.partition(":")[0] for sentence in each.split("; ")) for each in table.warnings]
+    percent = table.assign(**{answer: 100 * table[answer] for answer in ANSWERS}, warnings=names)
     below = (table[list(ANSWERS)] <= LIMIT).all(axis=1)
     return (f"Differences in % from a penalty {STIFFER} times larger and elements and steps {FINER} times smaller\n\n"
             + study.table(percent, {"material": "", "v/c": "g"} | dict.fromkeys(ANSWERS, ".2f") | {"holds": "", "warnings": "", "message": ""})

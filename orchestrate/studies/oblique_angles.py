@@ -70,7 +70,7 @@ def main(argv: list[str]) -> int:
     draw(table, out / "oblique-angles.png")
     text = report(table)
     print(f"{text}\n{shown(out)}/oblique-angles.{{csv,png}}")
-    study.page(options.page, "Disc and ball over the angle of incidence", "make oblique-angles", text)
+    study.page(options.page, "Disc and ball over the angle of incidence", ["oblique-angles", *argv], text)
     return 0 if holds(table) else 1
 
 
@@ -188,18 +188,20 @@ def holds(table: pd.DataFrame) -> bool:
 def report(table: pd.DataFrame) -> str:
     """The table, what it says, and the verdict."""
     kinds = "; ".join(f"{kind}: {WORDS[kind]}" for kind in table.kind.unique())
-    lines = [f"One coefficient of friction, static = dynamic = {table.friction.iloc[0]:g}; nu = {NU:g}, neo-Hookean. {kinds}. angle [degrees] from the",
-             "plane; e: restitution; along: speed of the centre along the plane over that before; psi_2 with its error bar; rigid: Coulomb, with the measured e;",
-             "elastic: sliding throughout beyond psi_1 = 4 chi - 1, chi = (1 - nu)(1 + R^2/k^2)/(2 - nu), below that, of balls, Maw, Barber and Fawcett; off: of the",
-             "slip that is lost and regained backwards, psi_1 - psi_2, from that theory. psi_1 = 2 (1 - nu) v_s/(mu (2 - nu) v_n), v_s of the point that touches.", "", study.table(table, FORMATS), ""]
+    lines = [f"One coefficient of friction, static = dynamic = {table.friction.iloc[0]:g}; nu = {NU:g}, neo-Hookean. {kinds}.", "",
+             "- angle: of incidence, from the plane [degrees]; e: restitution; along: speed of the centre along the plane, after over before.",
+             "- psi_1 = 2 (1 - nu) v_s/(mu (2 - nu) v_n), v_s the speed of the point that touches; psi_2: the same after the impact, with its error bar.",
+             "- rigid: psi_2 of a rigid body with Coulomb friction and the measured e.",
+             "- elastic: sliding throughout for psi_1 > 4 chi - 1, chi = (1 - nu)(1 + R^2/k^2)/(2 - nu); below that, of balls, the theory of Maw, Barber and Fawcett.",
+             "- off: difference from that theory over psi_1 - psi_2, the slip that is lost and regained backwards.", "", study.table(table, FORMATS), ""]
     failed = table.verdict == "failed"
     lines += [f"failed, exit {row.exit}: {row.body}, {row.kind}, {row.angle:g} degrees: {row.message}" for row in table[failed].itertuples()]
     lines += [f"- {body}, {kind}: {'; '.join(findings(body, kind, group))}." for (body, kind), group in table[~failed].groupby(["body", "kind"], sort=False)]
     if found := study.warned(table.warnings):
         lines.append(f"- Warnings: {found}.")
     if "disc" in set(table.body):
-        lines.append("- No theory is at hand of an elastic disc that sticks: springs side by side stand for axisymmetric contacts alone, and the approach of a\n"
-                     "  half-plane hangs on the point it is measured from. One that slides throughout loses what friction of one direction takes, as the ball does.")
+        lines.append("- No theory of an elastic disc that sticks is known to us: the model of independent springs holds for axisymmetric contacts alone, and the approach of a\n"
+                     "  half-plane depends on the point it is measured from. A disc that slides throughout loses what friction in one direction takes, as the ball does.")
     agree, partly, asked = (table.verdict == "agrees").sum(), (table.verdict == "partly").sum(), table["asked [%]"].notna().sum()
     lines += ["", f"{agree} of {asked} that a theory is asked of agree, to {100 * ASKED:g} % of the slip that is lost, as in V17; {partly} agree partly: slow balls that stick, within",
               f"{FINITE:g} times the contact's radius over the ball's on top, as a ball is no half-space. The requirement {'holds' if holds(table) else 'FAILS'}."]

@@ -37,7 +37,7 @@ def main(argv: list[str]) -> int:
     study.save(table, options.out / "pairing.csv")
     text = report(table)
     print(f"{text}\n{shown(result_folder(options.out))}/pairing.csv")
-    study.page(options.page, "Closest points and pairs of points", "make pairing-comparison", text)
+    study.page(options.page, "Closest points and pairs of points", ["pairing-comparison", *argv], text)
     return 0 if holds(table) else 1
 
 

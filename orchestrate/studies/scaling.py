@@ -36,7 +36,7 @@ def main(argv: list[str]) -> int:
     study.save(table, options.out / "scaling.csv")
     text = report(table)
     print(f"{text}\n{shown(result_folder(options.out))}/scaling.csv")
-    study.page(options.page, "One impact in many units and materials", "make scaling", text)
+    study.page(options.page, "One impact in many units and materials", ["scaling", *argv], text)
     return 0 if table.holds.all() else 1
 
 

@@ -3,11 +3,15 @@
 import hashlib
 import multiprocessing
 import os
+import platform
+import re
+import shlex
 import signal
 import time
 from collections import Counter, deque
 from collections.abc import Callable, Hashable, Iterable, Iterator
 from contextlib import contextmanager
+from datetime import date
 from functools import partial
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
@@ -18,10 +22,11 @@ import pandas as pd
 from .. import estimate as estimates, freefem, run, scene, stopping
 from ..failure import BadInput, Busy, Failure, TooLong, Unreadable
 from ..parameters import Value
+from ..places import COMMAND
 from ..progress import Line, forward
 from ..results import read_json
 
-CORES = len(os.sched_getaffinity(0))
+CORES = freefem.CORES
 TOO_LONG = TooLong("").code   # of a run that its time limit ended
 STOPS = (signal.SIGTERM, signal.SIGHUP, signal.SIGINT)
 LONGEST = 200               # characters of a folder's name
@@ -215,11 +220,19 @@ def save(frame: pd.DataFrame, path: Path) -> None:
         frame.to_csv(part, index=False)
 
 
-def page(path: Path | None, title: str, command: str, text: str) -> None:
-    """Writes a report as a page of docs/, where a path is given; it says which command wrote it."""
+def page(path: Path | None, title: str, command: list[str], text: str) -> None:
+    """Writes a report as a page of docs/, where a path is given, behind what measured it and its last paragraph, the verdict."""
     if path:
+        report, _, verdict = text.rpartition("\n\n")
         with complete(path) as part:
-            part.write_text(f"# {title}\nWritten by `{command}`.\n\n{text}\n")
+            part.write_text(f"# {title}\n{measured(command)}\n\n{verdict}\n\n{report}\n")
+
+
+def measured(command: list[str]) -> str:
+    """Which command measured what follows, its words behind `python -m orchestrate`; at which commit, when, and on which machine."""
+    model = re.search(r"^model name\s*: (.*)", Path("/proc/cpuinfo").read_text(), re.MULTILINE)
+    return (f"Written by `{COMMAND} {shlex.join(command)}` at commit {run.commit(10)}, {date.today()}, on {CORES} cores, "
+            f"{model[1] if model else platform.machine()}.")
 
 
 @contextmanager

@@ -1,0 +1,309 @@
+// bodies.hpp: the bodies as their operators see them, made once of the sparse matrices of edp/core/discrete: forces and tangent, in any dimension.
+// Displacements are taken by nodes: (node, component), D components. F_iJ - delta_iJ = sum over the nodes a of a point of N_a,J u_ai; of bodies of
+// revolution (H = 1) there is F_33 = 1 + u_r/r as well, with N_a/r in the place of a derivative. Points that have the same nodes, those of an element,
+// go together. Arrays over points are stacked as in the scripts: component k of point q at k nq + q.
+#pragma once
+#include <algorithm>
+#include <map>
+#include <vector>
+#include "laws.hpp"
+
+namespace bodies {
+
+// A sparse matrix as FreeFEM holds it: entries in any order.
+struct Triplets {
+  int n, m;                                // rows, columns
+  size_t size;
+  const int *row, *column;
+  const double *value;
+};
+
+// The components of F and C that are stored: (i, J), with which component u_i and which N_a,J make it; (J, L) as in laws.hpp.
+template<int D, int H> struct Stored {
+  static const int F = D * D + H, C = D == 3 ? 6 : 3 + H, slots = D + H;
+  static int row(int k) { return k < D * D ? k / D : 2; }
+  static int column(int k) { return k < D * D ? k % D : 2; }
+  static int component(int k) { return k < D * D ? k / D : 0; }
+  static int slot(int k) { return k < D * D ? k % D : D; }
+  static int symmetric(int k) { static const int plane[4] = {0, 1, 3, 2}; return D == 3 ? k : plane[k]; }
+};
+
+// What evaluate() of residual.idp says of a step, too.
+enum { fine = 0, inverted = 2, notANumber = 3 };
+enum { stepMean = 0, stepMiddle = 1, stepEnd = 2 };   // of normal.idp
+
+const int most = 10;                       // nodes of an element: those of a quadratic tetrahedron
+
+// The arrays of integrators.idp that forces() reads (F0, C0) and fills.
+struct Deformation { double *F0, *C0, *F1, *C1, *jacobian1, *Fs, *Ss; };
+
+class Bodies {
+public:
+  int ndof = 0, nq = 0, nodes = 0, D = 0, H = 0;
+  std::vector<int> unknown;                // (node, component) -> unknown
+  std::vector<double> free;                // (ndof) 0 at what is held
+  std::vector<laws::Material> material;    // (nq)
+  std::vector<double> weight;              // (nq) [m2, m3] of the WHOLE bodies
+  // elements: their nodes, their points, N_a,J of each of these (point, node, slot)
+  std::vector<int> firstNode, node, firstPoint, point;
+  std::vector<size_t> firstShape;
+  std::vector<double> shape;
+  // mass: symmetric, one row a node for all components alike
+  std::vector<int> massRow, massColumn;
+  std::vector<double> massValue;           // [kg/m, kg]
+  // pairs of nodes (a >= b) that an element or the mass couples, and their D x D blocks of the tangent
+  std::vector<int> pairA, pairB, firstPair, pairOf, pairOfMass;
+  std::vector<double> block;
+
+  // From componentOf[i]: which unknown is component i of node a.
+  void component(int i, int dimensions, const Triplets &pick) {
+    D = dimensions;
+    nodes = pick.n;
+    ndof = pick.m;
+    unknown.resize(D * nodes);
+    for (size_t e = 0; e < pick.size; e++) if (pick.value[e] != 0) unknown[pick.row[e] * D + i] = pick.column[e];
+  }
+
+  // Elements and shapes from `gradient` (nF nq x ndof): from the rows of F_11, F_12 ... (the first component's), and of F_33 of revolution.
+  void elements(const Triplets &gradient) {
+    std::vector<int> nodeOf(ndof, -1);
+    for (int a = 0; a < nodes; a++) nodeOf[unknown[a * D]] = a;
+    nq = int(weight.size());
+    H = gradient.n / nq - D * D;
+    int slots = D + H;
+    std::vector<std::map<int, std::vector<double>>> at(nq);
+    for (size_t e = 0; e < gradient.size; e++) {
+      int k = gradient.row[e] / nq, s = k < D ? k : (k == D * D ? D : -1);
+      if (s < 0) continue;
+      std::vector<double> &N = at[gradient.row[e] % nq][nodeOf[gradient.column[e]]];
+      N.resize(slots);
+      N[s] += gradient.value[e];
+    }
+    std::map<std::vector<int>, int> known;
+    std::vector<std::vector<int>> own, points;
+    for (int q = 0; q < nq; q++) {
+      std::vector<int> its;
+      for (auto &N : at[q]) its.push_back(N.first);
+      auto found = known.insert({its, int(own.size())});
+      if (found.second) { own.push_back(its);  points.push_back({}); }
+      points[found.first->second].push_back(q);
+    }
+    firstNode = firstPoint = {0};
+    firstShape = {0};
+    node.clear();  point.clear();  shape.clear();
+    for (size_t g = 0; g < own.size(); g++) {
+      node.insert(node.end(), own[g].begin(), own[g].end());
+      point.insert(point.end(), points[g].begin(), points[g].end());
+      for (int q : points[g]) for (auto &N : at[q]) shape.insert(shape.end(), N.second.begin(), N.second.end());
+      firstNode.push_back(int(node.size()));
+      firstPoint.push_back(int(point.size()));
+      firstShape.push_back(shape.size());
+    }
+  }
+
+  // The consistent mass, whose components are alike and do not mix: the rows of the first.
+  void mass(const Triplets &M) {
+    std::vector<int> nodeOf(ndof, -1);
+    for (int a = 0; a < nodes; a++) nodeOf[unknown[a * D]] = a;
+    std::map<std::pair<int, int>, double> entry;
+    for (size_t e = 0; e < M.size; e++)
+      if (nodeOf[M.row[e]] >= 0 && nodeOf[M.column[e]] >= 0) entry[{nodeOf[M.row[e]], nodeOf[M.column[e]]}] += M.value[e];
+    massRow.assign(nodes + 1, 0);
+    massColumn.clear();  massValue.clear();
+    for (auto &e : entry) {
+      massRow[e.first.first + 1]++;
+      massColumn.push_back(e.first.second);
+      massValue.push_back(e.second);
+    }
+    for (int a = 0; a < nodes; a++) massRow[a + 1] += massRow[a];
+  }
+
+  // The pattern of the tangent.
+  void pairs() {
+    std::map<std::pair<int, int>, int> known;
+    pairA.clear();  pairB.clear();  pairOf.clear();  pairOfMass.clear();
+    auto pair = [&](int a, int b) {
+      auto found = known.insert({{std::max(a, b), std::min(a, b)}, int(pairA.size())});
+      if (found.second) { pairA.push_back(std::max(a, b));  pairB.push_back(std::min(a, b)); }
+      return found.first->second;
+    };
+    firstPair = {0};
+    for (size_t g = 0; g + 1 < firstNode.size(); g++) {
+      for (int a = firstNode[g]; a < firstNode[g + 1]; a++)
+        for (int b = firstNode[g]; b <= a; b++) pairOf.push_back(pair(node[a], node[b]));   // an element's nodes ascend: a >= b
+      firstPair.push_back(int(pairOf.size()));
+    }
+    for (int a = 0; a < nodes; a++) for (int e = massRow[a]; e < massRow[a + 1]; e++) pairOfMass.push_back(pair(a, massColumn[e]));
+    block.assign(pairA.size() * D * D, 0.);
+  }
+
+  // G' (w P) + M (massScale d - history) - deadLoad, 0 at what is held [N/m, N]: the inertia, the inner forces and the dead load of (2) at the increment
+  // d, and the deformation that they are taken at. `breaks`: det F <= 0 ends a step.
+  int forces(const double *d, const double *history, const double *deadLoad, double massScale, int where, bool breaks, const Deformation &at,
+             double *residual) const {
+    return D == 3 ? forces<3, 0>(d, history, deadLoad, massScale, where, breaks, at, residual)
+      : H == 1 ? forces<2, 1>(d, history, deadLoad, massScale, where, breaks, at, residual)
+      : forces<2, 0>(d, history, deadLoad, massScale, where, breaks, at, residual);
+  }
+
+  // The blocks of massScale M + stiffnessScale K, K the derivative of G' (w F S) at F, S.
+  void tangent(const double *F, const double *S, double massScale, double stiffnessScale) {
+    std::fill(block.begin(), block.end(), 0.);
+    if (D == 3) stiffness<3, 0>(F, S, stiffnessScale); else if (H == 1) stiffness<2, 1>(F, S, stiffnessScale); else stiffness<2, 0>(F, S, stiffnessScale);
+    for (int a = 0; a < nodes; a++)
+      for (int e = massRow[a]; e < massRow[a + 1]; e++) if (massColumn[e] <= a)
+        for (int i = 0; i < D; i++) block[size_t(pairOfMass[e]) * D * D + i * D + i] += massScale * massValue[e];
+  }
+
+  // At every point, of C: the energy [J/m3], the smallest stretch of the motions there are, ellipticity; of F: Cauchy's stress (6 nq) and von Mises' [Pa].
+  void energies(const double *C, double *W) const { at(C, W, [](const laws::Material &m, const double *c) { return laws::energy(m, c); }); }
+  void ellipticities(const double *C, double *e) const {
+    bool spatial = D == 3;
+    at(C, e, [spatial](const laws::Material &m, const double *c) { return laws::ellipticity(m, c, spatial); });
+  }
+  void smallestStretches(const double *C, double *stretch) const {
+    int D = this->D, H = this->H;
+    at(C, stretch, [D, H](const laws::Material &, const double *c) {
+      double L[3];
+      if (D == 2) return std::sqrt(H == 1 ? std::min(laws::smallerInPlane(c), c[2]) : laws::smallerInPlane(c));
+      laws::principal(c, L);
+      return std::sqrt(std::max(0., L[2]));
+    });
+  }
+  void stresses(const double *F, double *sigma, double *mises) const {
+    for (int q = 0; q < nq; q++) {
+      double f[9], s[6];
+      if (D == 3) whole<3, 0>(F, q, f); else if (H == 1) whole<2, 1>(F, q, f); else whole<2, 0>(F, q, f);
+      mises[q] = laws::cauchy(material[q], f, s);
+      for (int k = 0; k < 6; k++) sigma[k * nq + q] = s[k];
+    }
+  }
+
+private:
+  // values = f(material, C), C of point q, all of it.
+  template<class Function> void at(const double *C, double *values, Function f) const {
+    static const int plane[4] = {0, 1, 3, 2};
+    int n = D == 3 ? 6 : 3 + H;
+    for (int q = 0; q < nq; q++) {
+      double c[6] = {1, 1, 1, 0, 0, 0};
+      for (int k = 0; k < n; k++) c[D == 3 ? k : plane[k]] = C[k * nq + q];
+      values[q] = f(material[q], c);
+    }
+  }
+
+  mutable std::vector<double> nodal, pull;
+
+  template<int D, int H> int forces(const double *d, const double *history, const double *deadLoad, double massScale, int where, bool breaks,
+                                    const Deformation &at, double *residual) const {
+    nodal.resize(nodes * D);
+    pull.assign(nodes * D, 0.);
+    for (int i = 0; i < nodes * D; i++) nodal[i] = d[unknown[i]];
+    double smallest = stretched<D, H>(where, at);
+    if (smallest != smallest) return notANumber;
+    if (smallest <= 0 && breaks) return inverted;
+    stressed<D, H>(where, at);
+    for (int i = 0; i < nodes * D; i++) nodal[i] = massScale * nodal[i] - history[unknown[i]];
+    for (int a = 0; a < nodes; a++)
+      for (int e = massRow[a]; e < massRow[a + 1]; e++)
+        for (int i = 0; i < D; i++) pull[a * D + i] += massValue[e] * nodal[massColumn[e] * D + i];
+    for (int i = 0; i < nodes * D; i++) residual[unknown[i]] = (pull[i] - deadLoad[unknown[i]]) * free[unknown[i]];
+    return fine;
+  }
+
+  // F1 = F0 + G d, Fs, det F1; the least det F1, or nan.
+  template<int D, int H> double stretched(int where, const Deformation &at) const {
+    typedef Stored<D, H> T;
+    double smallest = 1e300;
+    for (size_t g = 0; g + 1 < firstNode.size(); g++) {
+      int n = firstNode[g + 1] - firstNode[g];
+      const double *N = &shape[firstShape[g]];
+      double its[most * D];
+      for (int a = 0; a < n; a++) for (int i = 0; i < D; i++) its[a * D + i] = nodal[node[firstNode[g] + a] * D + i];
+      for (int p = firstPoint[g]; p < firstPoint[g + 1]; p++) {
+        int q = point[p];
+        double dF[T::F] = {}, full[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+        for (int a = 0; a < n; a++, N += T::slots) {
+          for (int i = 0; i < D; i++) for (int J = 0; J < D; J++) dF[i * D + J] += N[J] * its[a * D + i];
+          if (H) dF[D * D] += N[D] * its[a * D];
+        }
+        for (int k = 0; k < T::F; k++) {
+          double before = at.F0[k * nq + q], after = before + dF[k];
+          at.F1[k * nq + q] = full[3 * T::row(k) + T::column(k)] = after;
+          at.Fs[k * nq + q] = where == stepEnd ? after : before + 0.5 * dF[k];
+        }
+        double J = at.jacobian1[q] = laws::determinant(full);
+        if (!(J >= smallest)) smallest = J == J && smallest == smallest ? J : NAN;
+      }
+    }
+    return smallest;
+  }
+
+  // C1, Ss and pull += G' (w Fs Ss).
+  template<int D, int H> void stressed(int where, const Deformation &at) const {
+    typedef Stored<D, H> T;
+    for (size_t g = 0; g + 1 < firstNode.size(); g++) {
+      int n = firstNode[g + 1] - firstNode[g];
+      const double *N = &shape[firstShape[g]];
+      double its[most * D] = {};
+      for (int p = firstPoint[g]; p < firstPoint[g + 1]; p++) {
+        int q = point[p];
+        double F[9], Fs[9], C0[6] = {1, 1, 1, 0, 0, 0}, C1[6], S[6], P[9];
+        whole<D, H>(at.Fs, q, Fs);
+        whole<D, H>(where == stepMiddle ? at.Fs : at.F1, q, F);
+        laws::rightCauchyGreen(F, C1);
+        if (where == stepMean) {
+          for (int k = 0; k < T::C; k++) C0[T::symmetric(k)] = at.C0[k * nq + q];
+          laws::algorithmicStress(material[q], C0, C1, S);
+        }
+        else laws::stress(material[q], C1, S);
+        for (int k = 0; k < T::C; k++) at.C1[k * nq + q] = C1[T::symmetric(k)];
+        for (int k = 0; k < T::C; k++) at.Ss[k * nq + q] = S[T::symmetric(k)];
+        laws::nominalStress(Fs, S, P);
+        for (int k = 0; k < 9; k++) P[k] *= weight[q];
+        for (int a = 0; a < n; a++, N += T::slots) {
+          for (int i = 0; i < D; i++) for (int J = 0; J < D; J++) its[a * D + i] += N[J] * P[3 * i + J];
+          if (H) its[a * D] += N[D] * P[8];
+        }
+      }
+      for (int a = 0; a < n; a++) for (int i = 0; i < D; i++) pull[node[firstNode[g] + a] * D + i] += its[a * D + i];
+    }
+  }
+
+  // F of point q, all of it.
+  template<int D, int H> void whole(const double *stacked, int q, double *F) const {
+    typedef Stored<D, H> T;
+    for (int k = 0; k < 9; k++) F[k] = k % 4 == 0;
+    for (int k = 0; k < T::F; k++) F[3 * T::row(k) + T::column(k)] = stacked[k * nq + q];
+  }
+
+  // block += scale times sum over points of w N_a,J dP_iJ/dF_kL N_b,L.
+  template<int D, int H> void stiffness(const double *F, const double *S, double scale) {
+    typedef Stored<D, H> T;
+    for (size_t g = 0; g + 1 < firstNode.size(); g++) {
+      int n = firstNode[g + 1] - firstNode[g];
+      const double *N = &shape[firstShape[g]];
+      for (int p = firstPoint[g]; p < firstPoint[g + 1]; p++, N += n * T::slots) {
+        int q = point[p];
+        double f[9], s[6] = {}, A[T::F][T::F];
+        whole<D, H>(F, q, f);
+        for (int k = 0; k < T::C; k++) s[T::symmetric(k)] = S[k * nq + q];
+        laws::Moduli moduli(material[q], f, s);
+        for (int k = 0; k < T::F; k++)
+          for (int l = 0; l < T::F; l++) A[k][l] = scale * weight[q] * moduli(T::row(k), T::column(k), T::row(l), T::column(l));
+        const int *to = &pairOf[firstPair[g]];
+        for (int a = 0; a < n; a++) {
+          double Y[D][T::F] = {};          // sum over J of N_a,J dP_iJ/dF
+          for (int k = 0; k < T::F; k++)
+            for (int l = 0; l < T::F; l++) Y[T::component(k)][l] += N[a * T::slots + T::slot(k)] * A[k][l];
+          for (int b = 0; b <= a; b++, to++) {
+            double *into = &block[size_t(*to) * D * D];
+            for (int i = 0; i < D; i++)
+              for (int l = 0; l < T::F; l++) into[i * D + T::component(l)] += Y[i][l] * N[b * T::slots + T::slot(l)];
+          }
+        }
+      }
+    }
+  }
+};
+
+}

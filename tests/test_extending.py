@@ -1,0 +1,102 @@
+"""docs/extending.md, block by block: what it shows is applied to a copy of the program, runs there, and has the answers that the page names."""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from orchestrate import results, vtu
+from orchestrate.places import ROOT
+
+NEW = re.compile(r"`([\w./-]+)`, new\b[^`]*?(?:`[^`]+`[^`]*?)?:\n```\w*\n(.*?)```", re.DOTALL)
+YOUNG, NU = 7e6, 0.3
+F = np.array([[1.2, 0.3, 0], [-0.1, 0.7, 0], [0, 0, 1]])   # of verification/homogeneous.edp
+
+
+@pytest.fixture
+def extended(tmp_path):
+    """extended(heading): a copy of the program with all that the page has below this heading."""
+    def apply(heading: str) -> Path:
+        section = re.search(rf"(?ms)^## {heading}\n(.*?)(?=^## |\Z)", (ROOT / "docs/extending.md").read_text())[1]
+        for name in ("edp", "orchestrate", "verification"):
+            shutil.copytree(ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__"))
+        for path, text in NEW.findall(section):
+            (tmp_path / path).write_text(text)
+        for change in re.findall(r"```diff\n(.*?)```", section, re.DOTALL):
+            go(tmp_path, "git", "apply", "-", given=change)
+        for command in re.findall(r"```sh\n(.*?)```", section, re.DOTALL):
+            go(tmp_path, "sh", "-c", command)
+        return tmp_path
+    return apply
+
+
+def go(folder: Path, *words: str, given: str | None = None) -> str:
+    """What a command prints that is run there, and must not fail."""
+    ended = subprocess.run(words, cwd=folder, input=given, capture_output=True, text=True, env=os.environ | {"GIT_CEILING_DIRECTORIES": str(folder.parent)})
+    assert ended.returncode == 0, ended.stderr
+    return ended.stdout
+
+
+def run(folder: Path, *words: str) -> dict:
+    """The summary of a run there, into out/."""
+    go(folder, sys.executable, "-m", "orchestrate", "run", *words, "--out", "out", "--force", "--quiet")
+    return results.read_summary(folder / "out")
+
+
+def measured(folder: Path, script: str, **flags) -> dict[str, float]:
+    """What a script of verification/ prints there."""
+    call = f"import json; from verification.measure import measure; print(json.dumps(measure({script!r}, **{flags!r})))"
+    return json.loads(go(folder, sys.executable, "-c", call))
+
+
+def test_obstacle_is_the_built_in_one(extended):
+    """An ellipse of equal semi-axes is a circle: a disc that hits it off its centre leaves with the same velocity, impulse and vibration."""
+    folder = extended("An obstacle")
+    ellipse = run(folder, "peg.toml")
+    text = (folder / "peg.toml").read_text().replace('"ellipse"', '"circle"').replace("semi_axes = [0.03, 0.03]", "radius = 0.03")
+    (folder / "peg.toml").write_text(text)
+    circle = run(folder, "peg.toml")
+    assert "ellipse" not in text and circle["rebound_vx"] > 1
+    for name, size in (("impulse", circle["impulse"]), ("rebound_vx", 4), ("rebound_vy", 4), ("vibration_energy", circle["energy_initial"])):
+        assert ellipse[name] == pytest.approx(circle[name], abs=2e-3 * size), name
+
+
+def test_friction_law_has_its_closed_form(extended):
+    """A block on an incline creeps at the speed at which the law holds it."""
+    folder = extended("A friction law")
+    creeps = [list(map(float, line.split())) for line in go(folder, sys.executable, "creep.py").splitlines()]
+    assert len(creeps) == 3
+    for found, exact in creeps:
+        assert found == pytest.approx(exact, rel=2e-3)
+
+
+def test_figure_is_drawn_and_encloses_what_translation_lost(extended):
+    """Every run on the plane has the figure; the area of its loop is the energy of translation before less that after."""
+    folder = extended("A figure")
+    summary = run(folder, "disc-normal", "--set", "accuracy=0.05")
+    assert (folder / "out/figures/loop.png").stat().st_size > 10_000
+    call = "from orchestrate.report.loop import lost; from orchestrate.results import read_history; from pathlib import Path; print(lost(read_history(Path('out'))))"
+    lost = summary["energy_initial"] - summary["translation_energy"]
+    assert lost > 10 and float(go(folder, sys.executable, "-c", call)) == pytest.approx(lost, rel=1e-9)
+
+
+def test_law_has_its_stress_its_tangent_and_its_energy(extended):
+    """Homogeneous stress by the closed form, tangent by differences, and the balance of an impact closed to round-off, beside another law, too."""
+    folder = extended("A constitutive law")
+    measured(folder, "homogeneous", law="ciarlet", young=YOUNG, nu=NU, accuracy=0.1, out=str(folder / "fields"))
+    l, mu, J = YOUNG * NU / ((1 + NU) * (1 - 2 * NU)), YOUNG / (2 * (1 + NU)), np.linalg.det(F)
+    sigma = mu / J * (F @ F.T - np.eye(3)) + l / 2 * (J - 1 / J) * np.eye(3)
+    found = vtu.read(folder / "fields/homogeneous.vtu").fields["cauchy_stress"]
+    assert found == pytest.approx(np.tile(sigma[[0, 1, 2, 0, 1, 0], [0, 1, 2, 1, 2, 2]], (len(found), 1)), rel=1e-7)
+    tangent = measured(folder, "tangent-disc", law="ciarlet", integrator="newmark", accuracy=0.1)
+    assert tangent["tangent"] < 1e-6 and tangent["smallest"] < 0.6
+    summary = run(folder, "disc-normal", "--set", "law=ciarlet", "accuracy=0.05")
+    assert summary["energy_drift"] < 1e-9 and summary["vibration_energy"] > 0.1 * summary["energy_initial"]
+    mixed = run(folder, "two-discs", "--set", "body.1.law=ciarlet", "accuracy=0.05")
+    assert mixed["energy_drift"] < 1e-9 and mixed["vibration_energy_1"] != pytest.approx(mixed["vibration_energy_2"], rel=1e-4)

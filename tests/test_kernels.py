@@ -1,0 +1,100 @@
+"""The compiled kernels: the same as the scripts; without them nothing changes."""
+
+import os
+
+import pytest
+
+from orchestrate import freefem, kernels
+from verification.measure import disc, measure, prepared
+
+
+@pytest.fixture
+def copy(tmp_path, monkeypatch):
+    """A folder of its own for what is built."""
+    monkeypatch.setattr(kernels, "BUILT", tmp_path / "dev")
+    return tmp_path / "dev"
+
+
+def write(folder, name: str) -> None:
+    folder.mkdir(exist_ok=True)
+    (folder / "kernels.cpp").write_text(f'#include "ff++.hpp"\nstatic void {name}() {{}}\nLOADFUNC({name})\n')
+
+
+def test_they_are_built_once_and_again_for_other_sources(copy, monkeypatch, tmp_path):
+    """What loads the plugin names the one of these very sources; that of other sources takes its place."""
+    monkeypatch.setattr(kernels, "SOURCES", tmp_path / "sources")
+    write(kernels.SOURCES, "one")
+    program = freefem.find()
+    if not kernels.build(program.command, program.version, program.environment):
+        pytest.skip("no compiler here")
+    first, = copy.glob("kernels-*.so")
+    made = first.stat().st_mtime_ns
+    assert str(first.with_suffix(""))[1:] in (copy / "null").read_text()
+    assert kernels.build(program.command, program.version, program.environment) and first.stat().st_mtime_ns == made
+    write(kernels.SOURCES, "other")
+    assert kernels.build(program.command, program.version, program.environment)
+    second, = copy.glob("kernels-*.so")
+    assert second != first and str(second.with_suffix(""))[1:] in (copy / "null").read_text()
+
+
+def test_where_they_cannot_be_built_nothing_loads_them(copy, monkeypatch):
+    """Sources that do not compile leave nothing behind that a script would load; a FreeFem++ without its ff-c++ is no error."""
+    monkeypatch.setattr(kernels, "SOURCES", copy.parent / "broken")
+    kernels.SOURCES.mkdir()
+    (kernels.SOURCES / "kernels.cpp").write_text("#include <no-such-header>\n")
+    program = freefem.find()
+    copy.mkdir(exist_ok=True)
+    (copy / "null").write_text('load "of-other-sources"\n')
+    assert not kernels.build(program.command, program.version, {"PATH": os.environ["PATH"]}) and not (copy / "null").exists()
+    assert not kernels.build("/no/such/FreeFem++", program.version, {})
+
+SAME = 1e-12
+PLACES = {"plane": ("tangent-disc", {"accuracy": 0.1}), "axisymmetric": ("tangent-ball", {"accuracy": 0.1}),
+          "3d": ("tangent-3d", {"mesh_size": 0.025, "contact_mesh_size": 0.015})}
+
+
+@pytest.mark.parametrize("law, integrator", [("svk", "newmark"), ("neohookean", "energy-momentum"), ("neohookean", "midpoint"), ("svk", "energy-momentum")])
+@pytest.mark.parametrize("place", PLACES)
+def test_forces_tangent_and_factor_are_those_of_the_scripts(place, law, integrator):
+    """In any dimension, under both laws and wherever in the step the stress is taken: to round-off."""
+    script, flags = PLACES[place]
+    equal(measure(script, law=law, nu=0.3, integrator=integrator, **flags))
+
+
+@pytest.mark.parametrize("integrator", ["newmark", "energy-momentum"])
+def test_two_bodies_of_different_laws(tmp_path, integrator):
+    """Every point has the law of its own body."""
+    bodies = [{"name": name, "shape": "disc", "radius": 0.05, "position": [0, y], "velocity": [0, 0], "law": law, "young": young, "nu": 0.3, "density": 1722.0}
+              for name, y, law, young in (("lower", 0.05, "svk", 7e6), ("upper", 0.151, "neohookean", 2e7))]
+    equal(measure("kernels-bodies", **prepared(tmp_path, {"accuracy": 0.1, "body": bodies}) | {"integrator": integrator}))
+
+
+def equal(found: dict) -> None:
+    if not found["built"]:
+        pytest.skip("no compiler here")
+    assert found["refused"] == 0 and max(found[name] for name in ("deformed", "forces", "product", "solve", "response", "compliance")) < SAME
+
+
+TIGHT = {"law": "neohookean", "nu": 0.4, "accuracy": 0.3, "tolerance": 1e-14}
+RUBBED = {"friction_static": 0.3, "angle": 60}
+MARCHES = {"disc": ("disc-plane", {}), "rubbing disc": ("disc-plane", RUBBED), "svk": ("disc-plane", {"law": "svk", "integrator": "midpoint", "speed": 2, "end_time": 1e-3}),
+           "explicit": ("disc-plane", {"integrator": "central-difference", "end_time": 2e-4}), "ball of revolution": ("ball-axisymmetric", {}),
+           "ball": ("ball-plane", RUBBED | {"end_time": 1e-3}), "two bodies": ("disc-block", RUBBED | {"end_time": 1e-3})}
+WATCHED = ["t", "normal_force", "friction_force", "kinetic", "elastic", "vx", "vy", "min_jacobian", "min_stretch", "min_ellipticity"]
+
+
+@pytest.mark.parametrize("name", MARCHES)
+def test_marches_are_those_of_the_scripts(tmp_path, name):
+    """The same history with kernels and without, up to round-off, and with them to the byte the same again; the summary says which served."""
+    script, flags = MARCHES[name]
+    runs = {folder: disc(tmp_path / folder, script, **TIGHT | flags, without=without)
+            for folder, without in (("with", "none"), ("again", "none"), ("without", "kernels"))}
+    if not runs["with"].summary["kernels"]:
+        pytest.skip("no compiler here")
+    assert not runs["without"].summary["kernels"]
+    assert (tmp_path / "with/history.csv").read_bytes() == (tmp_path / "again/history.csv").read_bytes()
+    for column in WATCHED:
+        ours, theirs = (runs[folder].history[column] for folder in ("with", "without"))
+        assert ours == pytest.approx(theirs, rel=0, abs=1e-9 * max(abs(theirs))), column
+    for number in ("max_von_mises", "max_tension", "max_shear"):
+        assert runs["with"].summary[number] == pytest.approx(runs["without"].summary[number], rel=1e-9)
