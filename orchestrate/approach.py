@@ -21,6 +21,7 @@ from .solids import Solid
 
 Shape = Outline | Solid
 STEPS = 2000                 # of bodies within reach of each other: what has not met by then is not known to
+FAR = 1e9                    # of the smaller thickness: a gap from an obstacle without parts to be within reach of, that is followed no further
 RESTITUTION = 0.5            # of a hit that turns bodies: much of it goes to vibration, and they turn while it lasts
 ECCENTRIC = 1e-2             # lever of a hit over the reach of the body that it turns
 MORE = 3                     # touches of two bodies that follow the first one
@@ -194,7 +195,7 @@ def _first_touch(body: Body, other: Body | Obstacle, start: np.ndarray, pull: np
             if met and (gap <= CLOSED * radius or gap >= before):               # closed, or passing by
                 return t, False
             steps, before = steps + 1, gap
-            if steps > STEPS:
+            if steps > STEPS or gap > FAR * radius:
                 return math.inf, False
             if speed + rate == 0:
                 return math.inf, True
@@ -220,6 +221,8 @@ def _gates(body: Body, other: Body | Obstacle, start: np.ndarray, pull: np.ndarr
         return np.array([Polynomial([x, v, a / 2]) for x, v, a in zip(body.position - point, start, pull)])
     if isinstance(other, Body):
         yield [(seen_from(other.position)**2).sum() - (reach + 1.01 * other.outline.reach)**2]
+    elif other.kind == "implicit":
+        yield []
     elif other.kind == "polyline":
         sides, reach = polyline.sides_of(other.numbers), reach + other.numbers[1]
         for point, along, low, high in zip(sides.start, sides.along, sides.low, sides.high):
@@ -240,6 +243,6 @@ def _gates(body: Body, other: Body | Obstacle, start: np.ndarray, pull: np.ndarr
 def _gap(first: Shape, second: Shape | Obstacle) -> float:
     """The gap; of two bodies far apart that of the circles around them, which is no larger."""
     if isinstance(second, Obstacle):
-        return first.least(second.gap)
+        return second.gap_from(first)
     away, around = np.linalg.norm(first.area_centre - second.area_centre), first.reach + second.reach
     return float(away - around) if away > 2 * around else gap_between(first, second)

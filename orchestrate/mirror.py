@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from . import implicit
 from .bodies import Body
 from .dimension import SOLID
 from .failure import BadInput
@@ -58,5 +59,7 @@ def _of_body(one: Body, axis: int, plane: str) -> str:
 
 
 def _of_obstacle(one: Obstacle, axis: int) -> bool:
+    if one.kind == "implicit":
+        return one.velocity[axis] != 0 or not implicit.is_mirrored(one.numbers[2:], axis, 3)
     across = one.numbers[3 + axis] if one.kind == "plane" else one.numbers[axis]
     return across != 0 or one.velocity[axis] != 0

@@ -183,6 +183,9 @@ def read(given: dict, folder: Path, name: str) -> Multibody:
     for k, one in enumerate(rigid, 1):
         _of_the_scene(f"obstacle.{k}", one)
     all_obstacles = obstacles.read([{key: value for key, value in one.items() if key not in OWN} for one in rigid], of)
+    centres = np.array([body.placed.area_centre for body in all_bodies])
+    half = float(np.ptp(centres, axis=0).max() / 2 + 2 * max(body.placed.reach for body in all_bodies))
+    all_obstacles = obstacles.settled(all_obstacles, centres.mean(axis=0), half)
     script = table.text("script", of.script)
     if script != of.script:
         raise BadInput(f"script: '{brief(script)}' is not that of [[body]] tables in dimension = '{of.name}' (accepted: {of.script})")
@@ -289,7 +292,7 @@ def gap_between(first: Outline | Solid, second: Outline | Solid) -> float:
 
 def gap_to_obstacle(outline: Outline | Solid, obstacle: Obstacle) -> float:
     """The distance of a body from an obstacle, negative where they overlap."""
-    centre, least = outline.area_centre, outline.least(obstacle.gap)
+    centre, least = outline.area_centre, obstacle.gap_from(outline)
     nearest = centre - obstacle.gap(centre[None]) * normal_of(obstacle, centre)
     is_of_it = obstacle.gap(nearest[None])[0] < 1e-4 * outline.half_thickness    # not where the distance has no gradient
     return float(min(least, outline.gap(nearest[None])[0]) if is_of_it else least)    # the former: an obstacle inside the body

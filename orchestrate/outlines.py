@@ -225,6 +225,8 @@ class Outline:
 
     def normal_from(self, other) -> np.ndarray:
         """The outward normal of another body or an obstacle where this one is nearest to it."""
+        if not getattr(other, "is_exact", True):
+            return other.nearest(self)[1]
         if self.disc:
             return normal_of(other, self.disc[0])
         if getattr(other, "disc", None):

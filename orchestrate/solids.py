@@ -339,6 +339,8 @@ class Solid:
 
     def normal_from(self, other) -> np.ndarray:
         """The outward normal of another body or an obstacle where this one is nearest to it."""
+        if not getattr(other, "is_exact", True):
+            return other.nearest(self)[1]
         if self.radius:
             return normal_of(other, self.centre)
         if getattr(other, "radius", None):

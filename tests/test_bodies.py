@@ -540,7 +540,7 @@ def test_obstacles_are_their_numbers_and_gaps(entries, words, points, gaps):
 
 
 @pytest.mark.parametrize("entries, words", [
-    ({"kind": "cone"}, "obstacle.1.kind: 'cone' is not known (accepted: plane|circle|bowl|polyline)"),
+    ({"kind": "cone"}, "obstacle.1.kind: 'cone' is not known (accepted: plane|circle|bowl|polyline|implicit)"),
     ({}, "obstacle.1.kind: is missing (accepted: plane|"),
     ({"kind": "plane", "point": [0, 0]}, "obstacle.1.normal: is missing (accepted: [x, y]"),
     ({"kind": "bowl", "centre": [0, 0]}, "obstacle.1.radius: is missing"),

@@ -149,7 +149,7 @@ def test_what_is_wrong_is_named(entries, top, words):
 @pytest.mark.parametrize("obstacle, words", [
     ({"normal": [1, 1]}, "obstacle.1.normal: '[1, 1]' is not along the axis of revolution (accepted: [0, 1] or [0, -1])"),
     ({"velocity": [1, 0]}, "obstacle.1.velocity: x is 1, off the axis"),
-    ({"kind": "circle"}, "obstacle.1.kind: 'circle' is not known (accepted: plane|sphere|bowl|polyline)")])
+    ({"kind": "circle"}, "obstacle.1.kind: 'circle' is not known (accepted: plane|sphere|bowl|polyline|implicit)")])
 def test_obstacles_off_the_axis_are_refused(obstacle, words):
     """Planes across the axis, everything else on it."""
     with pytest.raises(BadInput) as caught:

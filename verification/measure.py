@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from orchestrate import assembly, freefem, multibody, parameters, results
+from orchestrate import assembly, dimension, freefem, multibody, parameters, results
 from orchestrate.failure import Failure
 from orchestrate.parameters import ROOT, Value
 
@@ -47,9 +47,9 @@ def outcome(folder: Path) -> Outcome:
 
 
 def bodies(folder: Path, tables: dict, **given: Value | Path) -> Outcome:
-    """edp/bodies.edp for the scene in these tables (orchestrate.multibody), with more flags, run into `folder`/run."""
+    """The script of bodies for the scene in these tables (orchestrate.multibody), with more flags, run into `folder`/run."""
     out = folder / "run"
-    _start("edp/bodies.edp", (*_flags(prepared(folder, tables) | given), "-out", str(out)), ROOT)
+    _start(f"edp/{dimension.of(tables).script}.edp", (*_flags(prepared(folder, tables) | given), "-out", str(out)), ROOT)
     return outcome(out)
 
 
@@ -62,11 +62,12 @@ def solid_bodies(folder: Path, scene: solids.Scene, **given: Value | Path) -> Ou
 
 def prepared(folder: Path, tables: dict) -> dict[str, Value | Path]:
     """The flags of a scene of bodies in these tables; its mesh and bodies are written into `folder`."""
-    made = assembly.assemble(multibody.read(tables, ROOT, "scene"))
+    scene = multibody.read(tables, ROOT, "scene")
+    made = assembly.assemble(scene)
     folder.mkdir(parents=True, exist_ok=True)
     made.write(folder)
     flags = {name: value for name, value in made.values.items() if name in parameters.table()}
-    return flags | {"mesh": folder / "mesh.msh", "bodies": folder / "scene.dat"}
+    return flags | {"mesh": folder / scene.mesh_name, "bodies": folder / "scene.dat"}
 
 
 def _flags(given: dict[str, Value | Path]) -> tuple[str, ...]:

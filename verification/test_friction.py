@@ -120,7 +120,7 @@ def test_half_a_rubbing_disc_is_the_whole_disc(disc, tmp_path, regularization, s
     assert half.summary["friction_work"] > 5e-3 * half.summary["energy_initial"]
     of_friction = () if static > 0.5 else ("friction_work", "sliding_fraction")
     for name in ("normal_force", "kinetic", "elastic", "contact", "y", "vy", "max_penetration", "contact_size", *of_friction):
-        a, b = half.history[name], full.history[name]
+        a, b = half.history[name], np.interp(half.history["t"], full.history["t"], full.history[name])   # a jump may cost a step more
         assert abs(a - b).max() < band * abs(a).max(), name
     assert abs(half.history["friction_force"]).max() == 0
     even = 1e-6 if static == 0.5 else band

@@ -34,7 +34,7 @@ def test_rows_conserve(measure, case):
 
 
 def shapes(r, s):
-    """Shape functions (n, 6) of a curved face at r, s, in the order of boundary-3d.idp."""
+    """Shape functions (n, 6) of a curved face at r, s, in the order of boundary.idp."""
     q = 1 - r - s
     return np.stack([q * (2 * q - 1), r * (2 * r - 1), s * (2 * s - 1), 4 * r * s, 4 * s * q, 4 * q * r], -1)
 

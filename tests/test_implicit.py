@@ -1,0 +1,56 @@
+"""Obstacles by an expression of their signed distance: what is accepted, the program, the gap."""
+
+import numpy as np
+import pytest
+
+from orchestrate import implicit
+from orchestrate.failure import BadInput
+
+POINTS = np.random.default_rng(1).uniform(-0.3, 0.3, (500, 2))
+
+
+def settled(text, centre=(0.0, 0.05), half=0.1):
+    return implicit.settled("obstacle.1", implicit.program("obstacle.1", text, len(centre)), np.array(centre), half)
+
+
+@pytest.mark.parametrize("text, value", [
+    ("y - 0.002*sin(200*x)", lambda x, y: y - 0.002 * np.sin(200 * x)), ("-x^2 + 3*-y", lambda x, y: -x**2 - 3 * y),
+    ("2^-1*(x - y)/(1 + x*x)", lambda x, y: 0.5 * (x - y) / (1 + x * x)), ("max(abs(x), min(y, 0.1)) - 1e-2", lambda x, y: np.maximum(abs(x), np.minimum(y, 0.1)) - 0.01),
+    ("sqrt(x^2+y^2+1) - exp(cos(x))", lambda x, y: np.sqrt(x**2 + y**2 + 1) - np.exp(np.cos(x)))])
+def test_a_program_is_its_expression(text, value):
+    """Value and gradient, the latter against central differences."""
+    code = implicit.program("obstacle.1", text, 2)
+    found, slope = implicit.run(code, POINTS)
+    assert found == pytest.approx(value(*POINTS.T), rel=1e-13, abs=1e-15)
+    for axis, step in enumerate(1e-6 * np.eye(2)):
+        assert slope[:, axis] == pytest.approx((value(*(POINTS + step).T) - value(*(POINTS - step).T)) / 2e-6, rel=1e-6, abs=1e-7)
+
+
+@pytest.mark.parametrize("text, wrong", [
+    ("y - z", "'z' in 'y - z' is not known"), ("__import__('os').system('id')", "is not known"), ("y if x else 1", "is not known"), ("y - ", "'y - ' is no expression"),
+    ("tan(x)", "'tan(x)' in 'tan(x)' is not known"), ("sin(x, y)", "'sin(x, y)' in 'sin(x, y)' is not known"), ("2^x", "'^ x' in '2^x' is not known"),
+    ("y + True", "'True' in 'y + True' is not known"), ("y; x", "is no expression"), ("", "is no expression"), (3, "'3' is no expression"), (None, "is missing"),
+    ("(" * 400 + "y" + ")" * 400, "is no expression"), ("y+" * 600 + "y", "1201 characters (accepted: up to 1000)"), ("x[0]", "is not known"), ("y := 1", "is no expression")])
+def test_other_text_is_refused_in_one_line(text, wrong):
+    """Nothing but numbers, coordinates, the four operations, powers by numbers and the named functions is taken."""
+    with pytest.raises(BadInput, match=r"^obstacle\.1\.distance: ") as error:
+        implicit.program("obstacle.1", text, 2)
+    assert wrong in str(error.value) and "(accepted: " in str(error.value) and "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("text, wrong", [("1 + x^2", "is 0 nowhere within"), ("sqrt(y)", "has no value or no gradient at")])
+def test_expressions_without_a_surface_are_refused(text, wrong):
+    with pytest.raises(BadInput, match=wrong):
+        settled(text)
+
+
+@pytest.mark.parametrize("text", ["sqrt(x^2 + y^2) - 0.1", "x*x + y*y - 0.01", "5*(x^2 + y^2 - 0.01)"])
+def test_the_gap_is_the_distance(text):
+    """Of any expression with the same zeros; farther than `limit` it is no more than that. The limit is a third of the radius of curvature."""
+    numbers = settled(text)
+    found, exact = implicit.gap(POINTS, numbers), np.linalg.norm(POINTS, axis=1) - 0.1
+    near = abs(exact) < 0.02
+    assert numbers[1] == pytest.approx(0.1 / 3, rel=1e-3) and near.any()
+    assert found[near] == pytest.approx(exact[near], abs=1e-15) and (abs(found) <= abs(exact) + 1e-15).all() and (found * exact >= 0).all()
+    assert implicit.radius_at(np.array([0.0, 0.11]), numbers) == pytest.approx(0.1, rel=1e-5)
+    assert implicit.radius_at(np.array([0.0, 0.09]), settled("0.01 - x*x - y*y", (0.0, 0.0), 0.05)) == np.inf
