@@ -121,7 +121,7 @@ def own(request, tmp_path_factory):
     """The mesh that the scripts make without Python, over its radius, and what was asked of it."""
     radius, bulk, contact, arc, symmetry = request.param
     folder, core = tmp_path_factory.mktemp("own"), parameters.ROOT / "edp/core"
-    rooms = "".join(f'include "{core}/{room}.idp"\n' for room in ("input/parameters", "input/labels", "input/mesh-file", "input/outline", "input/sizes", "input/symmetry"))
+    rooms = "".join(f'include "{core}/{room}.idp"\n' for room in ("law/laws", "input/parameters", "input/labels", "input/mesh-file", "input/outline", "input/sizes", "input/symmetry"))
     (folder / "own.edp").write_text(
         f'verbosity = 0;\nload "lapack"\nstring script = "own";\n{rooms}touchArc = {arc!r};\ninclude "{core}/bodies/half-disc.idp"\ninclude "{core}/bodies/disc-mesh.idp"\n'
         f'ofstream out("{folder}/own.msh");\nout.precision(17);\nout << Th.nv << " " << Th.nt << " " << Th.nbe << endl;\n'

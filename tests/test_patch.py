@@ -59,9 +59,9 @@ def test_half_width_is_that_of_the_size(ran, which):
     h = ran(which).history
     size, touches = h["contact_size"], h["contact_size"] > 0
     radius = np.sqrt(size / np.pi) if which in ("revolution", "ball") else size / 2
-    coarse = {"ball": 0.25, "block": 0.15, "pairs of points": 0.15}.get(which, 0.1)     # of two bodies the larger one, the size is their mean
-    large = size > 0.5 * size.max()
-    assert large.sum() > 5 and np.abs(h["contact_half_width"] / np.where(touches, radius, 1) - 1)[large].max() < coarse
+    used, large = run.read_scene(ran(which).folder), size > 0.5 * size.max()
+    element = used.get("contact_mesh_size") or max(body["contact_mesh_size"] for body in used["body"])
+    assert large.sum() > 5 and np.abs(h["contact_half_width"] - radius)[large].max() < 0.39 * element     # Gauss' points of an edge
     assert (h["contact_half_width"][~touches] == 0).all() and (h["contact_half_width"][touches] > 0).all()
 
 
