@@ -5,6 +5,7 @@
 #include "bodies.hpp"
 #include "factor.hpp"
 #include "contact.hpp"
+#include "pairs.hpp"
 
 typedef KN<double> *Reals;                 // real[int]
 typedef KN<long> *Ints;                    // int[int]
@@ -133,6 +134,7 @@ static void addKernels() {
   add("kernelRespond", kernelRespond);
   add("kernelCompliance", kernelCompliance);
   contact::addContact();
+  pairs::addPairs();
 }
 
 LOADFUNC(addKernels)

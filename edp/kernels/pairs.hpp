@@ -1,0 +1,550 @@
+// pairs.hpp: the gap between deformable bodies, of core/contact/pair.idp, where its formulas stand: which points are near which cells of another body (edges in
+// the plane, faces in space, A components), the closest points of these, the rows of the conserving gap, and the springs at vertices.
+#ifndef FFIMPACT_PAIRS
+#define FFIMPACT_PAIRS
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+#include "call.hpp"
+
+namespace pairs {
+
+using Reals = KN<double> *;
+using Ints = KN<long> *;
+template<size_t A> using Vector = std::array<double, A>;
+
+template<size_t A> double dot(const Vector<A> &a, const Vector<A> &b) {
+  double sum = 0;
+  for (size_t i = 0; i < A; i++) sum += a[i] * b[i];
+  return sum;
+}
+template<size_t A> double length(const Vector<A> &a) { return std::sqrt(dot(a, a)); }
+template<size_t A> Vector<A> plus(const Vector<A> &a, double s, const Vector<A> &b) {   // a + s b
+  Vector<A> c;
+  for (size_t i = 0; i < A; i++) c[i] = a[i] + s * b[i];
+  return c;
+}
+template<size_t A> Vector<A> times(double s, const Vector<A> &a) { return plus(Vector<A>{}, s, a); }
+template<size_t A> double farthest(const Vector<A> &a, const Vector<A> &b) {
+  double most = 0;
+  for (size_t i = 0; i < A; i++) most = std::max(most, std::abs(a[i] - b[i]));
+  return most;
+}
+inline Vector<3> cross(const Vector<3> &a, const Vector<3> &b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+// N_a of an edge in 1, r, r^2, of a face in 1, r, s, r^2, r s, s^2, by nodes: corners, then middles.
+constexpr int termsOf(int A) { return A == 2 ? 3 : 6; }
+inline const double *shape(int nodes, int a, int A) {
+  static const double edge1[][3] = {{1, -1, 0}, {0, 1, 0}}, edge2[][3] = {{1, -3, 2}, {0, -1, 2}, {0, 4, -4}};
+  static const double face1[][6] = {{1, -1, -1, 0, 0, 0}, {0, 1, 0, 0, 0, 0}, {0, 0, 1, 0, 0, 0}};
+  static const double face2[][6] = {{1, -3, -3, 2, 4, 2}, {0, -1, 0, 2, 0, 0}, {0, 0, -1, 0, 0, 2}, {0, 0, 0, 0, 4, 0}, {0, 0, 4, 0, -4, -4}, {0, 4, 0, -4, -4, 0}};
+  return A == 2 ? (nodes == 2 ? edge1[a] : edge2[a]) : (nodes == 3 ? face1[a] : face2[a]);
+}
+inline void monomials(const Vector<1> &r, Vector<3> &p, Vector<3> *slope) {
+  p = {1, r[0], r[0] * r[0]};
+  slope[0] = {0, 1, 2 * r[0]};
+}
+inline void monomials(const Vector<2> &r, Vector<6> &p, Vector<6> *slope) {
+  p = {1, r[0], r[1], r[0] * r[0], r[0] * r[1], r[1] * r[1]};
+  slope[0] = {0, 1, 0, 2 * r[0], r[1], 0};
+  slope[1] = {0, 0, 1, 0, r[0], 2 * r[1]};
+}
+
+// The closest point of a cell: arm = y - x, and the tangents y' there.
+template<int A> struct Foot {
+  Vector<A - 1> r;
+  Vector<A> arm, tangent[A - 1];
+};
+
+// y - x of a cell and a point, or how it changes in a step, by coefficients of the monomials.
+template<int A> struct Patch {
+  std::array<Vector<A>, termsOf(A)> c;
+  void at(Foot<A> &foot) const {
+    Vector<termsOf(A)> p, slope[A - 1];
+    monomials(foot.r, p, slope);
+    foot.arm = {};
+    for (int k = 0; k < termsOf(A); k++) foot.arm = plus(foot.arm, p[k], c[k]);
+    for (int l = 0; l < A - 1; l++) {
+      foot.tangent[l] = {};
+      for (int k = 0; k < termsOf(A); k++) foot.tangent[l] = plus(foot.tangent[l], slope[l][k], c[k]);
+    }
+  }
+};
+template<int A> Patch<A> plus(const Patch<A> &a, double s, const Patch<A> &b) {
+  Patch<A> sum;
+  for (int k = 0; k < termsOf(A); k++) sum.c[k] = plus(a.c[k], s, b.c[k]);
+  return sum;
+}
+
+inline double clip(double a) { return std::min(1., std::max(0., a)); }
+
+// change^2 / last is what linear convergence, the slowest there is, leaves of the error.
+struct Convergence {
+  double change = 1, last = 1;
+  bool going() const { return change * (change / last) > 3e-15; }
+  void moved(double by) {
+    last = change;
+    change = std::max(by, 1e-300);
+  }
+};
+
+inline void closest(const Patch<2> &patch, Foot<2> &foot) {
+  const Vector<2> &a = patch.c[0], &b = patch.c[1], &c = patch.c[2], chord = plus(b, 1, c);
+  const double c0 = dot(a, b), c1 = 2 * dot(a, c) + dot(b, b), c2 = 3 * dot(b, c), c3 = 2 * dot(c, c), square = dot(chord, chord);
+  double r = clip(-dot(a, chord) / square);
+  Convergence steps;
+  for (int it = 0; it < 40 && steps.going(); it++) {
+    const double f = c0 + r * (c1 + r * (c2 + r * c3)), slope = c1 + r * (2 * c2 + r * 3 * c3), next = clip(r - f / std::max(slope, square / 4));
+    steps.moved(std::abs(next - r));
+    r = next;
+  }
+  foot.r[0] = r;
+  patch.at(foot);
+}
+
+// r to the least of g.p + p.H p / 2, p from r on, on the triangle: inside it, or on one of its three edges.
+inline Vector<2> stepOnFace(const Vector<2> &r, double gr, double gs, double hrr, double hrs, double hss) {
+  const auto model = [&](const Vector<2> &R) {
+    const double pr = R[0] - r[0], ps = R[1] - r[1];
+    return 0.5 * (pr * (hrr * pr + 2 * gr) + ps * (hss * ps + 2 * gs) + 2 * hrs * pr * ps);
+  };
+  const double det = hrr * hss - hrs * hrs, along = gr - gs + (hrr - hrs) * (1 - r[0]) + (hss - hrs) * r[1];
+  const double S = clip(along / (hrr - 2 * hrs + hss));
+  const Vector<2> inside = {r[0] + (gs * hrs - gr * hss) / det, r[1] + (gr * hrs - gs * hrr) / det};
+  if (inside[0] >= 0 && inside[1] >= 0 && inside[0] + inside[1] <= 1) return inside;
+  const Vector<2> bottom = {clip(r[0] + (hrs * r[1] - gr) / hrr), 0}, left = {0, clip(r[1] + (hrs * r[0] - gs) / hss)}, slant = {1 - S, S};
+  const Vector<2> &one = model(left) < model(bottom) ? left : bottom;
+  return model(slant) < model(one) ? slant : one;
+}
+
+inline void closest(const Patch<3> &patch, Foot<3> &foot) {
+  foot.r = {1. / 3, 1. / 3};
+  Convergence steps;
+  for (int it = 0; it < 20 && steps.going(); it++) {
+    patch.at(foot);
+    const Vector<3> &y = foot.arm, &yr = foot.tangent[0], &ys = foot.tangent[1];
+    double hrr = dot(yr, yr), hrs = dot(yr, ys), hss = dot(ys, ys);
+    const double krr = 2 * dot(y, patch.c[3]), krs = dot(y, patch.c[4]), kss = 2 * dot(y, patch.c[5]);
+    // the curvature where the matrix stays definite with it; beyond the centre of curvature that of the tangents alone, so that it descends
+    if ((hrr + krr) * (hss + kss) - (hrs + krs) * (hrs + krs) > 0.1 * (hrr * hss - hrs * hrs) && hrr + krr + hss + kss > 0) { hrr += krr;  hrs += krs;  hss += kss; }
+    const Vector<2> next = stepOnFace(foot.r, dot(y, yr), dot(y, ys), hrr, hrs, hss);
+    steps.moved(farthest(next, foot.r));
+    foot.r = next;
+  }
+  patch.at(foot);
+}
+
+// Whether the foot is on a vertex of an edge, on an edge of a face: within round-off, then made so.
+inline bool onBoundary(Vector<1> &r) {
+  if (r[0] > 1e-12 && r[0] < 1 - 1e-12) return false;
+  r[0] = r[0] < 0.5 ? 0 : 1;
+  return true;
+}
+inline bool onBoundary(Vector<2> &r) {
+  for (double &x : r) if (x <= 1e-12) x = 0;
+  const bool slant = 1 - r[0] - r[1] <= 1e-12;
+  if (slant) r[0] = 1 - r[1];
+  return slant || r[0] == 0 || r[1] == 0;
+}
+
+// Outward normal of a cell; an edge has the body to its left.
+inline Vector<2> normalOf(const Foot<2> &foot, double) {
+  const Vector<2> &t = foot.tangent[0];
+  return times(1 / std::max(1e-300, length(t)), Vector<2>{t[1], -t[0]});
+}
+inline Vector<3> normalOf(const Foot<3> &foot, double side) {
+  const Vector<3> m = cross(foot.tangent[0], foot.tangent[1]);
+  return times(side / std::max(1e-300, length(m)), m);
+}
+
+inline void tangents(const Vector<2> &n, Vector<2> *t) { t[0] = {n[1], -n[0]}; }
+inline void tangents(const Vector<3> &n, Vector<3> *t) {   // tangentFrames() of shapes.idp
+  const double h = std::hypot(n[0], n[1]), x = std::sqrt(std::max(0., 1 - n[0] * n[0]));
+  t[0] = h > 0.1 ? Vector<3>{n[1] / h, -n[0] / h, 0} : Vector<3>{x, -n[0] * n[1] / std::max(0.5, x), -n[0] * n[2] / std::max(0.5, x)};
+  t[1] = cross(t[0], n);
+}
+
+// c of a row  f.rho + sum over l of c_l.(N_a,l delta y_a)  for the slip along t: the cell turns under the arm g n.
+inline void turning(const Foot<2> &foot, const Vector<2> &, const Vector<2> &m, const Vector<2> &, double g, Vector<2> *c) {
+  c[0] = times(-g / length(foot.tangent[0]), m);
+}
+inline void turning(const Foot<3> &foot, const Vector<3> &n, const Vector<3> &m, const Vector<3> &t, double g, Vector<3> *c) {
+  const Vector<3> &yr = foot.tangent[0], &ys = foot.tangent[1], about = cross(n, t), tau = times(g, plus(about, -0.5 * dot(m, about), m));
+  const double rr = dot(yr, yr), rs = dot(yr, ys), ss = dot(ys, ys), det = rr * ss - rs * rs;
+  c[0] = cross(plus(times(ss / det, yr), -rs / det, ys), tau);
+  c[1] = cross(plus(times(rr / det, ys), -rs / det, yr), tau);
+}
+
+// What the outline or surface is, once; its arrays as in pair.idp.
+struct Surface {
+  int cells, nodes, points, np, obstacles, bodies;   // nodes and points of a cell
+  std::vector<int> unknown, body;          // of component i of node a of a cell at (i nodes + a) cells + cell
+  std::vector<double> side, pointShape;    // N_a of a point at a np + point
+};
+
+struct Rows { Ints row, unknown;  Reals normal, slip; };
+
+struct AnyPairs {
+  virtual ~AnyPairs() {}
+  virtual long search(const double *x, double reach) = 0;
+  virtual long start(const double *x, long unknowns) = 0;
+  virtual void gaps(const double *d, double *q0, double *q1, const Rows &rows) = 0;
+  virtual long springs(const double *t, const double *free, const double *most, Ints of, Ints unknown, Reals value, Reals stiffness) = 0;
+};
+
+template<int A> class Pairs : public AnyPairs {
+public:
+  explicit Pairs(Surface given) : surface(std::move(given)) {}
+
+  long search(const double *x, double reach) {
+    const Surface &s = surface;
+    this->reach = reach;
+    low.assign(s.cells, {});
+    high.assign(s.cells, {});
+    std::vector<std::vector<int>> own(s.bodies);
+    for (int c = 0; c < s.cells; c++) { box(x, c);  own[s.body[c]].push_back(c); }
+    std::vector<std::pair<long, int>> found;   // slot, cell
+    for (int a = 0; a < s.bodies; a++) for (int b = a + 1; b < s.bodies; b++) sweep(x, own[a], own[b], found);
+    std::sort(found.begin(), found.end());
+    slot.clear();  first.clear();  cell.clear();
+    for (const auto &one : found) {
+      if (slot.empty() || slot.back() != one.first) { slot.push_back(one.first);  first.push_back(int(cell.size())); }
+      cell.push_back(one.second);
+    }
+    first.push_back(int(cell.size()));
+    return long(slot.size());
+  }
+
+  long start(const double *x, long unknowns) {
+    double size = 0;
+    for (long j = 0; j < unknowns; j++) size = std::max(size, std::abs(x[j]));
+    roundOff = 1e-13 * size;
+    patches(x, patchAtStart);
+    startGap.clear();  startUnseen.clear();
+    std::vector<long> slots;
+    std::vector<int> firsts = {0}, cells;
+    std::vector<Patch<A>> kept;
+    for (size_t k = 0; k < slot.size(); k++) {
+      const Place place = project(patchAtStart, int(k));
+      if (A == 3 && place.gap > reach) continue;   // the boxes were wider
+      for (int e = first[k]; e < first[k + 1]; e++)
+        if (A == 2 || length(feet[e - first[k]].arm) <= std::abs(place.gap) + 2 * reach) { cells.push_back(cell[e]);  kept.push_back(patchAtStart[e]); }
+      slots.push_back(slot[k]);
+      firsts.push_back(int(cells.size()));
+      startGap.push_back(place.gap);
+      startUnseen.push_back(place.unseen);
+    }
+    slot.swap(slots);  first.swap(firsts);  cell.swap(cells);  patchAtStart.swap(kept);
+    before.assign(slot.size(), {-1, 0, 0, {}});
+    return long(slot.size());
+  }
+
+  void gaps(const double *d, double *q0, double *q1, const Rows &rows) {
+    const long n = long(slot.size()), entries = 2 * A * surface.nodes * n;
+    rows.row->resize(entries);  rows.unknown->resize(entries);  rows.normal->resize(entries);  rows.slip->resize((A - 1) * entries);
+    patches(d, step);
+    middle = end = patchAtStart;
+    for (size_t e = 0; e < cell.size(); e++) { middle[e] = plus(middle[e], 0.5, step[e]);  end[e] = plus(end[e], 1, step[e]); }
+    now.resize(n);
+    for (int k = 0; k < n; k++) {
+      now[k] = project(middle, k);
+      const Place last = project(end, k);
+      const bool seen = !startUnseen[k] && !now[k].unseen && !last.unseen;
+      if (seen) { q0[slot[k]] = -startGap[k];  q1[slot[k]] = -last.gap; }
+      row(k, n, seen, last.gap - startGap[k], rows);
+    }
+  }
+
+  long springs(const double *t, const double *free, const double *most, Ints of, Ints unknown, Reals value, Reals stiffness) {
+    const Surface &s = surface;
+    const int n = int(slot.size()), blocks = A * s.nodes;
+    if (A == 3) return 0;
+    std::vector<int> at;
+    std::vector<double> c;
+    for (int k = 0; k < n; k++) {
+      const double spring = std::min(turned(k, t[slot[k]]), most[slot[k]]);
+      if (spring > 0) { at.push_back(k);  c.push_back(spring); }
+      before[k] = {cell[now[k].pick], now[k].foot.r[0], length(now[k].foot.tangent[0]), now[k].n};
+    }
+    const int found = int(at.size());
+    stiffness->resize(found);  of->resize(2 * blocks * found);  unknown->resize(2 * blocks * found);  value->resize(2 * blocks * found);
+    for (int i = 0; i < found; i++) {
+      const Place &place = now[at[i]];
+      const double slip[2] = {place.n[1], -place.n[0]};
+      (*stiffness)[i] = c[i];
+      each(at[i], place, [&](int block, int unknowns, int component, double N, const double *) {
+        const int at = 2 * blocks * i + block;
+        (*of)[at] = i;
+        (*unknown)[at] = unknowns;
+        (*value)[at] = free[unknowns] * N * slip[component];
+      });
+    }
+    return found;
+  }
+
+private:
+  // Of a slot in one configuration: the candidate that is closest and where, its own normal m, the gap and its normal n; whether there is none.
+  struct Place { int pick;  Foot<A> foot;  Vector<A> m, n;  double gap;  bool unseen; };
+  struct Before { int cell;  double r, length;  Vector<A> n; };   // at the evaluation before; cell -1: there is none in this step
+
+  Surface surface;
+  double reach = 0, roundOff = 0;          // [m]
+  std::vector<Vector<A>> low, high;        // (cells) boxes, with half of the reach
+  std::vector<long> slot;                  // (n)
+  std::vector<int> first, cell;            // (n + 1) of slot k the candidates first[k] .. first[k + 1] - 1; their cells
+  std::vector<Patch<A>> patchAtStart, step, middle, end;
+  std::vector<double> startGap;
+  std::vector<bool> startUnseen;
+  std::vector<Place> now;                  // in the middle configuration
+  std::vector<Before> before;
+  std::vector<Foot<A>> feet;               // of the slot at hand
+
+  int node(int c, int i, int a) const { return surface.unknown[(i * surface.nodes + a) * surface.cells + c]; }
+  Vector<A> nodePlace(const double *x, int c, int a) const {
+    Vector<A> y;
+    for (int i = 0; i < A; i++) y[i] = x[node(c, i, a)];
+    return y;
+  }
+  Vector<A> pointPlace(const double *x, int p) const {
+    Vector<A> y = {};
+    for (int a = 0; a < surface.nodes; a++) y = plus(y, surface.pointShape[a * surface.np + p], nodePlace(x, p / surface.points, a));
+    return y;
+  }
+
+  // A curved edge lies within |C|/4 of its chord, y = chord + r (r - 1) C; a curved face in the hull of its corners and of 2 m - (a + b)/2, m the middle of ab.
+  void box(const double *x, int c) {
+    const int nodes = surface.nodes;
+    for (int i = 0; i < A; i++) {
+      const auto y = [&](int a) { return x[node(c, i, a)]; };
+      double &l = low[c][i], &h = high[c][i];
+      l = h = y(0);
+      for (int a = 1; a < A; a++) { l = std::min(l, y(a));  h = std::max(h, y(a)); }
+      const double bend = A == 2 && nodes == 3 ? std::abs(2 * (y(0) + y(1)) - 4 * y(2)) / 4 : 0;
+      for (int a = 3; a < nodes; a++) {
+        const double control = 2 * y(a) - 0.5 * (y((a + 1) % 3) + y((a + 2) % 3));
+        l = std::min(l, control);
+        h = std::max(h, control);
+      }
+      l -= bend + reach / 2;
+      h += bend + reach / 2;
+    }
+  }
+
+  // Points and cells of two bodies near each other: only those in the overlap of the bodies' boxes, sorted along its longest side.
+  void sweep(const double *x, const std::vector<int> &bodyA, const std::vector<int> &bodyB, std::vector<std::pair<long, int>> &found) const {
+    Vector<A> from, to;
+    int axis = 0;
+    for (int i = 0; i < A; i++) {
+      double lowest[2] = {1e300, 1e300}, highest[2] = {-1e300, -1e300};
+      for (int c : bodyA) { lowest[0] = std::min(lowest[0], low[c][i]);  highest[0] = std::max(highest[0], high[c][i]); }
+      for (int c : bodyB) { lowest[1] = std::min(lowest[1], low[c][i]);  highest[1] = std::max(highest[1], high[c][i]); }
+      from[i] = std::max(lowest[0], lowest[1]);
+      to[i] = std::min(highest[0], highest[1]);
+      if (to[i] < from[i]) return;
+      if (to[i] - from[i] > to[axis] - from[axis]) axis = i;
+    }
+    const auto meet = [&](int c, const Vector<A> &l, const Vector<A> &h) {
+      for (int i = 0; i < A; i++) if (low[c][i] > h[i] || high[c][i] < l[i]) return false;
+      return true;
+    };
+    std::vector<int> nearB;
+    double widest = 0;
+    for (int c : bodyB) if (meet(c, from, to)) { nearB.push_back(c);  widest = std::max(widest, high[c][axis] - low[c][axis]); }
+    std::sort(nearB.begin(), nearB.end(), [&](int c, int e) { return low[c][axis] < low[e][axis]; });
+    for (int c : bodyA) if (meet(c, from, to)) {
+      auto e = std::lower_bound(nearB.begin(), nearB.end(), low[c][axis] - widest, [&](int f, double least) { return low[f][axis] < least; });
+      for (; e != nearB.end() && low[*e][axis] <= high[c][axis]; ++e) if (meet(*e, low[c], high[c])) { join(x, c, *e, found);  join(x, *e, c, found); }
+    }
+  }
+
+  // Points of a cell within reach of the box of another.
+  void join(const double *x, int own, int other, std::vector<std::pair<long, int>> &found) const {
+    const Surface &s = surface;
+    const int partner = s.obstacles + s.body[other] - (s.body[other] > s.body[own] ? 1 : 0);
+    for (int p = own * s.points; p < (own + 1) * s.points; p++) {
+      const Vector<A> y = pointPlace(x, p);
+      bool near = true;
+      for (int i = 0; i < A; i++) near = near && y[i] >= low[other][i] - reach / 2 && y[i] <= high[other][i] + reach / 2;
+      if (near) found.push_back({long(partner) * s.np + p, other});
+    }
+  }
+
+  void patches(const double *w, std::vector<Patch<A>> &all) const {
+    all.assign(cell.size(), Patch<A>{});
+    for (size_t k = 0; k < slot.size(); k++) {
+      const Vector<A> point = pointPlace(w, int(slot[k] % surface.np));
+      for (int e = first[k]; e < first[k + 1]; e++) {
+        for (int a = 0; a < surface.nodes; a++) {
+          const double *N = shape(surface.nodes, a, A);
+          const Vector<A> y = nodePlace(w, cell[e], a);
+          for (int j = 0; j < termsOf(A); j++) all[e].c[j] = plus(all[e].c[j], N[j], y);
+        }
+        all[e].c[0] = plus(all[e].c[0], -1, point);
+      }
+    }
+  }
+
+  // (9): the closest of the candidates of slot k.
+  Place project(const std::vector<Patch<A>> &patch, int k) {
+    const int m = first[k + 1] - first[k];
+    int pick = 0;
+    feet.resize(m);
+    for (int e = 0; e < m; e++) {
+      closest(patch[first[k] + e], feet[e]);
+      const double off = dot(feet[e].arm, feet[e].arm) - dot(feet[pick].arm, feet[pick].arm);
+      if (off < 0 || (A == 2 && off == 0)) pick = e;
+    }
+    const Vector<A> arm = feet[pick].arm;
+    const auto tied = [&](int e) { return farthest(feet[e].arm, arm) <= 1e4 * roundOff; };
+    Vector<A - 1> r = feet[pick].r;
+    // of several cells that meet there the edge that ends in the vertex, the first face: which of them turns with the rows is not left to round-off
+    if (onBoundary(r)) {
+      if (A == 2) toVertex(patch, k, node(cell[first[k] + pick], 0, r[0] == 0 ? 0 : 1));
+      for (int e = m - 1; e >= 0; e--) if (tied(e) && (A == 3 ? e < pick : feet[e].r[0] == 1)) pick = e;
+      r = feet[pick].r;
+    }
+    Place place;
+    const bool edge = onBoundary(r) ;
+    place.pick = first[k] + pick;
+    place.foot.r = r;
+    patch[place.pick].at(place.foot);
+    place.m = place.n = normalOf(place.foot, surface.side[cell[place.pick]]);
+    place.gap = -dot(place.foot.arm, place.n);
+    place.unseen = false;
+    if (edge) onEdge(place, k, feet[pick].arm);
+    if (A == 3 && std::abs(place.gap) > reach) place.gap = std::abs(place.gap);   // no touch; farther than the search looked the side is not known
+    return place;
+  }
+
+  // The feet of slot k on the edges that meet in a vertex, there.
+  void toVertex(const std::vector<Patch<A>> &patch, int k, int vertex) {
+    for (int e = first[k]; e < first[k + 1]; e++) for (int end = 0; end < 2; end++) if (node(cell[e], 0, end) == vertex) {
+      feet[e - first[k]].r[0] = end;
+      patch[e].at(feet[e - first[k]]);
+    }
+  }
+
+  // n along x - y, outwards by the mean normal of the cells there. Where only one is there the point counts if it is within 45 degrees of its normal.
+  void onEdge(Place &place, int k, const Vector<A> &arm) {
+    Vector<A> mean = {};
+    int count = 0;
+    for (int e = first[k]; e < first[k + 1]; e++) {
+      const Foot<A> &foot = feet[e - first[k]];
+      if (farthest(foot.arm, arm) <= 1e4 * roundOff) { mean = plus(mean, 1, normalOf(foot, surface.side[cell[e]]));  count++; }
+    }
+    mean = times(1 / std::max(1e-300, length(mean)), mean);
+    const double distance = length(arm), side = -dot(arm, mean);
+    place.gap = side < 0 ? -distance : distance;
+    place.n = distance <= roundOff ? mean : times(-1 / place.gap, arm);
+    place.unseen = count == 1 && std::abs(side) < std::sqrt(0.5) * distance && distance > roundOff;
+  }
+
+  // Every entry of a row of slot k: its block, unknown, component; of rho N_a, at the cell -N_a, and there N_a,l.
+  template<class Function> void each(int k, const Place &place, Function entry) const {
+    const Surface &s = surface;
+    const int p = int(slot[k] % s.np), c = cell[place.pick], blocks = A * s.nodes;
+    const double none[A - 1] = {};
+    Vector<termsOf(A)> power, slope[A - 1];
+    monomials(place.foot.r, power, slope);
+    for (int a = 0; a < s.nodes; a++) {
+      double N = 0, turn[A - 1] = {};
+      for (int j = 0; j < termsOf(A); j++) N += shape(s.nodes, a, A)[j] * power[j];
+      for (int l = 0; l < A - 1; l++) for (int j = 0; j < termsOf(A); j++) turn[l] += shape(s.nodes, a, A)[j] * slope[l][j];
+      for (int i = 0; i < A; i++) {
+        entry(i * s.nodes + a, node(p / s.points, i, a), i, s.pointShape[a * s.np + p], none);
+        entry(blocks + i * s.nodes + a, node(c, i, a), i, -N, turn);
+      }
+    }
+  }
+
+  // Row k of n of B and S; `change`: of the gap in the step.
+  void row(int k, long n, bool seen, double change, const Rows &rows) const {
+    const Place &p = now[k];
+    const long entries = 2 * A * surface.nodes * n;
+    Vector<A> t[A - 1], f[A], c[A][A - 1];   // f and c_l: of B, then of each S
+    Vector<A - 1> s;
+    Foot<A> motion;
+    motion.r = p.foot.r;
+    step[p.pick].at(motion);               // -rho, N_a,l delta y_a
+    tangents(p.n, t);
+    const double a = -dot(p.n, motion.arm);
+    double most = std::abs(a), square = a * a;
+    for (int j = 0; j < A - 1; j++) {
+      f[j + 1] = t[j];
+      turning(p.foot, p.n, p.m, t[j], p.gap, c[j + 1]);
+      s[j] = -dot(t[j], motion.arm);
+      for (int l = 0; l < A - 1; l++) s[j] += dot(c[j + 1][l], motion.tangent[l]);
+      most = std::max(most, std::abs(s[j]));
+      square += s[j] * s[j];
+    }
+    const double kappa = most <= 10 * roundOff ? 0 : (change - a) / square;
+    f[0] = times(-(1 + kappa * a), p.n);
+    for (int l = 0; l < A - 1; l++) c[0][l] = {};
+    for (int j = 0; j < A - 1; j++) {
+      f[0] = plus(f[0], -kappa * s[j], f[j + 1]);
+      for (int l = 0; l < A - 1; l++) c[0][l] = plus(c[0][l], -kappa * s[j], c[j + 1][l]);
+    }
+    each(k, p, [&](int block, int unknown, int i, double N, const double *turn) {
+      const long at = k * 2L * A * surface.nodes + block;
+      (*rows.row)[at] = slot[k];
+      (*rows.unknown)[at] = unknown;
+      for (int j = 0; j < A; j++) {
+        double value = f[j][i] * N;
+        for (int l = 0; l < A - 1; l++) value += c[j][l][i] * turn[l];
+        (j == 0 ? (*rows.normal)[at] : (*rows.slip)[(j - 1) * entries + at]) = seen ? value : 0;
+      }
+    });
+  }
+
+  // The spring at the vertex that the point of slot k is at, or has come over since the evaluation before.
+  double turned(int k, double t) const {
+    const Place &p = now[k];
+    const Before &was = before[k];
+    const int own = cell[p.pick];
+    const double r = p.foot.r[0];
+    if (p.gap >= 0 || t <= 0) return 0;
+    if (r == 0 || r == 1) return t / (-2 * p.gap);
+    if (was.cell < 0) return 0;
+    const bool same = was.cell == own, onwards = node(was.cell, 0, 1) == node(own, 0, 0) || (same && was.r == 0);
+    const bool back = node(was.cell, 0, 0) == node(own, 0, 1) || (same && was.r == 1);
+    const int ways = int(onwards) - int(back);   // 1 along the edges, -1 against, 0 not over a vertex
+    const double way = same ? 0 : (ways > 0 ? 1 - was.r : was.r) * was.length, theta = ways * (was.n[1] * p.n[0] - was.n[0] * p.n[1]);
+    return theta > 1e-8 ? t * theta / (2 * (way + (ways > 0 ? r : 1 - r) * length(p.foot.tangent[0]) - p.gap * theta)) : 0;
+  }
+};
+
+static std::unique_ptr<AnyPairs> known;
+
+template<class T, class K> std::vector<T> copied(const K &given) { return std::vector<T>(&(*given)[0], &(*given)[0] + given->N()); }
+
+static long surface(long nodes, long points, long obstacles, long bodies, Ints unknown, Ints body, Reals side, Reals pointShape) {
+  const int cells = int(body->N()), A = int(unknown->N() / (nodes * cells));
+  Surface s = {cells, int(nodes), int(points), cells * int(points), int(obstacles), int(bodies), copied<int>(unknown), copied<int>(body), copied<double>(side), copied<double>(pointShape)};
+  if (A == 2) known.reset(new Pairs<2>(s)); else known.reset(new Pairs<3>(s));
+  return 0;
+}
+static long search(Reals x, double reach) { return known->search(&(*x)[0], reach); }
+static long start(Reals x) { return known->start(&(*x)[0], x->N()); }
+static long gaps(Reals d, Reals q0, Reals q1, Ints row, Ints unknown, Reals normal, Reals slip) {
+  known->gaps(&(*d)[0], &(*q0)[0], &(*q1)[0], {row, unknown, normal, slip});
+  return 0;
+}
+static long springs(Reals t, Reals free, Reals most, Ints of, Ints unknown, Reals value, Reals stiffness) {
+  return known->springs(&(*t)[0], &(*free)[0], &(*most)[0], of, unknown, value, stiffness);
+}
+
+static void addPairs() {
+  ::add("kernelSurface", surface);
+  ::add("kernelSearchPairs", search);
+  ::add("kernelPairStart", start);
+  ::add("kernelPairGaps", gaps);
+  ::add("kernelPairSprings", springs);
+}
+
+}
+#endif
