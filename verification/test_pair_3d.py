@@ -1,4 +1,4 @@
-"""Bodies in three dimensions: the gap between them (edp/core/contact/pair-3d.idp, paper (9)), rigid obstacles, and whole runs of edp/bodies-3d.edp."""
+"""Bodies in three dimensions: the gap between them (edp/core/contact/pair.idp, paper (9)), rigid obstacles, and whole runs of edp/bodies-3d.edp."""
 
 import math
 from pathlib import Path
