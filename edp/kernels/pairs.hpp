@@ -37,14 +37,8 @@ inline Vector<3> cross(const Vector<3> &a, const Vector<3> &b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-// N_a of an edge in 1, r, r^2, of a face in 1, r, s, r^2, r s, s^2, by nodes: corners, then middles.
+// 1, r, r^2 of an edge, 1, r, s, r^2, r s, s^2 of a face, and their derivatives.
 constexpr int termsOf(int A) { return A == 2 ? 3 : 6; }
-inline const double *shape(int nodes, int a, int A) {
-  static const double edge1[][3] = {{1, -1, 0}, {0, 1, 0}}, edge2[][3] = {{1, -3, 2}, {0, -1, 2}, {0, 4, -4}};
-  static const double face1[][6] = {{1, -1, -1, 0, 0, 0}, {0, 1, 0, 0, 0, 0}, {0, 0, 1, 0, 0, 0}};
-  static const double face2[][6] = {{1, -3, -3, 2, 4, 2}, {0, -1, 0, 2, 0, 0}, {0, 0, -1, 0, 0, 2}, {0, 0, 0, 0, 4, 0}, {0, 0, 4, 0, -4, -4}, {0, 4, 0, -4, -4, 0}};
-  return A == 2 ? (nodes == 2 ? edge1[a] : edge2[a]) : (nodes == 3 ? face1[a] : face2[a]);
-}
 inline void monomials(const Vector<1> &r, Vector<3> &p, Vector<3> *slope) {
   p = {1, r[0], r[0] * r[0]};
   slope[0] = {0, 1, 2 * r[0]};
@@ -184,7 +178,7 @@ inline void turning(const Foot<3> &foot, const Vector<3> &n, const Vector<3> &m,
 struct Surface {
   int cells, nodes, points, np, obstacles, bodies;   // nodes and points of a cell
   std::vector<int> unknown, body;          // of component i of node a of a cell at (i nodes + a) cells + cell
-  std::vector<double> side, pointShape;    // N_a of a point at a np + point
+  std::vector<double> side, pointShape, shape;   // N_a of a point at a np + point; N_a = shape(a, :) . monomials, by rows
 };
 
 struct Rows { Ints row, unknown;  Reals normal, slip; };
@@ -380,7 +374,7 @@ private:
       const Vector<A> point = pointPlace(w, int(slot[k] % surface.np));
       for (int e = first[k]; e < first[k + 1]; e++) {
         for (int a = 0; a < surface.nodes; a++) {
-          const double *N = shape(surface.nodes, a, A);
+          const double *N = &surface.shape[a * termsOf(A)];
           const Vector<A> y = nodePlace(w, cell[e], a);
           for (int j = 0; j < termsOf(A); j++) all[e].c[j] = plus(all[e].c[j], N[j], y);
         }
@@ -409,7 +403,7 @@ private:
       r = feet[pick].r;
     }
     Place place;
-    const bool edge = onBoundary(r) ;
+    const bool edge = onBoundary(r);
     place.pick = first[k] + pick;
     place.foot.r = r;
     patch[place.pick].at(place.foot);
@@ -453,8 +447,8 @@ private:
     monomials(place.foot.r, power, slope);
     for (int a = 0; a < s.nodes; a++) {
       double N = 0, turn[A - 1] = {};
-      for (int j = 0; j < termsOf(A); j++) N += shape(s.nodes, a, A)[j] * power[j];
-      for (int l = 0; l < A - 1; l++) for (int j = 0; j < termsOf(A); j++) turn[l] += shape(s.nodes, a, A)[j] * slope[l][j];
+      for (int j = 0; j < termsOf(A); j++) N += s.shape[a * termsOf(A) + j] * power[j];
+      for (int l = 0; l < A - 1; l++) for (int j = 0; j < termsOf(A); j++) turn[l] += s.shape[a * termsOf(A) + j] * slope[l][j];
       for (int i = 0; i < A; i++) {
         entry(i * s.nodes + a, node(p / s.points, i, a), i, s.pointShape[a * s.np + p], none);
         entry(blocks + i * s.nodes + a, node(c, i, a), i, -N, turn);
@@ -522,10 +516,11 @@ static std::unique_ptr<AnyPairs> known;
 
 template<class T, class K> std::vector<T> copied(const K &given) { return std::vector<T>(&(*given)[0], &(*given)[0] + given->N()); }
 
-static long surface(long nodes, long points, long obstacles, long bodies, Ints unknown, Ints body, Reals side, Reals pointShape) {
-  const int cells = int(body->N()), A = int(unknown->N() / (nodes * cells));
-  Surface s = {cells, int(nodes), int(points), cells * int(points), int(obstacles), int(bodies), copied<int>(unknown), copied<int>(body), copied<double>(side), copied<double>(pointShape)};
-  if (A == 2) known.reset(new Pairs<2>(s)); else known.reset(new Pairs<3>(s));
+static long surface(KNM<double> *shape, long points, long obstacles, long bodies, Ints unknown, Ints body, Reals side, Reals pointShape) {
+  const int cells = int(body->N()), nodes = int(shape->N());
+  Surface s = {cells, nodes, int(points), cells * int(points), int(obstacles), int(bodies), copied<int>(unknown), copied<int>(body), copied<double>(side), copied<double>(pointShape), {}};
+  for (int a = 0; a < nodes; a++) for (int j = 0; j < shape->M(); j++) s.shape.push_back((*shape)(a, j));
+  if (shape->M() == termsOf(2)) known.reset(new Pairs<2>(s)); else known.reset(new Pairs<3>(s));
   return 0;
 }
 static long search(Reals x, double reach) { return known->search(&(*x)[0], reach); }
