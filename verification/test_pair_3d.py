@@ -21,11 +21,12 @@ def march(tmp_path):
 
 # ---- rows
 
+@pytest.mark.parametrize("without", ["none", "kernels"])
 @pytest.mark.parametrize("case", CASES)
-def test_rows_conserve(measure, case):
-    """B d = q1 - q0, also when the step turns the pair by a radian or goes along the block; no row of B, S_1, S_2 carries a force or a moment about the
+def test_rows_conserve(measure, case, without):
+    """By the kernel and by the scripts: B d = q1 - q0, also when the step turns the pair by a radian or goes along the block; no row of B, S_1, S_2 carries a force or a moment about the
     middle configuration, inside faces as on edges and vertices; a turn of the pair changes no gap; a step begins with the penetrations the last ended with."""
-    found = measure("pair-3d", **case)
+    found = measure("pair-3d", **case, without=without)
     assert found["randomInside"] > 10 and (found["edges"] > 8 or case.get("noise") == 0)
     for name in ("random", "turn"):
         assert max(found[name + "Exact"], found[name + "Force"], found[name + "Moment"]) < ROUND_OFF
