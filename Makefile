@@ -105,7 +105,7 @@ bench-quick: $(READY) ## the same for one case, coarse
 textbook: ## seconds a step beside a plain textbook script
 skipping: ## what each saving saves, and that it does not change the answer
 costs: ## where the time goes, its floor, and how it grows with the mesh
-promise: ## whether accuracy means what it says, and stated errors hold, over sixty scenes drawn at random
+promise: ## whether accuracy means what it says, and stated errors hold, over 240 scenes drawn at random
 scaling: ## one impact in many units and materials has one dimensionless answer
 materials: ## twelve materials at three speeds, against a stiffer contact on a finer mesh
 disc-block-errors: ## the disc on the free block (section 3.2) over law, nu, stiffness and mesh, with error bars; NGSolve beside it
