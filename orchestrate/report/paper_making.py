@@ -19,20 +19,21 @@ USUAL = 20
 
 def make(targets: list[str]) -> int:
     """Runs what make would run for each; the exit code of the first that fails, else 0."""
-    commands = {target: command(target) for target in targets}
+    wanted = {target: commands(target) for target in targets}
     with Line("paper", {target: SECONDS.get(target, USUAL) for target in targets}) as line:
-        for k, (target, words) in enumerate(commands.items(), 1):
-            with line.part(target, f"{k} of {len(commands)}"):
-                if code := program.main(words):
-                    return code
+        for k, (target, each) in enumerate(wanted.items(), 1):
+            with line.part(target, f"{k} of {len(wanted)}"):
+                for words in each:
+                    if code := program.main(words):
+                        return code
     return 0
 
 
-def command(target: str) -> list[str]:
-    """The words after `python -m orchestrate` in the recipe of a target."""
+def commands(target: str) -> list[list[str]]:
+    """The words after `python -m orchestrate` in each line of the recipe of a target."""
     plain = {name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL")}
     said = subprocess.run(["make", "-n", "-s", target, "ARGS="], cwd=ROOT, env=plain, capture_output=True, text=True).stdout
     recipe = re.findall(r" -m orchestrate (.*)$", said, re.MULTILINE)
     if not recipe:
         raise BadInput(f"--make: '{target}' is no target that runs the program (accepted: see make)")
-    return shlex.split(recipe[-1])
+    return [shlex.split(line) for line in recipe]
