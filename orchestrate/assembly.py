@@ -168,7 +168,7 @@ def _with_small_obstacles(scene: Multibody, ask: "Asker") -> list[Pair]:
     """The scene's pairs, and those that an open penalty makes differ: a body and an obstacle that is smaller than its contact on a plane would be."""
     said = {(pair.first, pair.second) for pair in scene.pairs}
     small = [(one.first, one.second) for one in ask.met if 0 < ask.small(one.first, one.second) < math.inf] if scene.contact["penalty"] == "auto" else []
-    pairs = scene.pairs + [Pair(*both, {}, f"obstacle.{-both[1]}") for both in small if both not in said]
+    pairs = scene.pairs + [Pair(*both, {}, f"obstacle.{-both[1]}") for both in dict.fromkeys(small) if both not in said]
     return sorted(pairs, key=lambda pair: (pair.first, pair.second))
 
 
