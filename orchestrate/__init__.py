@@ -31,7 +31,7 @@ def load_run(folder: str | Path) -> Run:
     """What is in the folder of a finished run; Unreadable, in one line, where there is none."""
     import pandas as pd
 
-    from . import results
+    from .output import results
     folder = Path(folder)
     scene, summary = (pd.Series(dict(_entries(of)), dtype=object, name=folder.name) for of in (results.read_scene(folder), results.read_summary(folder)))
     return Run(scene, summary, pd.DataFrame(results.read_history(folder)))

@@ -12,11 +12,11 @@ from .failure import BadInput, Failure, Unreadable, brief
 from .places import COMMAND, from_source, shown
 
 # the commands with a module of their own, which has a main(argv), by its package
-PACKAGES = {"sweeps": ("sweep",), "report": ("friction-laws", "compare", "movie", "paper"),
-            "studies": ("stick-slip", "oblique-angles", "stress", "stress-map", "bench", "textbook", "skipping", "costs", "promise", "refine", "scaling", "materials",
+PACKAGES = {"sweeps": ("sweep",), "report": ("friction-laws", "compare", "movie", "pages"), "paper": ("paper",),
+            "studies": ("verify", "stick-slip", "oblique-angles", "stress", "stress-map", "bench", "textbook", "skipping", "costs", "promise", "refine", "scaling", "materials",
                         "pairing-comparison", "disc-block-errors")}
 FROM_SOURCE = ("verify", "pages", "paper", "bench", "textbook", "oblique-angles")   # these need the source folder
-OWN_MAIN = {"verify": "verify", "pages": "pages"} | {name: f"{package}.{name.replace('-', '_')}" for package, names in PACKAGES.items() for name in names}
+OWN_MAIN = {name: f"{package}.{name.replace('-', '_')}" for package, names in PACKAGES.items() for name in names}
 
 
 def main(argv: list[str]) -> int:
@@ -81,7 +81,8 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _run(options: argparse.Namespace) -> None:
-    from . import parameters, run, scene
+    from . import run, scene
+    from .input import parameters
     from .report import report
     given = parameters.overrides(options.set)
     if options.checkpoint_every:
@@ -101,7 +102,7 @@ def _list(options: argparse.Namespace) -> None:
 
 
 def _parameters(options: argparse.Namespace) -> None:
-    from . import parameters
+    from .input import parameters
     for name in parameters.names():
         p = parameters.table()[name]
         default = p.default if isinstance(p.default, str) else f"{p.default:g}"
@@ -110,7 +111,7 @@ def _parameters(options: argparse.Namespace) -> None:
 
 
 def _figures(options: argparse.Namespace) -> None:
-    from . import results
+    from .output import results
     from .report import figures, solid
     drawn = figures.draw(options.folder, results.read_summary(options.folder)["warnings"])
     for path in drawn:

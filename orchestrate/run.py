@@ -15,22 +15,26 @@ from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 
-from . import __version__, estimate as estimates, freefem, mesh
+from . import __version__
+from .freefem import freefem
+from .mesh import mesh
+from .output import estimate as estimates
 from .failure import BadInput, Failure, TooLong, Unreadable
-from .folder import checkpoints, clear, failed_beside, finished_in, replace, result_folder, staging, unfinished
-from .multibody import Multibody
-from .parameters import Value
+from .output.folder import checkpoints, clear, failed_beside, finished_in, replace, result_folder, staging, unfinished
+from .scenes.multibody import Multibody
+from .input.parameters import Value
 from .places import INSTALLED, PACKAGE, RESULTS, ROOT, shown
 from .progress import Line
-from .results import RunResult, check_files, files_of, read_answers, read_json, read_scene, read_summary, write_json
+from .output.results import RunResult, check_files, files_of, read_answers, read_json, read_scene, read_summary, write_json
 from .scene import Scene
-from .solver import FAILURES, Solver
-from .tables import to_toml
-from .told import runs
+from .running.solver import FAILURES, Solver
+from .input.tables import to_toml
+from .running.told import runs
 
 ENTRANCE = "scene"                     # the module that makes flags, mesh and scene.dat, with all that it imports
-HARMLESS = {"describe", "estimate", "failure", "freefem", "places", "results"}     # of these: what asks, starts, says and reads, and does not decide a result
-ESTIMATING = ("estimate", "results")   # what decides the stated errors besides
+# of these: what asks, starts, says and reads, and does not decide a result
+HARMLESS = {"failure", "places", "freefem/describe", "freefem/freefem", "output/estimate", "output/results"}
+ESTIMATING = ("output/estimate", "output/results")   # what decides the stated errors besides
 
 
 def run(scene: Scene | Multibody, overrides: dict[str, Value] | None = None, out: Path | None = None, *,
@@ -143,13 +147,14 @@ def code_hash() -> str:
 
 @cache
 def imported(name: str, package: Path = PACKAGE) -> set[str]:
-    """A module of the package and those of it that it imports, wherever in it, or they do."""
+    """A module of the package and those of it that it imports, wherever in it, or they do: as their paths in the package, without .py."""
     found, open_ones = set(), {name}
     while open_ones:
         found.add(module := open_ones.pop())
-        said = re.findall(r"(?m)^\s*from \.(\w*) import (\([^)]*\)|.*)", (package / f"{module}.py").read_text("utf-8"))
-        names = {name for source, listed in said for name in ([source] if source else re.findall(r"\w+", listed))}
-        open_ones |= {name for name in names if (package / f"{name}.py").exists()} - found
+        for dots, source, listed in re.findall(r"(?m)^\s*from (\.+)([\w.]*) import (\([^)]*\)|.*)", (package / f"{module}.py").read_text("utf-8")):
+            room = Path(module).parents[len(dots) - 1] / source.replace(".", "/")
+            names = {str(room), *(str(room / name) for name in re.findall(r"\w+", listed))}
+            open_ones |= {name for name in names if (package / f"{name}.py").exists()} - found
     return found
 
 

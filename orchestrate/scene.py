@@ -5,8 +5,10 @@ import tomllib
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from . import estimate, mesh, parameters
-from .describe import describe
+from .input import parameters
+from .mesh import mesh
+from .output import estimate
+from .freefem.describe import describe
 from .failure import BadInput, brief
 
 SCENES = Path(__file__).resolve().parent / "scenes"
@@ -144,7 +146,8 @@ def load(name: str) -> "Scene | multibody.Multibody":
 
 
 def _read(given: dict, path: Path) -> "Scene | multibody.Multibody":
-    from . import dimension, multibody
+    from .input import dimension
+    from .scenes import multibody
     if {"body", "obstacle", "contact", "dimension"} & set(given):
         return multibody.read(given, path.parent, path.stem)
     if not given:

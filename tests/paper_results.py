@@ -5,7 +5,7 @@ from copy import deepcopy
 import numpy as np
 import pandas as pd
 
-from orchestrate.report import paper_judging
+from orchestrate.paper import judging as paper_judging
 from orchestrate.report.friction_laws import VALUES
 
 # An impact of eleven steps of contact and a flight after it: two maxima of the force, everything slides in its first two steps

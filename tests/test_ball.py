@@ -5,7 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from orchestrate import estimate, parameters, run, scene, vtu
+from orchestrate import run, scene
+from orchestrate.input import parameters
+from orchestrate.output import estimate, vtu
 from orchestrate.failure import BadInput
 from orchestrate.report import contact, figures, report
 from test_checkpoint import assert_same, kill_at

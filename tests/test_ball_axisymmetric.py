@@ -5,8 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from orchestrate import estimate, mesh, parameters, results, run, scene, vtu
-from orchestrate.describe import describe
+from orchestrate import run, scene
+from orchestrate.input import parameters
+from orchestrate.mesh import mesh
+from orchestrate.output import estimate, results, vtu
+from orchestrate.freefem.describe import describe
 from orchestrate.failure import BadInput
 from orchestrate.report import compare, contact, figures, report
 from test_direct import COARSE, call

@@ -10,11 +10,13 @@ import tomllib
 import numpy as np
 import pytest
 
-from orchestrate import approach, assembly, freefem, mesh, multibody
+from orchestrate.freefem import freefem
+from orchestrate.mesh import mesh
+from orchestrate.scenes import approach, assembly, multibody
 from orchestrate.failure import BadInput
-from orchestrate.outlines import crossing_sides, ellipse_loop, polygon_loop, self_crossing
+from orchestrate.geometry.outlines import crossing_sides, ellipse_loop, polygon_loop, self_crossing
 from orchestrate.scene import load
-from orchestrate.tables import to_toml
+from orchestrate.input.tables import to_toml
 
 DISC = {"name": "disc", "shape": "disc", "radius": 0.5, "position": [0, 1.5], "velocity": [0, -10]}
 BLOCK = {"name": "block", "shape": "rectangle", "width": 10, "height": 2, "position": [0, 0]}

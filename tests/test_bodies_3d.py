@@ -6,11 +6,15 @@ import time
 import numpy as np
 import pytest
 
-from orchestrate import approach, assembly, curved, mesh, mirror, multibody, parameters, run, solid_file, solid_mesh, solids, tumbling
+from orchestrate import run
+from orchestrate.geometry import tumbling
+from orchestrate.input import parameters
+from orchestrate.mesh import curved, mesh, solid_file, solid_mesh, solids
+from orchestrate.scenes import approach, assembly, mirror, multibody
 from orchestrate.failure import BadInput
 from orchestrate.report import bodies, figures, report
 from orchestrate.scene import load
-from orchestrate.tables import to_toml
+from orchestrate.input.tables import to_toml
 from test_direct import call
 
 SCRIPT = "bodies-3d"

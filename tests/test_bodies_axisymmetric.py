@@ -5,11 +5,14 @@ import math
 import numpy as np
 import pytest
 
-from orchestrate import assembly, mesh, multibody, parameters, run
+from orchestrate import run
+from orchestrate.input import parameters
+from orchestrate.mesh import mesh
+from orchestrate.scenes import assembly, multibody
 from orchestrate.failure import BadInput
 from orchestrate.report import report
 from orchestrate.scene import load
-from orchestrate.tables import to_toml
+from orchestrate.input.tables import to_toml
 from test_direct import call
 
 SCRIPT = "bodies-axisymmetric"

@@ -12,7 +12,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from orchestrate import freefem, parameters, results, run, scene
+from orchestrate import run, scene
+from orchestrate.freefem import freefem
+from orchestrate.input import parameters
+from orchestrate.output import results
 from orchestrate.failure import Failure, Unreadable
 from test_cli import call, is_alive, start, wait_for
 

@@ -14,7 +14,8 @@ from pathlib import Path
 
 import pytest
 
-from orchestrate import parameters, run
+from orchestrate import run
+from orchestrate.input import parameters
 from orchestrate.__main__ import OWN_MAIN, main
 from orchestrate.failure import Unreadable
 

@@ -6,7 +6,8 @@ import subprocess
 
 import pytest
 
-from orchestrate import freefem, parameters
+from orchestrate.freefem import freefem
+from orchestrate.input import parameters
 
 
 @pytest.fixture

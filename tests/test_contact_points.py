@@ -8,7 +8,7 @@ from orchestrate import run, scene
 from orchestrate.failure import Unreadable
 from orchestrate.report import contact, report
 from orchestrate.report.figures import plt
-from orchestrate.results import RunResult
+from orchestrate.output.results import RunResult
 
 CORNER = """
 title = "A disc in a corner"

@@ -6,7 +6,9 @@ import subprocess
 import numpy as np
 import pytest
 
-from orchestrate import freefem, parameters, results
+from orchestrate.freefem import freefem
+from orchestrate.input import parameters
+from orchestrate.output import results
 
 ROWS = ("core/contact/window.idp", "byUnknowns = n < rows / 2 || rows > mostRows;", "byUnknowns = false;")
 UNKNOWNS = (ROWS[0], ROWS[1], "byUnknowns = true;")

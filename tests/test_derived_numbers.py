@@ -8,8 +8,10 @@ from dataclasses import replace
 import pandas as pd
 import pytest
 
-from orchestrate import freefem, gmsh_file, mesh, run, scene
-from orchestrate.parameters import ROOT
+from orchestrate import run, scene
+from orchestrate.freefem import freefem
+from orchestrate.mesh import gmsh_file, mesh
+from orchestrate.input.parameters import ROOT
 
 COARSE = {"law": "neohookean", "accuracy": 0.1, "fields": 0}
 RADIUS = 0.05

@@ -10,7 +10,11 @@ from pathlib import Path
 
 import pytest
 
-from orchestrate import folder, freefem, mesh, parameters, run, scene
+from orchestrate import run, scene
+from orchestrate.freefem import freefem
+from orchestrate.input import parameters
+from orchestrate.mesh import mesh
+from orchestrate.output import folder
 from orchestrate.failure import Busy
 
 COARSE = ("-law", "neohookean", "-nu", "0.4", "-accuracy", "0.4")

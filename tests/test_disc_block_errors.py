@@ -5,7 +5,8 @@ import math
 import pandas as pd
 import pytest
 
-from orchestrate.studies import disc_block_errors as block, peers, study
+from orchestrate.studies import disc_block_errors as block, peers
+from orchestrate.sweeps import study
 
 CASE = block.PEER_CASES[0]
 MASSES = {"mass_1": 1000.0, "mass_2": 20000.0}

@@ -10,8 +10,11 @@ import sys
 import numpy as np
 import pytest
 
-from orchestrate import freefem, parameters, results, run, scene, vtu
-from orchestrate.describe import describe
+from orchestrate import run, scene
+from orchestrate.freefem import freefem
+from orchestrate.input import parameters
+from orchestrate.output import results, vtu
+from orchestrate.freefem.describe import describe
 from orchestrate.failure import Failure, NotInstalled
 from orchestrate.report import report
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from orchestrate import results, vtu
+from orchestrate.output import results, vtu
 from orchestrate.places import ROOT
 
 NEW = re.compile(r"`([\w./-]+)`, new\b[^`]*?(?:`[^`]+`[^`]*?)?:\n```\w*\n(.*?)```", re.DOTALL)

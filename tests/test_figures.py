@@ -5,7 +5,7 @@ import xml.etree.ElementTree as xml
 import numpy as np
 import pytest
 
-from orchestrate import vtu
+from orchestrate.output import vtu
 from orchestrate.failure import Unreadable
 from orchestrate.report import bodies, figures
 

@@ -7,7 +7,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from orchestrate import approach, multibody, run, scene
+from orchestrate import run, scene
+from orchestrate.scenes import approach, multibody
 from orchestrate.failure import BadInput
 
 RUBBER = {"young": 7e6, "nu": 0.3, "density": 1722, "law": "neohookean", "accuracy": 0.1}

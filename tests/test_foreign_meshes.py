@@ -10,10 +10,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from orchestrate import freefem, gmsh_file, mesh, results, run, scene
-from orchestrate.describe import describe
+from orchestrate import run, scene
+from orchestrate.freefem import freefem
+from orchestrate.mesh import gmsh_file, mesh
+from orchestrate.output import results
+from orchestrate.freefem.describe import describe
 from orchestrate.failure import BadInput
-from orchestrate.parameters import ROOT
+from orchestrate.input.parameters import ROOT
 
 RADIUS, DENSITY = 0.05, 1722.0
 

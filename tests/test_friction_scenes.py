@@ -5,11 +5,14 @@ import re
 import numpy as np
 import pytest
 
-from orchestrate import multibody, parameters, results, run, scene, vtu
+from orchestrate import run, scene
+from orchestrate.input import parameters
+from orchestrate.output import results, vtu
+from orchestrate.scenes import multibody
 from orchestrate.__main__ import main
 from orchestrate.failure import BadInput
 from orchestrate.report import compare, figures, report
-from orchestrate.studies import study
+from orchestrate.sweeps import study
 
 COARSE = {"degree": 1, "mesh_size": 0.0125, "contact_mesh_size": 0.0125, "fields": 3}
 FRICTIONLESS = {"contact", "energies", "force", "shapes", "velocity"}

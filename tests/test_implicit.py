@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from orchestrate import implicit
+from orchestrate.geometry import implicit
 from orchestrate.failure import BadInput
 
 POINTS = np.random.default_rng(1).uniform(-0.3, 0.3, (500, 2))

@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from orchestrate import freefem, kernels
+from orchestrate.freefem import freefem, kernels
 from verification.measure import disc, measure, prepared
 
 

@@ -13,7 +13,8 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from orchestrate import freefem, parameters
+from orchestrate.freefem import freefem
+from orchestrate.input import parameters
 
 COARSE = {"law": "neohookean", "nu": "0.4", "accuracy": "0.2", "fields": "3"}
 SWEEP = """collect = ["impulse", "rebound_vy"]

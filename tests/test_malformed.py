@@ -9,9 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from orchestrate import freefem, multibody, parameters
+from orchestrate.freefem import freefem
+from orchestrate.input import parameters
+from orchestrate.scenes import multibody
 from orchestrate.__main__ import main
-from orchestrate.tables import to_toml
+from orchestrate.input.tables import to_toml
 
 LONG = "x" * 300                        # longer than a name may be
 NO_NUMBERS = ["x", "8x", "--8", "+-8", "1e", "e5", "1e+", ".", "-", "8.", "0x10", "nan", "inf", "-inf", "1,5", "1 2", "1_000", "８", "٣.٥", "½",

@@ -4,8 +4,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from orchestrate import results, run, scene
-from orchestrate.studies import bench, costs, skipping, stress_map, study
+from orchestrate import run, scene
+from orchestrate.output import results
+from orchestrate.studies import bench, costs, skipping, stress_map
+from orchestrate.sweeps import study
 
 
 def rows(**columns) -> pd.DataFrame:

@@ -5,8 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from orchestrate import approach, assembly, multibody, run
-from orchestrate.describe import describe
+from orchestrate import run
+from orchestrate.scenes import approach, assembly, multibody
+from orchestrate.freefem.describe import describe
 
 DISC = {"name": "disc", "shape": "disc", "radius": 0.05, "position": [0, 0.0651], "velocity": [0, -3]}
 RUBBER = {"law": "neohookean", "young": 7e6, "nu": 0.3, "density": 1722, "accuracy": 0.1}

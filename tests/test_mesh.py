@@ -5,8 +5,10 @@ import subprocess
 import numpy as np
 import pytest
 
-from orchestrate import freefem, mesh, parameters
-from orchestrate.describe import describe
+from orchestrate.freefem import freefem
+from orchestrate.input import parameters
+from orchestrate.mesh import mesh
+from orchestrate.freefem.describe import describe
 from orchestrate.failure import BadInput
 
 CASES = [

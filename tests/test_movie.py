@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from orchestrate import results, vtu
+from orchestrate.output import results, vtu
 from orchestrate.__main__ import main
 from orchestrate.report import figures, movie
 

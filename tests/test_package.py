@@ -16,7 +16,7 @@ import pytest
 import orchestrate
 from orchestrate import run
 from orchestrate.failure import Unreadable
-from orchestrate.parameters import ROOT
+from orchestrate.input.parameters import ROOT
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
 NOT_INSTALLED = {"orchestrate/setup.sh"}        # it makes the source folder's .venv

@@ -4,8 +4,9 @@ import re
 
 import pytest
 
-from orchestrate import pages, scene
-from orchestrate.describe import describe
+from orchestrate import scene
+from orchestrate.report import pages
+from orchestrate.freefem.describe import describe
 from orchestrate.places import ROOT
 
 

@@ -11,9 +11,10 @@ import fake_freefem
 from orchestrate import __version__, run, scene
 from orchestrate.__main__ import main
 from orchestrate.failure import Failure
-from orchestrate.report import figures, paper, paper_bodies, paper_friction, paper_judging, paper_page, report
-from orchestrate.report.paper_judging import AGREES, DIFFERS, OPEN, PARTLY, STATEMENTS, Finding, maxima
-from orchestrate.parameters import ROOT
+from orchestrate.paper import paper, bodies as paper_bodies, friction as paper_friction, judging as paper_judging, page as paper_page
+from orchestrate.report import figures, report
+from orchestrate.paper.judging import AGREES, DIFFERS, OPEN, PARTLY, STATEMENTS, Finding, maxima
+from orchestrate.input.parameters import ROOT
 from orchestrate.studies import stick_slip
 from orchestrate.sweeps import sweep, sweep_figures
 from paper_results import BLOCK, BLOCK_END, CHATTERS, END, IMPACT, JUMPS, KEPT, LEAKS, Memory, NEAR, PUSH, SLIDES, SMOOTH, base, forces, jump, pairs, speeds, steps, waves

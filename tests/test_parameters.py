@@ -4,8 +4,10 @@ import re
 
 import pytest
 
-from orchestrate import multibody, parameters, scene
-from orchestrate.describe import describe
+from orchestrate import scene
+from orchestrate.input import parameters
+from orchestrate.scenes import multibody
+from orchestrate.freefem.describe import describe
 from orchestrate.failure import BadInput
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from orchestrate import run, scene
-from orchestrate.parameters import ROOT
+from orchestrate.input.parameters import ROOT
 from orchestrate.studies import bench, peers
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from orchestrate import polyline
+from orchestrate.geometry import polyline
 from orchestrate.failure import BadInput
 
 SQUARE = [[0, 0], [0, 1], [1, 1], [1, 0]]        # clockwise

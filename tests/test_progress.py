@@ -8,11 +8,13 @@ import types
 import pytest
 
 from orchestrate import __main__ as program
-from orchestrate import freefem, progress, scene, told
+from orchestrate import progress, scene
+from orchestrate.freefem import freefem
+from orchestrate.running import told
 from orchestrate.failure import BadInput
-from orchestrate.parameters import ROOT
-from orchestrate.report import paper_making
-from orchestrate.studies import study
+from orchestrate.input.parameters import ROOT
+from orchestrate.paper import making as paper_making
+from orchestrate.sweeps import study
 
 
 class Bar:

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from orchestrate import results, vtu
+from orchestrate.output import results, vtu
 from orchestrate.report import figures, impacts
 from orchestrate.sweeps import sweep, sweep_figures
 

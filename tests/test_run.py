@@ -6,8 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from orchestrate import folder, freefem, mesh, results, run, scene
-from orchestrate.describe import describe
+from orchestrate import run, scene
+from orchestrate.freefem import freefem
+from orchestrate.mesh import mesh
+from orchestrate.output import folder, results
+from orchestrate.freefem.describe import describe
 from orchestrate.failure import BadInput, Failure, NotInstalled, Unreadable
 
 
@@ -267,21 +270,24 @@ def test_killed_between_two_renames(tmp_path):
 def test_what_decides_a_result_is_derived():
     """A run is reused only by the same code: every module that scene.py reaches by imports decides, but those that are named as harmless, and so does a new one."""
     decisive = run.imported(run.ENTRANCE) - run.HARMLESS
-    assert run.HARMLESS < run.imported(run.ENTRANCE) and {"scene", "multibody", "assembly", "parameters", "mesh", "solid_mesh", "tables", "tumbling"} <= decisive
-    assert not decisive & {"run", "folder", "report", "verify", "told"}
+    assert run.HARMLESS < run.imported(run.ENTRANCE) and {"scene", "scenes/multibody", "scenes/assembly", "input/parameters", "mesh/mesh", "mesh/solid_mesh", "input/tables", "geometry/tumbling"} <= decisive
+    assert not decisive & {"run", "output/folder", "report/report", "studies/verify", "running/told"}
 
 
 def test_an_import_anywhere_is_found(tmp_path):
     """At the top, inside a function, of a module or of names in it, of modules that import each other; names that are no modules are none."""
-    for name, text in {"a": "from . import b, VERSION\nimport os\n", "b": "def f():\n    from .c import g\n", "c": "from .a import x\nfrom ..elsewhere import y\n", "d": ""}.items():
+    (tmp_path / "room").mkdir()
+    for name, text in {"a": "from . import b, VERSION\nimport os\n", "b": "def f():\n    from .room.c import g\n", "room/c": "from ..a import x\nfrom . import e\n",
+                       "d": "", "room/e": "from ..elsewhere import y"}.items():
         (tmp_path / f"{name}.py").write_text(text)
-    assert run.imported("a", tmp_path) == {"a", "b", "c"} and run.imported("d", tmp_path) == {"d"}
+    assert run.imported("a", tmp_path) == {"a", "b", "room/c", "room/e"} and run.imported("d", tmp_path) == {"d"}
 
 
 def test_a_changed_module_is_other_code(tmp_path, monkeypatch):
     """What sets mesh sizes, scene.py, is part of the hash."""
     before = run.code_hash()
     for name in run.imported(run.ENTRANCE):
+        (tmp_path / f"{name}.py").parent.mkdir(exist_ok=True)
         (tmp_path / f"{name}.py").write_bytes((run.PACKAGE / f"{name}.py").read_bytes())
     monkeypatch.setattr(run, "PACKAGE", tmp_path)
     assert run.code_hash() == before

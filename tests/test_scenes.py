@@ -10,8 +10,13 @@ import sys
 import numpy as np
 import pytest
 
-from orchestrate import assembly, freefem, mesh, multibody, parameters, run, scene, vtu
-from orchestrate.describe import describe
+from orchestrate import run, scene
+from orchestrate.freefem import freefem
+from orchestrate.input import parameters
+from orchestrate.mesh import mesh
+from orchestrate.output import vtu
+from orchestrate.scenes import assembly, multibody
+from orchestrate.freefem.describe import describe
 from orchestrate.failure import BadInput, Failure
 from orchestrate.report import bodies, figures, impacts, report
 from orchestrate.sweeps import sweep

@@ -8,9 +8,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from orchestrate import run, scene, vtu
+from orchestrate import run, scene
+from orchestrate.output import vtu
 from orchestrate.__main__ import main
-from orchestrate.parameters import ROOT
+from orchestrate.input.parameters import ROOT
 from orchestrate.report import contact, figures, movie, solid
 
 COARSE = {"mesh_size": 0.025, "contact_mesh_size": 0.012, "accuracy": 0.1, "fields": 5}

@@ -5,7 +5,8 @@ import subprocess
 
 import pytest
 
-from orchestrate import freefem, parameters
+from orchestrate.freefem import freefem
+from orchestrate.input import parameters
 from verification.solids import Scene, ball, brick, write
 
 TWO = Scene([ball((0, 0, 0), 0.05, 1, shift=(0, 0.06, 0), velocity=(0, -2, 0)), brick((-0.1, -0.3, -0.1), (0.1, -0.2, 0.1), (2, 1, 2), shift=(0, 0.2, 0))],

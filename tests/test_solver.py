@@ -5,7 +5,9 @@ from contextlib import contextmanager
 
 import pytest
 
-from orchestrate import estimate, freefem, results, run, scene
+from orchestrate import run, scene
+from orchestrate.freefem import freefem
+from orchestrate.output import estimate, results
 from orchestrate.failure import Failure
 from test_checkpoint import EFFORT
 from test_kills import at_work

@@ -8,8 +8,10 @@ import sys
 import pandas as pd
 import pytest
 
-from orchestrate import results, run
-from orchestrate.studies import refine, stress, study, textbook
+from orchestrate import run
+from orchestrate.output import results
+from orchestrate.studies import refine, stress, textbook
+from orchestrate.sweeps import study
 from test_cli import is_alive, start, wait_for
 
 POINTS = [{"speed": speed, "dt": dt} for speed in (4.0, 8.0) for dt in (0.0, 1e-4)]

@@ -14,12 +14,14 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from orchestrate import parameters, results, run
+from orchestrate import run
+from orchestrate.input import parameters
+from orchestrate.output import results
 from orchestrate.__main__ import main
-from orchestrate.describe import describe
+from orchestrate.freefem.describe import describe
 from orchestrate.failure import BadInput
 from orchestrate.report.figures import plt
-from orchestrate.studies import study
+from orchestrate.sweeps import study
 from orchestrate.sweeps import sweep, sweep_figures
 from test_cli import call, is_alive, start, wait_for
 

@@ -9,10 +9,10 @@ import time
 import pandas as pd
 import pytest
 
-from orchestrate import verify
+from orchestrate.studies import verify
 from orchestrate.__main__ import main
 from orchestrate.failure import Failure
-from orchestrate.report import paper_page as paper
+from orchestrate.paper import page as paper
 from verification.case import Case, Row
 
 

@@ -8,10 +8,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from orchestrate import freefem, parameters, results, run, scene
+from orchestrate import run, scene
+from orchestrate.freefem import freefem
+from orchestrate.input import parameters
+from orchestrate.output import results
 from orchestrate.report import figures, report
 from orchestrate.report.figures import plt
-from orchestrate.studies import study
+from orchestrate.sweeps import study
 from orchestrate.sweeps import sweep
 from verification import measure
 

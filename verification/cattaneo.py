@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
-from orchestrate import mesh
+from orchestrate.mesh import mesh
 from orchestrate.failure import Failure
 from orchestrate.report.figures import BLACK, BLUE, GREY, ORANGE
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 
-from orchestrate import mesh
+from orchestrate.mesh import mesh
 from orchestrate.report.figures import BLACK, BLUE, ORANGE
 
 from .case import Row

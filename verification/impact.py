@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from orchestrate.results import read_history, read_summary
+from orchestrate.output.results import read_history, read_summary
 
 from .case import FRONT, Row
 from .measure import measure

@@ -11,9 +11,12 @@ from pathlib import Path
 
 import numpy as np
 
-from orchestrate import assembly, dimension, freefem, multibody, parameters, results
+from orchestrate.freefem import freefem
+from orchestrate.input import dimension, parameters
+from orchestrate.output import results
+from orchestrate.scenes import assembly, multibody
 from orchestrate.failure import Failure
-from orchestrate.parameters import ROOT, Value
+from orchestrate.input.parameters import ROOT, Value
 
 from . import solids
 
@@ -47,7 +50,7 @@ def outcome(folder: Path) -> Outcome:
 
 
 def bodies(folder: Path, tables: dict, **given: Value | Path) -> Outcome:
-    """The script of bodies for the scene in these tables (orchestrate.multibody), with more flags, run into `folder`/run."""
+    """The script of bodies for the scene in these tables (orchestrate.scenes.multibody), with more flags, run into `folder`/run."""
     out = folder / "run"
     _start(f"edp/{dimension.of(tables).script}.edp", (*_flags(prepared(folder, tables) | given), "-out", str(out)), ROOT)
     return outcome(out)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from orchestrate import vtu
+from orchestrate.output import vtu
 from verification.manufactured import SOFT
 from verification.test_ellipticity import STATES
 from verification.test_stress import NU, YOUNG, assert_largest, cauchy

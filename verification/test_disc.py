@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from orchestrate import mesh, parameters
+from orchestrate.input import parameters
+from orchestrate.mesh import mesh
 from orchestrate.sweeps.sweep_figures import distance
 
 COARSE = dict(mesh_size=0.025, contact_mesh_size=0.0079, accuracy=0.03)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from orchestrate import mesh
+from orchestrate.mesh import mesh
 from orchestrate.failure import Failure
 
 from .test_disc import mirrored

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from orchestrate import vtu
+from orchestrate.output import vtu
 from verification import test_stress
 
 MOONEY = {"law": "mooney-rivlin", "law_parameters": "0.3"}

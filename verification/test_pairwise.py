@@ -7,9 +7,10 @@ import time
 import numpy as np
 import pytest
 
-from orchestrate import freefem, results
+from orchestrate.freefem import freefem
+from orchestrate.output import results
 from orchestrate.failure import Failure
-from orchestrate.parameters import ROOT
+from orchestrate.input.parameters import ROOT
 
 SCENE = {"radius": 0.5, "speed": 10, "nu": 0.4, "law": "neohookean", "accuracy": 0.02}
 CONSERVED = 1e-9            # over the energy, the momentum and their arms at the start

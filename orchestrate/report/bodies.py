@@ -8,12 +8,14 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import NullFormatter
 
-from .. import dimension, obstacles, vtu
-from ..obstacles import Obstacle
-from ..parameters import Value
-from ..results import suffixes
-from .figures import (BARE, BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SHAPES, STRESS, Body, as_written, deformed, draw_body, is_half, least,
-                      material, most_stress, over_time, per_metre, scale_bar)
+from ..input import dimension
+from ..output import vtu
+from ..scenes import obstacles
+from ..scenes.obstacles import Obstacle
+from ..input.parameters import Value
+from ..output.results import suffixes
+from .figures import (BARE, BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SHAPES, STRESS, Body, as_written, deformed, draw_body, is_half, least, material,
+                      most_stress, over_time, per_metre, scale_bar)
 
 ALONE = ("disc-plane", "ball-axisymmetric", "ball-plane")     # scripts of one body on the plane
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, "#56b4e9", "#e69f00")    # of bodies

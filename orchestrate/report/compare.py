@@ -8,10 +8,10 @@ import numpy as np
 
 from .. import progress, scene
 from ..failure import BadInput, Failure
-from ..folder import result_folder
-from ..parameters import overrides
+from ..output.folder import result_folder
+from ..input.parameters import overrides
 from ..places import COMMAND, RESULTS, shown
-from ..results import RunResult, suffixes
+from ..output.results import RunResult, suffixes
 from ..run import run
 from . import report
 from .bodies import names

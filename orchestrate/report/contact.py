@@ -7,8 +7,8 @@ import numpy as np
 import pandas as pd
 from matplotlib.colors import ListedColormap
 
-from ..parameters import Value
-from ..results import read_table
+from ..input.parameters import Value
+from ..output.results import read_table
 
 INSTANTS = 6                     # profiles at most
 SLOW = 0.03                      # speed over sqrt(E/rho) up to which the pressure of a ball is shown beside Hertz'

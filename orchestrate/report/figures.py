@@ -19,11 +19,12 @@ from matplotlib.transforms import ScaledTranslation
 from matplotlib.tri import LinearTriInterpolator, Triangulation
 from PIL import Image
 
-from .. import dimension, vtu
+from ..input import dimension
+from ..output import vtu
 from ..failure import Unreadable
-from ..parameters import Value
+from ..input.parameters import Value
 from ..places import COMMAND
-from ..results import Contents, check_files, read_history, read_json, read_scene
+from ..output.results import Contents, check_files, read_history, read_json, read_scene
 
 LAWS = {"svk": "St. Venant–Kirchhoff", "neohookean": "neo-Hookean", "mooney-rivlin": "Mooney–Rivlin"}
 BLUE, ORANGE, GREEN, PURPLE, BLACK, GREY = "#0072b2", "#d55e00", "#009e73", "#aa4499", "#222222", "#999999"

@@ -7,9 +7,10 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import pandas as pd
 
-from .. import freefem, parameters
+from ..freefem import freefem
+from ..input import parameters
 from ..failure import Failure, Unreadable
-from ..folder import result_folder
+from ..output.folder import result_folder
 from ..places import COMMAND, RESULTS, shown
 from .figures import BELOW, BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE
 

@@ -6,7 +6,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
-from ..results import read_table
+from ..output.results import read_table
 
 
 LIGHTEST = 0.01                  # of the largest impulse of a meeting: what is less is the grazing end of an impact

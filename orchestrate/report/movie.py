@@ -15,11 +15,12 @@ from matplotlib.colors import to_rgb
 from matplotlib.patheffects import withStroke
 from PIL import Image
 
-from .. import progress, scene, vtu
+from .. import progress, scene
+from ..output import vtu
 from ..failure import BadInput, NotInstalled, Unreadable
-from ..parameters import overrides, whole
+from ..input.parameters import overrides, whole
 from ..places import COMMAND, RESULTS, shown
-from ..results import RunResult, suffixes
+from ..output.results import RunResult, suffixes
 from ..run import run
 from . import bodies, contact, solid
 from .figures import BLACK, BLUE, GREY, ORANGE, STRESS, STYLE, Body, deformed, diameter, draw_body, draw_ground, is_half, limits, per_metre, title

@@ -6,10 +6,10 @@ import tomllib
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from .. import dimension
-from ..parameters import Value
+from ..input import dimension
+from ..input.parameters import Value
 from ..places import shown
-from ..results import RunResult, suffixes
+from ..output.results import RunResult, suffixes
 
 REFERENCE = Path(__file__).resolve().parent / "reference"
 

@@ -13,9 +13,9 @@ import numpy as np
 import pandas as pd
 from matplotlib.cm import ScalarMappable
 
-from .. import vtu
-from ..obstacles import Obstacle
-from ..parameters import Value
+from ..output import vtu
+from ..scenes.obstacles import Obstacle
+from ..input.parameters import Value
 from ..places import shown
 from .contact import PRESSURE
 

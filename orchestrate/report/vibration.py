@@ -6,7 +6,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
-from ..results import read_table
+from ..output.results import read_table
 
 
 NEEDED = ["mode", "frequency", "energy", "strain_energy", "kinetic_energy"]

@@ -12,14 +12,16 @@ import numpy as np
 import pandas as pd
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from .. import mesh, scene
-from ..folder import result_folder
+from .. import scene
+from ..mesh import mesh
+from ..output.folder import result_folder
 from ..places import COMMAND, RESULTS, shown
 from ..progress import in_turn
 from ..report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE
-from ..results import read_history
+from ..output.results import read_history
 from ..sweeps.sweep_figures import distance
-from . import peers, study, textbook
+from . import peers, textbook
+from ..sweeps import study
 
 LEVELS = (5.0, 1.0, 0.1)    # % of error
 HEADLINE, HEADLINE_CONTACT = 0.5, 1.0   # % at the same time in everything but the contact time, and in that

@@ -12,13 +12,14 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
-from .. import results, run, scene
+from .. import run, scene
+from ..output import results
 from ..failure import Failure
-from ..folder import result_folder
+from ..output.folder import result_folder
 from ..places import COMMAND, RESULTS, shown
 from ..progress import in_turn
 from ..report.figures import BLUE, GREY, ORANGE, STYLE
-from . import study
+from ..sweeps import study
 
 PHASES = ("assembly", "factor", "solve", "contact", "search", "output", "audit", "setup", "other")
 LIMIT = 900.0                                   # seconds a run may take

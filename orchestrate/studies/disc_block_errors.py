@@ -7,13 +7,14 @@ from pathlib import Path
 
 import pandas as pd
 
-from .. import estimate
-from ..folder import result_folder
-from ..parameters import Value, whole
+from ..output import estimate
+from ..output.folder import result_folder
+from ..input.parameters import Value, whole
 from ..places import COMMAND, RESULTS, shown
 from ..progress import in_turn
-from ..results import read_scene
-from . import peers, study
+from ..output.results import read_scene
+from . import peers
+from ..sweeps import study
 
 CASES = [{"law": law, "nu": nu, "penalty": k} for law, nu, k in itertools.product(("svk", "neohookean"), (0.3, 0.45), (1e9, 1e10))]
 ACCURACIES = (0.02, 0.005)

@@ -5,11 +5,12 @@ from pathlib import Path
 
 import pandas as pd
 
-from .. import estimate
-from ..folder import result_folder
+from ..output import estimate
+from ..output.folder import result_folder
 from ..places import COMMAND, RESULTS, shown
-from ..results import read_scene
-from . import draws, study
+from ..output.results import read_scene
+from . import draws
+from ..sweeps import study
 
 SPEEDS = (0.001, 0.01, 0.1)         # over sqrt(E/density)
 STIFFER, FINER = 10, 2

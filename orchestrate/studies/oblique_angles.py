@@ -19,14 +19,14 @@ from verification import hertz
 from verification.oblique_ball import DENSITY, MASS, NU, RADIUS, RIGID, YOUNG, slides_throughout, springs
 from verification.rigid_disc import STIFF
 
-from .. import estimate
+from ..output import estimate
 from ..failure import BadInput
-from ..folder import result_folder
+from ..output.folder import result_folder
 from ..places import COMMAND, RESULTS, shown
 from ..progress import in_turn
 from ..report.figures import BLACK, BLUE, DASHED, GREEN, ORANGE, STYLE
-from ..results import read_scene
-from . import study
+from ..output.results import read_scene
+from ..sweeps import study
 
 INERTIA = {"disc": 2.0, "ball": 2.5}                      # R^2/k^2, k the radius of gyration; the scenes are <body>-oblique
 BASE = {"law": "neohookean", "nu": NU, "fields": 0}

@@ -8,12 +8,13 @@ from pathlib import Path
 
 import pandas as pd
 
-from .. import freefem, run
+from .. import run
+from ..freefem import freefem
 from ..failure import Failure
-from ..folder import result_folder
+from ..output.folder import result_folder
 from ..places import COMMAND, RESULTS, shown
-from ..results import read_history, read_json, read_scene, write_json
-from . import study
+from ..output.results import read_history, read_json, read_scene, write_json
+from ..sweeps import study
 
 SCENE = {"radius": 0.5, "speed": 10.0, "nu": 0.4}   # section 3.2 of the paper
 LAWS = ("neohookean", "svk")

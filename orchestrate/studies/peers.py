@@ -13,9 +13,9 @@ from functools import cache, partial
 from pathlib import Path
 from signal import SIGKILL
 
-from .. import mesh
-from ..freefem import die_with_parent
-from ..parameters import Value
+from ..mesh import mesh
+from ..freefem.freefem import die_with_parent
+from ..input.parameters import Value
 from ..places import INSTALLED, ROOT
 
 PYTHONS = {"ngsolve": ("NGSOLVE_PYTHON", sys.executable), "getfem": ("GETFEM_PYTHON", "/usr/bin/python3")}

@@ -8,14 +8,16 @@ from pathlib import Path
 
 import pandas as pd
 
-from .. import estimate, run, scene
+from .. import run, scene
+from ..output import estimate
 from ..failure import Failure, TooLong
-from ..folder import result_folder
-from ..multibody import Multibody
-from ..parameters import Value, whole
+from ..output.folder import result_folder
+from ..scenes.multibody import Multibody
+from ..input.parameters import Value, whole
 from ..places import COMMAND, RESULTS, shown
-from ..results import read_answers
-from . import draws, study
+from ..output.results import read_answers
+from . import draws
+from ..sweeps import study
 
 SEED, COUNT = 64, 240       # other scenes than those that sizes and stated errors are calibrated on (seeds 1, 2, 5, 40; 7, 60 to 63)
 FINER = {"ball": 2}         # elements and steps of the reference are so many times smaller than the first run's; 3 where it is no matter of hours

@@ -11,13 +11,13 @@ import pandas as pd
 from matplotlib.ticker import NullLocator
 
 from .. import scene as scenes
-from ..describe import describe
+from ..freefem.describe import describe
 from ..failure import Failure
-from ..folder import result_folder
-from ..parameters import defaults
+from ..output.folder import result_folder
+from ..input.parameters import defaults
 from ..places import COMMAND, RESULTS, shown
 from ..report.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE
-from . import study
+from ..sweeps import study
 
 ANSWERS = {                 # by scene; all but the last are promised to ASKED
     "disc-normal": ("contact_time", "impulse", "rebound_vy", "peak_force"),

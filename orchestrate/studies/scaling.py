@@ -5,13 +5,14 @@ from pathlib import Path
 
 import pandas as pd
 
-from .. import estimate
-from ..folder import result_folder
-from ..parameters import defaults
+from ..output import estimate
+from ..output.folder import result_folder
+from ..input.parameters import defaults
 from ..places import COMMAND, RESULTS, shown
 from ..progress import in_turn
-from ..results import read_scene
-from . import draws, study
+from ..output.results import read_scene
+from . import draws
+from ..sweeps import study
 
 CASES = {"normal": {"law": "svk", "nu": 0.45}, "oblique": {"law": "neohookean", "nu": 0.45, "angle": 60.0, "friction_static": 0.7, "friction_dynamic": 0.5}}
 SPEED = {"normal": 8.0, "oblique": 12.0}            # m/s of the paper's disc

@@ -6,11 +6,11 @@ from pathlib import Path
 import pandas as pd
 
 from ..failure import Failure
-from ..folder import result_folder
+from ..output.folder import result_folder
 from ..places import COMMAND, RESULTS, shown
 from ..progress import in_turn
-from ..results import read_history
-from . import study
+from ..output.results import read_history
+from ..sweeps import study
 
 BASE = {"height": 0.05, "fields": 0}   # a drop from 5 cm above the plane, so that there is a flight
 LIMIT = 600.0                          # seconds a run may take

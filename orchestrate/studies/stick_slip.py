@@ -13,11 +13,11 @@ from matplotlib.image import AxesImage
 from matplotlib.patches import Rectangle
 
 from ..failure import Unreadable
-from ..folder import result_folder
+from ..output.folder import result_folder
 from ..places import COMMAND, RESULTS, shown
 from ..report.figures import LAWS, SMALL, STYLE
-from ..results import read_history
-from . import study
+from ..output.results import read_history
+from ..sweeps import study
 
 AXES = {"angle": (60.0, 30.0), "slip_velocity": (0.03, 0.3, 1.0, 3.0), "penalty": (1e8, 1e9, 1e10), "nu": (0.3, 0.4, 0.45)}
 LAW = {"svk": {"degree": 1, "mesh_size": 0.01, "contact_mesh_size": 0.005, "breakdown": "continue", "accuracy": 0.0025},   # as the paper may have run it

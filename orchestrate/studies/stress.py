@@ -11,11 +11,11 @@ import pandas as pd
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm
 
-from ..folder import result_folder
-from ..parameters import whole
+from ..output.folder import result_folder
+from ..input.parameters import whole
 from ..places import COMMAND, RESULTS, shown
 from ..report.figures import LAWS, STYLE
-from . import study
+from ..sweeps import study
 
 AXES = {"law": ("svk", "neohookean"), "nu": (0.0, 0.3, 0.45, 0.49), "speed": (0.5, 4.0, 10.0), "penalty": (1e9, 1e10, 1e12),
         "exponent": (1.0, 1.5, 2.0), "dt": (0.0, 2e-5, 1e-4)}   # dt = 0: adaptive

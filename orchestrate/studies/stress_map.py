@@ -7,11 +7,12 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
-from ..folder import result_folder
-from ..parameters import whole
+from ..output.folder import result_folder
+from ..input.parameters import whole
 from ..places import COMMAND, RESULTS, shown
 from ..report.figures import BLUE, ORANGE, PURPLE, STYLE
-from . import stress, study
+from . import stress
+from ..sweeps import study
 
 SEED, SETS = 2024, 300
 LIMIT = 300.0               # seconds a run may take

@@ -7,13 +7,15 @@ from pathlib import Path
 
 import pandas as pd
 
-from .. import freefem, mesh, run, scene
+from .. import run, scene
+from ..freefem import freefem
+from ..mesh import mesh
 from ..failure import Failure
-from ..folder import result_folder
-from ..parameters import whole
+from ..output.folder import result_folder
+from ..input.parameters import whole
 from ..places import COMMAND, RESULTS, shown
 from ..progress import in_turn
-from . import study
+from ..sweeps import study
 
 DT = 2e-5                   # s
 OURS = 3                    # runs of the program at least: they are short, and a busy neighbour shows

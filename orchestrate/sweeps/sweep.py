@@ -31,14 +31,15 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from .. import parameters, scene
+from .. import scene
+from ..input import parameters
 from ..failure import BadInput, Busy, Failure, Unreadable, brief
-from ..multibody import Multibody
-from ..parameters import Value
-from ..folder import result_folder
+from ..scenes.multibody import Multibody
+from ..input.parameters import Value
+from ..output.folder import result_folder
 from ..places import COMMAND, RESULTS, shown
 from ..report.figures import per_metre
-from ..studies import study
+from . import study
 from . import sweep_figures
 
 SWEEPS = Path(__file__).resolve().parent   # the built-in sweeps are beside us

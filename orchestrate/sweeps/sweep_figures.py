@@ -19,12 +19,12 @@ import numpy as np
 import pandas as pd
 from matplotlib.ticker import LogLocator, NullLocator
 
-from .. import parameters
+from ..input import parameters
 from ..failure import BadInput, brief
 from ..report import report
 from ..report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, SMALL, STYLE, as_written, numbers_of_the_paper
-from ..results import read_history
-from ..studies import study
+from ..output.results import read_history
+from . import study
 
 KINDS = {"lines": ("x", "y", "by"), "map": ("x", "y", "colour", "by", "panel", "level", "band"), "histories": ("y", "panel", "by")}
 WORDS = {"nu": "ν", "penalty": "k"}

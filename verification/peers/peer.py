@@ -17,7 +17,7 @@ from typing import Protocol
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-from orchestrate import mesh  # noqa: E402
+from orchestrate.mesh import mesh  # noqa: E402
 
 LONGEST = 20e-3             # s: no contact of these bodies lasts that long
 
@@ -59,7 +59,7 @@ def arguments(program: str, forms: tuple[str, ...], scene: str = "disc-normal") 
     """The flags that all peers take, with lame_lambda and lame_mu [Pa] added."""
     parser = argparse.ArgumentParser(description=f"{scene} with {program}; ends with a line of JSON")
     parser.add_argument("--form", choices=forms, default="tuned", help="how the program is used (default tuned)")
-    parser.add_argument("--mesh", type=Path, help="mesh of the half disc (.msh of orchestrate.mesh) in place of sizes")
+    parser.add_argument("--mesh", type=Path, help="mesh of the half disc (.msh of orchestrate.mesh.mesh) in place of sizes")
     numbers = {"mesh-size": (8e-3, "m"), "contact-mesh-size": (2.5e-3, "m"), "dt": (2e-5, "s"), "nu": (0.45, "-"),
                "speed": (8.0, "m/s"), "penalty": (1e10, "Pa/m"), "young": (7e6, "Pa"), "density": (1722.0, "kg/m3"),
                "radius": (0.05, "m"), "tolerance": (5e-12, "largest work of the residual in a step, over the energy")}

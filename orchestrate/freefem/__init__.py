@@ -1,0 +1,1 @@
+"""FreeFEM: its process, the compiled kernels, what its scripts say of themselves."""

@@ -1,0 +1,182 @@
+"""FreeFem++: find it, check it, start processes and reap them whatever happens."""
+
+import ctypes
+import fcntl
+import os
+import re
+import shutil
+import signal
+import subprocess
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from functools import cache, partial
+from pathlib import Path
+from typing import NamedTuple, TextIO
+
+from . import kernels
+from ..failure import NotInstalled
+from ..places import INSTALLED, PACKAGE, ROOT
+
+CORES = len(os.sched_getaffinity(0))
+OLDEST = (4, 9)                          # the version in the banner; Debian's 4.11 calls itself 4.9
+DEBIAN_PLUGINS = "/usr/lib/freefem++"    # where Debian puts the plugins, and its FreeFem++ does not look
+PROBE = PACKAGE / "probe.edp"
+CLOCK = ROOT / "edp/clock.c"
+SAYS = re.compile(r"progress (\S+) t=(\S+) steps=(\S+)(?: unknowns=(\S+) apart=(\S+))?$")
+UNREAD = 2**20                           # bytes that a process can say while nobody reads; then it waits
+WAYS = ("apt-get install freefem++ libfreefem++; conda install -c conda-forge freefem; a package of https://github.com/FreeFem/FreeFem-sources/releases; "
+        "or set FREEFEM to where it is")
+HOW = f"install it: {WAYS}" if INSTALLED else f"run: make setup   (or: {WAYS})"
+
+
+class At(NamedTuple):
+    """How far a run is."""
+
+    share: float                # of its steps, in [0, 1], as far as one can see
+    t: float                    # s
+    steps: int
+    unknowns: int = 0
+    apart: float = 1.0          # the times that a wave takes across the slowest body, over those of the quickest
+
+
+Progress = Callable[[At], None]
+
+
+@dataclass(frozen=True)
+class FreeFem:
+    """A FreeFem++ that runs our scripts: its path, its version and the environment it needs."""
+
+    command: str
+    version: str
+    environment: dict[str, str]
+
+
+def find() -> FreeFem:
+    """$FREEFEM or FreeFem++ on the PATH, probed once; NotInstalled when missing, too old or without its plugins."""
+    return _find(tuple(sorted(os.environ.items())))
+
+
+@cache
+def _find(variables: tuple[tuple[str, str], ...]) -> FreeFem:
+    """The same in an environment."""
+    environment = dict(variables)
+    wanted = environment.get("FREEFEM", "FreeFem++")
+    command = shutil.which(wanted)
+    if not command:
+        raise NotInstalled(f"{wanted} not found; {HOW}")
+    environment |= {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}   # one process a core
+    environment = _blas_kernels() | environment | _quick_clock(environment)
+    version = _probe(command, environment)
+    if not version and "FF_LOADPATH" not in environment:
+        environment["FF_LOADPATH"] = DEBIAN_PLUGINS
+        version = _probe(command, environment)
+    if not version:
+        raise NotInstalled(f"{command} lacks its plugin Element_QF or does not start; {HOW}")
+    if tuple(map(int, version.split(".")[:2])) < OLDEST:
+        raise NotInstalled(f"{command} is version {version}, needed is {OLDEST[0]}.{OLDEST[1]} or newer; {HOW}")
+    kernels.build(command, version, environment)
+    return FreeFem(command, version, environment)
+
+
+def _blas_kernels() -> dict[str, str]:
+    """OpenBLAS takes its oldest kernels (SSE3) for a processor newer than itself: those for AVX2 where there is that. They made steps with
+    14,000 unknowns in three dimensions a sixth faster; answers differ by round-off."""
+    try:
+        flags = re.search(r"^flags\s*:(.*)", Path("/proc/cpuinfo").read_text(), re.MULTILINE)
+        blas = ctypes.CDLL("libopenblas.so.0")
+        blas.openblas_get_corename.restype = ctypes.c_char_p
+        unknown = blas.openblas_get_corename() == b"Prescott"
+    except (OSError, AttributeError):
+        return {}
+    return {"OPENBLAS_CORETYPE": "Haswell"} if unknown and flags and {"avx2", "fma"} <= set(flags[1].split()) else {}
+
+
+def _quick_clock(environment: Mapping[str, str]) -> dict[str, str]:
+    """The preloaded clock() of edp/clock.c, built where it is missing or older; nothing without a compiler, a folder to write in, or on a path that
+    LD_PRELOAD cannot name."""
+    library = CLOCK.with_name("libclock.so")
+    if re.search(r"[\s:]", str(library)):
+        return {}
+    if not library.exists() or library.stat().st_mtime < CLOCK.stat().st_mtime:
+        part = library.with_name(f"{library.name}.{os.getpid()}.part")
+        try:
+            subprocess.run(["cc", "-O2", "-shared", "-fPIC", "-o", part, CLOCK], env=environment, check=True, timeout=60,
+                           stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            os.replace(part, library)
+        except (OSError, subprocess.SubprocessError):
+            part.unlink(missing_ok=True)
+            return {}
+    return {"LD_PRELOAD": ":".join([str(library), *environment.get("LD_PRELOAD", "").split()])}
+
+
+def _probe(command: str, environment: dict[str, str]) -> str | None:
+    """The version, if the plugins load."""
+    try:
+        answer = subprocess.run([command, "-nw", "-ne", "-v", "0", PROBE], env=environment, stdin=subprocess.DEVNULL,
+                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT, errors="replace", timeout=60).stdout
+    except (OSError, subprocess.TimeoutExpired):
+        return None
+    match = re.search(r"^version (\d+\.\d+\S*)", answer, re.MULTILINE)
+    return match and match[1]
+
+
+@dataclass(frozen=True)
+class Process:
+    """A FreeFem++ at work, and the files of its output and of what it says on stderr."""
+
+    child: subprocess.Popen
+    log: TextIO
+    errors: TextIO
+
+    def end(self, progress: Progress | None = None) -> tuple[int, str]:
+        """Its exit code, negative for a signal, and the script's line for the user, or "". Lines "progress <share> t=<time> steps=<n> ..." go to
+        `progress` as well."""
+        for line in self.child.stdout:
+            self.log.write(line)
+            if progress and (match := SAYS.match(line)):
+                progress(At(*(kind(text) for kind, text in zip(At.__annotations__.values(), match.groups()) if text)))
+        code = self.child.wait()
+        self.errors.seek(0)
+        said = self.errors.read()
+        self.log.write(said)
+        lines = [line.removeprefix("ffimpact: ") for line in said.splitlines() if line.startswith("ffimpact: ")]
+        return code, lines[-1] if lines else ""
+
+
+@contextmanager
+def start(freefem: FreeFem, script: str, flags: list[str], log: Path, lock: int | None = None) -> Iterator[Process]:
+    """edp/<script>.edp at work, with its output in `log`.
+
+    The child has a process group of its own, is killed when this is left in any way, and by the kernel when this process dies. It
+    shares the open file `lock`, and so what is locked stays locked until it has ended.
+    """
+    command = [freefem.command, "-nw", "-ne", "-v", "0", f"edp/{script}.edp", *flags]
+    with open(log, "w") as file, open(os.memfd_create("stderr"), "r+", errors="replace") as errors, subprocess.Popen(
+            command, cwd=ROOT, env=freefem.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+            stderr=errors, text=True, errors="replace", process_group=0, pass_fds=[] if lock is None else [lock],
+            preexec_fn=partial(die_with_parent, os.getpid(), signal.SIGKILL)) as child:
+        try:
+            with suppress(OSError):
+                fcntl.fcntl(child.stdout, fcntl.F_SETPIPE_SZ, UNREAD)
+            yield Process(child, file, errors)
+        finally:
+            if child.poll() is None:
+                os.killpg(child.pid, signal.SIGKILL)
+                child.communicate()   # to the end of its own children, too
+
+
+def run(freefem: FreeFem, script: str, flags: list[str], log: Path, progress: Progress | None = None, lock: int | None = None) -> tuple[int, str]:
+    """Runs edp/<script>.edp to its end; see start() and Process.end()."""
+    with start(freefem, script, flags, log, lock) as process:
+        return process.end(progress)
+
+
+_libc = ctypes.CDLL(None)
+
+
+def die_with_parent(parent: int, number: signal.Signals) -> None:
+    """Lets the kernel send this process the signal `number` when its parent dies; ends it if it is dead already."""
+    _libc.prctl(1, number)   # PR_SET_PDEATHSIG
+    if os.getppid() != parent:
+        os._exit(128 + number)

@@ -1,0 +1,1 @@
+"""Curves and motions as formulas, without a mesh."""

@@ -1,0 +1,134 @@
+"""Polylines with rounded corners as rigid obstacles: what is accepted, and their signed distance.
+
+A chain of vertices (n, 2) [m], open or closed, has its free side to the LEFT of the direction of travel and the solid to the right: clockwise
+and closed it is a block, counter-clockwise a container. Open, it goes straight on beyond both ends. Its surface lies at the distance
+`rounding` [m] from the chain on the free side: convex corners become arcs of that radius, concave ones stay corners (edp/core/contact/shapes.idp).
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..failure import BadInput
+
+CORNER = math.radians(30)    # what turns by less at a vertex is no corner (edp/core/contact/shapes.idp)
+NEAR = 1e-12                 # of the chain's size: what round-off cannot tell apart
+
+
+@dataclass(frozen=True)
+class Sides:
+    """The m sides: first points (m, 2), unit directions of travel (m, 2), extents along them (m), infinite beyond open ends."""
+
+    start: np.ndarray
+    along: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    closed: bool
+
+
+def check(path: str, vertices: np.ndarray, closed: bool, rounding: float) -> None:
+    """BadInput, naming path.key, unless the chain is one that has two sides."""
+    least = 3 if closed else 2
+    if len(vertices) < least:
+        raise BadInput(f"{path}.vertices: {len(vertices)} given (accepted: {least} or more points [x, y]{' of a closed chain' if closed else ''})")
+    if not np.isfinite(vertices).all():
+        raise BadInput(f"{path}.vertices.{np.argmin(np.isfinite(vertices).all(1)) + 1}: is not finite (accepted: numbers [x, y])")
+    if not 0 <= rounding < np.inf:
+        raise BadInput(f"{path}.rounding: {rounding:g} is out of range (accepted: from 0)")
+    size = np.ptp(vertices, axis=0).max()
+    steps = np.linalg.norm(np.diff(vertices, axis=0, append=vertices[:1] if closed else np.empty((0, 2))), axis=1)
+    for k in np.flatnonzero(steps <= NEAR * size):
+        if k == len(vertices) - 1:
+            raise BadInput(f"{path}.vertices.{k + 1}: {_text(vertices[k])} is the first vertex again (accepted: a closed chain without it)")
+        raise BadInput(f"{path}.vertices.{k + 2}: {_text(vertices[k + 1])} is the vertex before it again (accepted: each vertex once)")
+    sides = _sides(vertices, closed)
+    after = np.roll(sides.along, -1, axis=0)
+    back = (np.sum(sides.along * after, axis=1) < 0) & (abs(_cross(sides.along, after)) < 1e-9)
+    for k in np.flatnonzero(back if closed else back[:-1]):
+        j = (k + 1) % len(vertices)
+        raise BadInput(f"{path}.vertices.{j + 1}: the chain turns back on itself at {_text(vertices[j])} (accepted: corners of less than 180 degrees)")
+    crossing = _crossing(sides, size)
+    if crossing:
+        i, j, point = crossing
+        raise BadInput(f"{path}.vertices: side {i + 1} and side {j + 1} meet at {_text(point)} (accepted: a chain that does not cross or touch itself"
+                       + ("" if closed else "; an open one goes straight on beyond its ends") + ")")
+
+
+def numbers(vertices: np.ndarray, closed: bool, rounding: float) -> tuple[float, ...]:
+    """The chain as the scripts read it: closed (1 or 0), rounding, then x y of each vertex."""
+    return float(closed), float(rounding), *map(float, np.ravel(vertices))
+
+
+def gap(points: np.ndarray, numbers: tuple[float, ...]) -> np.ndarray:
+    """Signed distances (n,) of points (n, 2) from the surface of the chain `numbers`, negative inside the solid."""
+    sides = sides_of(numbers)
+    from_start = points[:, None] - sides.start                                       # (n, m, 2)
+    at = np.sum(from_start * sides.along, axis=2)
+    away = from_start - np.clip(at, sides.low, sides.high)[..., None] * sides.along  # from the nearest point of each side
+    distance = np.linalg.norm(away, axis=2)
+    row, nearest = np.arange(len(points)), distance.argmin(axis=1)
+    at, away = at[row, nearest], away[row, nearest]
+    # at a vertex the side of the sum of the normals of both sides, elsewhere that of the normal
+    normal = np.column_stack([-sides.along[:, 1], sides.along[:, 0]])
+    before, after = normal[nearest - 1], normal[(nearest + 1) % len(normal)]
+    beyond = (at > sides.high[nearest])[:, None] * after + (at < sides.low[nearest])[:, None] * before
+    side = np.sum(away * (normal[nearest] + beyond), axis=1)
+    return np.where(side < 0, -1, 1) * distance[row, nearest] - numbers[1]
+
+
+def sides_of(numbers: tuple[float, ...]) -> Sides:
+    """Those of the chain `numbers`."""
+    return _sides(np.reshape(numbers[2:], (-1, 2)), bool(numbers[0]))
+
+
+def radius_at(point: np.ndarray, within: float, numbers: tuple[float, ...]) -> float:
+    """The rounding [m] where a convex corner is as near to a point (2,) as any of the chain, or by `within` [m] less; infinite where none is."""
+    sides = sides_of(numbers)
+    before, after = (np.roll(sides.along, 1, axis=0), sides.along) if sides.closed else (sides.along[:-1], sides.along[1:])
+    turn = np.arctan2(-_cross(before, after), np.sum(before * after, axis=1))       # clockwise: the solid is to the right
+    corners = (sides.start if sides.closed else sides.start[1:])[turn > CORNER]
+    near = np.linalg.norm(point - corners, axis=1) <= abs(gap(point[None], numbers)[0] + numbers[1]) + within
+    return numbers[1] if near.any() else np.inf
+
+
+def _sides(vertices: np.ndarray, closed: bool) -> Sides:
+    start, end = (vertices, np.roll(vertices, -1, axis=0)) if closed else (vertices[:-1], vertices[1:])
+    length = np.linalg.norm(end - start, axis=1)
+    low, high = np.zeros(len(length)), length.copy()
+    if not closed:
+        low[0], high[-1] = -np.inf, np.inf
+    return Sides(start, (end - start) / length[:, None], low, high, closed)
+
+
+def _crossing(sides: Sides, size: float) -> tuple[int, int, np.ndarray] | None:
+    """The first two sides, not neighbours, that have a point in common, and that point."""
+    m, near = len(sides.start), NEAR * size
+    i, j = np.triu_indices(m, 2)
+    if sides.closed:
+        apart = (i > 0) | (j < m - 1)
+        i, j = i[apart], j[apart]
+    e, f, r = sides.along[i], sides.along[j], sides.start[j] - sides.start[i]
+    sine = _cross(e, f)
+    parallel = abs(sine) < NEAR
+    sine = np.where(parallel, 1, sine)
+    s, u = _cross(r, f) / sine, _cross(r, e) / sine
+    meet = ((s >= sides.low[i] - near) & (s <= sides.high[i] + near) & (u >= sides.low[j] - near) & (u <= sides.high[j] + near))
+    # on one line: from where to where j lies along i
+    turned, offset = np.where(np.sum(e * f, axis=1) < 0, -1, 1), np.sum(r * e, axis=1)
+    from_, to = np.sort([offset + turned * sides.low[j], offset + turned * sides.high[j]], axis=0)
+    first, last = np.maximum(from_, sides.low[i]), np.minimum(to, sides.high[i])
+    meet = np.where(parallel, (abs(_cross(r, e)) <= near) & (first <= last + near), meet)
+    if not meet.any():
+        return None
+    k = meet.argmax()
+    at = s[k] if not parallel[k] else first[k] if np.isfinite(first[k]) else last[k]
+    return i[k], j[k], sides.start[i[k]] + at * e[k]
+
+
+def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+
+
+def _text(point: np.ndarray) -> str:
+    return f"[{point[0]:g}, {point[1]:g}]"

@@ -1,0 +1,149 @@
+"""The parameters of a run, as the scripts describe them: nothing is copied by hand."""
+
+import difflib
+import math
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cache
+
+from ..failure import BadInput, brief
+from ..places import ROOT as ROOT
+
+Value = float | int | str
+
+# What a scene fixes for others of its entries: where one of those is set and it is not, it is open again, as by default (auto, 0). friction_static alone sets
+# both coefficients; a penalty is of a material, a size and an exponent; a step and meshes are of a size. slip_velocity and end_time stay, with their warnings.
+FOLLOWS = {"friction_dynamic": ("friction_static",), "penalty": ("young", "density", "radius", "exponent"), "dt": ("young", "density", "radius"),
+           **dict.fromkeys(("mesh_size", "contact_mesh_size", "block_width", "block_height"), ("radius",))}
+
+NOT_DECISIVE = ("checkpoint_every",)   # parameters that do not change the answer
+
+_NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]+)?|\.[0-9]+)([eE][+-]?[0-9]+)?")
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One row of the table. `kind` is real, int, word, numbers (text, separated by commas) or path; `low`/`high` bound numbers, `words` lists the words that are
+    accepted, beside numbers too (auto); `scripts` those that take it."""
+
+    name: str
+    kind: str
+    default: Value
+    unit: str
+    help: str
+    low: float = 0.0
+    high: float = 0.0
+    words: tuple[str, ...] = ()
+    scripts: tuple[str, ...] = ()
+
+    @property
+    def accepted(self) -> str:
+        """What is accepted, in the words of the error messages."""
+        if self.kind == "numbers":
+            return "none, or numbers separated by commas"
+        return "|".join(self.words) if self.kind == "word" else ", ".join([*self.words, f"{self.low:g} to {self.high:g}"])
+
+    def check(self, given: Value) -> Value:
+        """`given` (text, or a TOML value) as float, int or word; BadInput where it is not accepted."""
+        if isinstance(given, str) and given in self.words:
+            return given
+        if self.kind == "word":
+            raise BadInput(f"{self.name}: '{brief(given)}' is not known (accepted: {self.accepted})")
+        if self.kind == "numbers":
+            each = given.split(",") if isinstance(given, str) else [str(one) for one in (given if isinstance(given, list) else [given])]
+            if not each or not all(_NUMBER.fullmatch(one.strip()) for one in each):
+                raise BadInput(f"{self.name}: '{brief(given)}' is no list of numbers (accepted: {self.accepted})")
+            return ",".join(one.strip() for one in each)
+        wanted = "a whole number" if self.kind == "int" else "a number"
+        is_number = _NUMBER.fullmatch(given) if isinstance(given, str) else type(given) in (int, float)
+        if not is_number or (self.kind == "int" and not isinstance(given, int) and float(given) % 1 != 0):
+            raise BadInput(f"{self.name}: '{brief(given)}' is not {wanted} (accepted: {self.accepted})")
+        try:
+            value = float(given)
+        except OverflowError:
+            value = math.inf
+        if not self.low <= value <= self.high:
+            raise BadInput(f"{self.name}: {brief(given)} is out of range (accepted: {self.accepted})")
+        return int(value) if self.kind == "int" else value
+
+
+@cache
+def table() -> dict[str, Parameter]:
+    """All parameters by name, in the order of the table."""
+    from ..freefem.describe import describe                        # it looks for FreeFem++: only when the table is wanted
+    rows = {}
+    for row in describe()["parameters"]:
+        words = row.pop("words", [])
+        row["words"] = tuple(words.split("|") if isinstance(words, str) else words)
+        row["scripts"] = tuple(row["scripts"].split("|"))
+        if row["kind"] == "real":
+            row |= {name: float(row[name]) for name in ("default", "low", "high") if not isinstance(row[name], str)}
+        rows[row["name"]] = Parameter(**row)
+    return rows
+
+
+def names(script: str = "") -> list[str]:
+    """The parameters that a scene can set (files and folders are not part of a scene): of one script, or of all."""
+    return [p.name for p in table().values() if p.kind != "path" and (not script or script in p.scripts)]
+
+
+def taken(name: str, script: str) -> None:
+    """BadInput where a script does not take a parameter of the table."""
+    if script not in table()[name].scripts:
+        raise BadInput(f"{brief(name)}: {script} takes no such parameter (accepted: in {'|'.join(table()[name].scripts)})")
+
+
+def decisive(values: dict[str, Value]) -> dict[str, Value]:
+    """Those of a scene's values that decide its answer: two scenes that agree in them are one run."""
+    return {name: value for name, value in values.items() if name not in NOT_DECISIVE}
+
+
+def check(given: dict[str, Value], script: str = "") -> dict[str, Value]:
+    """The given parameters (of one script, or of all), checked and converted; BadInput names the first one that is unknown or not
+    accepted."""
+    for name in given:
+        if name in names() and script:
+            taken(name, script)
+        if name not in names():
+            close = difflib.get_close_matches(name, names(), n=2)
+            hint = f"; did you mean {' or '.join(close)}?" if close else ""
+            raise BadInput(f"{brief(name)}: no such parameter{hint} (accepted: {', '.join(names(script))})")
+    return {name: table()[name].check(value) for name, value in given.items()}
+
+
+def released(values: dict[str, Value], given: Iterable[str]) -> dict[str, Value]:
+    """Those of a scene's values that are open again where `given` are set, at their defaults."""
+    return {name: table()[name].default for name, causes in FOLLOWS.items()
+            if name in values and name not in given and set(causes) & set(given) and values[name] != table()[name].default}
+
+
+def release(name: str, value: Value, causes: Iterable[str]) -> str:
+    """What is said of an entry that is open again."""
+    fixed = f"{value:g}" if isinstance(value, float) else brief(value)
+    return f"{name} is open again: the scene's {fixed} was for its own {', '.join(causes)}"
+
+
+def defaults(script: str = "disc-plane") -> dict[str, Value]:
+    """Every parameter of a scene of a script at its default."""
+    return {name: table()[name].default for name in names(script)}
+
+
+def whole(text: str) -> int:
+    """A whole number of the command line, for argparse."""
+    if not re.fullmatch("[0-9]+", text):   # int() takes the digits of every alphabet
+        raise ValueError
+    return int(text)
+
+
+def overrides(texts: list[str]) -> dict[str, str]:
+    """The pairs of --set name=value; BadInput where one has another form."""
+    pairs = [text.partition("=") for text in texts]
+    for name, equals, value in pairs:
+        if not (name and equals and value):
+            raise BadInput(f"--set: '{brief(name + equals + value)}' is not of the form name=value")
+    names = [name.strip() for name, _, _ in pairs]
+    for name in names:
+        if names.count(name) > 1:
+            raise BadInput(f"--set: {brief(name)} is given {names.count(name)} times (accepted: once)")
+    return {name.strip(): value.strip() for name, _, value in pairs}

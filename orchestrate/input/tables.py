@@ -1,0 +1,155 @@
+"""Tables of a scene's TOML file ([[body]], [contact] ...) read with one clear line for whatever is wrong in them."""
+
+import difflib
+import json
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ..failure import BadInput, brief
+from .parameters import Parameter, Value
+
+LONGEST = 1e9                # m, m/s: beyond the largest of anything
+MOST = 2000                  # points of a polygon or a chain: each of its sides is held against all others
+SHORTEST = 1e-9              # m
+
+
+class Table:
+    """The entries `given` of the table `path` ("body.2", "" at the top), of which only the keys `accepted` may be there. Every BadInput names
+    path.key, the value and what is accepted."""
+
+    def __init__(self, path: str, given: dict, accepted: Sequence[str]):
+        if not isinstance(given, dict):
+            raise BadInput(f"{path}: '{brief(given)}' is no table (accepted: a table with {', '.join(accepted)})")
+        for key, value in given.items():
+            if key not in accepted:
+                close = difflib.get_close_matches(key, accepted, n=2)
+                hint = f"; did you mean {' or '.join(close)}?" if close else ""
+                raise BadInput(f"{_at(path, brief(key))}: '{brief(value)}' belongs to no such key{hint} (accepted: {', '.join(accepted)})")
+        self.path, self.given = path, given
+
+    def at(self, key: str) -> str:
+        """The full name of an entry."""
+        return _at(self.path, key)
+
+    def __contains__(self, key: str) -> bool:
+        return key in self.given
+
+    def parameter(self, key: str, rule: Parameter) -> Value:
+        """The entry by the rule of a parameter; its default where there is none."""
+        return replace(rule, name=self.at(key)).check(self.given[key]) if key in self.given else rule.default
+
+    def number(self, key: str, low: float, high: float, default: float | None = None) -> float:
+        """A number between two bounds; required where there is no default."""
+        self._wanted(key, default, f"{low:g} to {high:g}")
+        return self.parameter(key, _real(low, high, default))
+
+    def numbers(self, key: str, low: float, high: float, default: tuple[float, ...] | None = None, count: int = 2) -> np.ndarray:
+        """So many numbers, [x, y] or [x, y, z], between two bounds."""
+        self._wanted(key, default, f"{_placeholder(count)}, each {low:g} to {high:g}")
+        return _vector(self.at(key), self.given.get(key, default), low, high, count)
+
+    def points(self, key: str, least: int = 3) -> np.ndarray:
+        """At least so many points [x, y], (n, 2) in m."""
+        self._wanted(key, None, f"{least} points [x, y] or more")
+        return _points(self.at(key), self.given[key], least)
+
+    def polygons(self, key: str) -> list[np.ndarray]:
+        """A list of polygons, [] where there is none."""
+        given = self.given.get(key, [])
+        if not isinstance(given, list):
+            raise BadInput(f"{self.at(key)}: '{brief(given)}' is no list of polygons (accepted: [[[x, y], ...], ...])")
+        return [_points(f"{self.at(key)}.{k}", one, 3) for k, one in enumerate(given, 1)]
+
+    def word(self, key: str, words: tuple[str, ...]) -> str:
+        """One of the words; required."""
+        self._wanted(key, None, "|".join(words))
+        return self.parameter(key, Parameter(key, "word", "", "-", "", words=words))
+
+    def flag(self, key: str, default: bool) -> bool:
+        """true or false."""
+        given = self.given.get(key, default)
+        if not isinstance(given, bool):
+            raise BadInput(f"{self.at(key)}: '{brief(given)}' is neither true nor false (accepted: true|false)")
+        return given
+
+    def text(self, key: str, default: str) -> str:
+        given = self.given.get(key, default)
+        if not isinstance(given, str):
+            raise BadInput(f"{self.at(key)}: '{brief(given)}' is no text (accepted: text in quotes)")
+        return given
+
+    def _wanted(self, key: str, default, accepted: str) -> None:
+        if key not in self.given and default is None:
+            raise BadInput(f"{self.at(key)}: is missing (accepted: {accepted})")
+
+
+def listed(given: dict, key: str) -> list[dict]:
+    """The tables [[key]] of a file, [] where there are none."""
+    tables = given.get(key, [])
+    if not isinstance(tables, list):
+        raise BadInput(f"{key}: '{brief(tables)}' is no list of tables (accepted: [[{key}]])")
+    for k, table in enumerate(tables, 1):
+        if not isinstance(table, dict):
+            raise BadInput(f"{key}.{k}: '{brief(table)}' is no table (accepted: [[{key}]])")
+    return tables
+
+
+def to_toml(table: dict, path: str = "") -> str:
+    """The text of a TOML file of tables, lists of tables and values, numbers with all their digits: read again it is the same table."""
+    text = "".join(f"{_key(key)} = {_written(value)}\n" for key, value in table.items() if not _tables(value))
+    for key, value in table.items():
+        for one in _tables(value):
+            name = _at(path, _key(key))
+            text += f"\n{f'[{name}]' if isinstance(value, dict) else f'[[{name}]]'}\n{to_toml(one, name)}"
+    return text
+
+
+def _key(key: str) -> str:
+    return key if re.fullmatch("[A-Za-z0-9_-]+", key) else _written(key)
+
+
+def _written(value) -> str:
+    """A value as TOML writes it: text as JSON does, but DEL; times and dates as Python does."""
+    if isinstance(value, str):
+        if re.search("[\ud800-\udfff]", value):             # a path of other bytes
+            raise BadInput(f"'{brief(value)}': is no text in UTF-8, in which scenes are written down (accepted: names and paths that are)")
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(_written, value))}]"
+    if isinstance(value, dict):
+        return f"{{{', '.join(f'{_key(key)} = {_written(one)}' for key, one in value.items())}}}"
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def _tables(value) -> list[dict]:
+    """The tables that a value is or lists."""
+    return [value] if isinstance(value, dict) else value if isinstance(value, list) and value and all(isinstance(one, dict) for one in value) else []
+
+
+def _at(path: str, key: str) -> str:
+    return f"{path}.{key}" if path else key
+
+
+def _real(low: float, high: float, default: float | None = None) -> Parameter:
+    return Parameter("", "real", default, "", "", low, high)
+
+
+def _placeholder(count: int) -> str:
+    return f"[{', '.join('xyz'[:count])}]"
+
+
+def _vector(path: str, given, low: float, high: float, count: int = 2) -> np.ndarray:
+    if not isinstance(given, list | tuple) or len(given) != count:
+        raise BadInput(f"{path}: '{brief(given)}' is no {_placeholder(count)} (accepted: {('two', 'three')[count - 2]} numbers, each {low:g} to {high:g})")
+    return np.array([replace(_real(low, high), name=f"{path}.{k}").check(value) for k, value in enumerate(given, 1)])
+
+
+def _points(path: str, given, least: int) -> np.ndarray:
+    if not isinstance(given, list) or len(given) < least:
+        raise BadInput(f"{path}: '{brief(given)}' is too little (accepted: {least} points [x, y] or more)")
+    if len(given) > MOST:
+        raise BadInput(f"{path}: {len(given)} points (accepted: {least} to {MOST})")
+    return np.array([_vector(f"{path}.{k}", point, -LONGEST, LONGEST) for k, point in enumerate(given, 1)])

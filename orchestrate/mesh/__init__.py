@@ -1,0 +1,1 @@
+"""Meshes of bodies: made with gmsh, read from files."""

@@ -1,0 +1,151 @@
+"""Shapes of bodies in the plane: [[body]] tables as outlines (or meshes of files) about their centres of area, SI units."""
+
+import math
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from ..input import parameters
+from . import gmsh_file, mesh
+from ..freefem.describe import describe
+from ..failure import BadInput, brief
+from ..geometry.outlines import Loop, Outline, crossing_sides, ellipse_loop, polygon_loop, self_crossing
+from ..input.tables import LONGEST, SHORTEST, Table
+
+SHAPES = {"disc": ("radius",), "ellipse": ("semi_axes",), "rectangle": ("width", "height"), "ring": ("radius", "inner_radius"),
+          "polygon": ("vertices", "holes"), "mesh": ("file",)}
+MOTION = ("angle", "speed", "direction", "spin")      # entries beside position and velocity
+
+
+def shape(table: Table, folder: Path) -> tuple[Outline, mesh.Mesh | None]:
+    """The outline of a body, and its mesh where a file brings it, both about the centre of area."""
+    found = mesh_file(table, folder, "disc-plane") if table.given["shape"] == "mesh" else None
+    outline = mesh_outline(found) if found else _outline(table)
+    centre = outline.area_centre
+    return outline.placed(-centre, 0.0), found and found.moved(-centre)
+
+
+def motion(table: Table) -> dict:
+    """Where a body is at the start and how it moves: position [m], angle [rad], velocity [m/s], spin [rad/s]."""
+    return {"position": table.numbers("position", -LONGEST, LONGEST), "angle": math.radians(table.number("angle", -36000, 36000, 0.0)),
+            "velocity": _velocity(table), "spin": float(table.parameter("spin", parameters.table()["spin"]))}
+
+
+def _velocity(table: Table) -> np.ndarray:
+    if "velocity" in table and ("speed" in table or "direction" in table):
+        raise BadInput(f"{table.path}.velocity: '{brief(table.given['velocity'])}' stands beside speed or direction (accepted: velocity, or speed with direction)")
+    if ("speed" in table) != ("direction" in table):
+        missing = "direction" if "speed" in table else "speed"
+        raise BadInput(f"{table.path}.{missing}: is missing (accepted: speed [m/s] with direction [deg], counter-clockwise from x)")
+    if "speed" not in table:
+        return table.numbers("velocity", -LONGEST, LONGEST, (0.0, 0.0))
+    speed, degrees = table.number("speed", 0, LONGEST), table.number("direction", -36000, 36000)
+    return speed * np.array([_sin(degrees + 90), _sin(degrees)])
+
+
+def _sin(degrees: float) -> float:
+    """The sine, exact at multiples of a right angle."""
+    return (0.0, 1.0, 0.0, -1.0)[int(degrees // 90) % 4] if degrees % 90 == 0 else math.sin(math.radians(degrees))
+
+
+# ---- shapes
+
+def _outline(table: Table) -> Outline:
+    shape = table.given["shape"]
+    if shape == "disc":
+        radius = table.number("radius", SHORTEST, LONGEST)
+        return Outline((ellipse_loop(radius, radius),))
+    if shape == "ellipse":
+        return Outline((ellipse_loop(*table.numbers("semi_axes", SHORTEST, LONGEST)),))
+    if shape == "rectangle":
+        half = np.array([table.number("width", SHORTEST, LONGEST), table.number("height", SHORTEST, LONGEST)]) / 2
+        return Outline((Loop(half * [[-1, -1], [1, -1], [1, 1], [-1, 1]]),))
+    if shape == "ring":
+        radius, inner = table.number("radius", SHORTEST, LONGEST), table.number("inner_radius", SHORTEST, LONGEST)
+        if inner >= radius:
+            raise BadInput(f"{table.path}.inner_radius: {inner:g} is not less than the radius {radius:g}")
+        return Outline((ellipse_loop(radius, radius), ellipse_loop(inner, inner)))
+    return _polygon(table)
+
+
+def _polygon(table: Table) -> Outline:
+    """The polygon with its holes; BadInput where it crosses itself, or a hole is not inside it and apart from the others."""
+    outer, holes = table.points("vertices"), table.polygons("holes")
+    named = [(f"{table.path}.vertices", outer), *((f"{table.path}.holes.{k}", hole) for k, hole in enumerate(holes, 1))]
+    for path, corners in named:
+        check_simple(path, corners)
+    loops = [polygon_loop(corners) for _, corners in named]
+    for k, (path, hole) in enumerate(named[1:], 1):
+        for other in range(k):
+            crossing = len(crossing_sides(hole, named[other][1])) > 0
+            if other == 0 and (crossing or (loops[0].gap(hole) > 0).any()):
+                raise BadInput(f"{path}: is not inside {named[0][0]} (accepted: holes that neither cross nor touch the outline)")
+            if other > 0 and (crossing or loops[other].gap(hole[:1]) < 0 or loops[k].gap(named[other][1][:1]) < 0):
+                raise BadInput(f"{path}: overlaps {named[other][0]} (accepted: holes apart from each other)")
+    return Outline(tuple(loops))
+
+
+def check_simple(path: str, corners: np.ndarray) -> None:
+    n, same = len(corners), np.argwhere((corners == np.roll(corners, -1, axis=0)).all(axis=1)).ravel()
+    if len(same):
+        raise BadInput(f"{path}: vertices {same[0] + 1} and {(same[0] + 1) % n + 1} coincide (accepted: each vertex once, the polygon closes itself)")
+    if sides := self_crossing(corners):
+        first, second = (f"from vertex {k + 1} to {(k + 1) % n + 1}" for k in sides)
+        raise BadInput(f"{path}: the side {first} meets the side {second} (accepted: a polygon that does not cross or touch itself)")
+
+
+# ---- mesh files
+
+def mesh_file(table: Table, folder: Path, script: str) -> mesh.Mesh:
+    """The mesh of a body's file, checked as any mesh file of edp/<script>.edp is, which also says what lies on circles: a whole body in the plane, or half
+    a meridian plane."""
+    name, file = table.text("file", ""), None
+    if "\0" in name or not _may_be_read(folder / name):
+        raise BadInput(f"{table.path}.file: {brief(repr(name))} is no file (accepted: FreeFEM's or gmsh's .msh)")
+    try:
+        text = mesh.load(folder / name)
+        with tempfile.NamedTemporaryFile(suffix=".msh") as file:
+            file.write(text)
+            file.flush()
+            found = mesh.read(Path(file.name))
+            if script == "disc-plane" and (found.labels == mesh.AXIS).any():
+                raise BadInput(f"mesh: '{brief(name)}' has edges with the label {mesh.AXIS} of a symmetry axis (accepted: whole bodies, "
+                               f"labels {mesh.FREE}: may touch, 3 and more: never touch)")
+            size = float(np.ptp(found.points, axis=0).max()) if len(found.points) else 0.0
+            said = describe({"mesh": file.name, "radius": size / 2 if SHORTEST < size < LONGEST else 1.0}, script)
+    except BadInput as error:
+        raise BadInput(f"{table.path}.file: {str(error).removeprefix('mesh: ').replace(file.name if file else name, name)}") from None
+    return replace(found, hubs=np.array([*said["circles"], [math.nan] * 3])[said["circle_of"], :2])
+
+
+def _may_be_read(path: Path) -> bool:
+    """Not a folder, and not a pipe or device, which would be waited for."""
+    try:
+        return path.is_file() or not path.exists()
+    except OSError:                 # too long a name, a folder that may not be entered: said where it is opened
+        return True
+
+
+def mesh_outline(found: mesh.Mesh) -> Outline:
+    """The boundary of a mesh as loops, that of the largest area first; edges on circles are arcs, and a loop on one circle is that circle."""
+    hub = {tuple(sorted(edge)): at for edge, at in zip(found.edges.tolist(), found.hubs)}
+    following = dict(gmsh_file.boundary(found.triangles).tolist())
+    loops = []
+    while following:
+        first, v = (chain := list(following.popitem()))
+        while v != first:
+            v = following.pop(v)
+            chain.append(v)
+        loops.append(_loop(found.points[chain[:-1]], np.array([hub[tuple(sorted(edge))] for edge in zip(chain, chain[1:])])))
+    return Outline(tuple(sorted(loops, key=lambda loop: -loop.area)))
+
+
+def _loop(corners: np.ndarray, hubs: np.ndarray) -> Loop:
+    if np.isnan(hubs).all():
+        return polygon_loop(corners)
+    if (hubs == hubs[0]).all():
+        radius = float(np.linalg.norm(corners[0] - hubs[0]))
+        return ellipse_loop(radius, radius).placed(hubs[0], 0.0)
+    return polygon_loop(corners, hubs)

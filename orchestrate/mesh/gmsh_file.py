@@ -1,0 +1,132 @@
+"""A mesh in gmsh's format as one of ours: its triangles in the plane, its boundary from them, labels from its physical curves.
+
+gmsh reads the file in a process of its own (`python -m orchestrate.mesh.gmsh_file FILE OUT`): some broken files kill it.
+"""
+
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from . import mesh
+from ..failure import BadInput
+from ..places import ROOT
+
+TRIANGLES = {2: 3, 9: 6}        # gmsh's types of element that are read: their nodes, of which the first three are the corners
+LINES = {1: 2, 8: 3}            # likewise, the first two are the ends
+OTHER = 3                       # the label of what is neither contact nor axis
+LABELS = {"contact": mesh.FREE, "symmetry": mesh.AXIS}
+
+
+def convert(path: Path) -> bytes:
+    """FreeFEM's .msh of the gmsh file `path`; BadInput where gmsh or we cannot use it."""
+    with tempfile.TemporaryDirectory() as folder:
+        copy, made = Path(folder) / "mesh.msh", Path(folder) / "freefem.msh"   # gmsh goes by the ending of the name
+        shutil.copyfile(path, copy)
+        child = subprocess.run([sys.executable, "-m", __name__, str(copy), str(made)], cwd=ROOT, stdin=subprocess.DEVNULL,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace")
+        if child.returncode == 0:
+            return made.read_bytes()
+        if child.returncode == BadInput("").code:
+            raise BadInput(f"mesh: {path}: {child.stderr.strip().replace(str(copy), path.name)}")
+        how = signal.Signals(-child.returncode).name if child.returncode < 0 else f"exit code {child.returncode}"
+        raise BadInput(f"mesh: {path}: gmsh broke down over it ({how})")
+
+
+def read(path: Path) -> mesh.Mesh:
+    """The mesh in a gmsh file, lengths in m."""
+    with mesh.gmsh_session() as gmsh:
+        try:
+            gmsh.open(str(path))
+        except Exception as error:   # gmsh knows no other
+            raise BadInput(f"gmsh cannot read it: {error}") from None
+        return taken(gmsh.model)
+
+
+def taken(model) -> mesh.Mesh:
+    """The mesh in a model of gmsh: triangles turned counter-clockwise, vertices that no triangle uses left out."""
+    tags, coordinates, _ = model.mesh.getNodes()
+    kinds = [*model.mesh.getElementTypes(2), *model.mesh.getElementTypes(3)]
+    for kind in kinds:
+        if kind not in TRIANGLES:
+            raise BadInput(f"it has elements '{model.mesh.getElementProperties(kind)[0]}' (accepted: triangles of 3 or 6 nodes)")
+    if not kinds:
+        raise BadInput("it has no triangles")
+    corners = np.vstack([model.mesh.getElementsByType(kind)[1].reshape(-1, TRIANGLES[kind])[:, :3] for kind in kinds])
+    curves = _physical_curves(model)
+
+    used, triangles = np.unique(corners, return_inverse=True)
+    row = np.full(int(max(tags.max(), used.max())) + 1, -1)
+    row[tags] = np.arange(len(tags))
+    if (row[used] < 0).any():
+        raise BadInput(f"a triangle names node {used[row[used] < 0][0]}, which is not there")
+    points = coordinates.reshape(-1, 3)[row[used]]
+    if np.ptp(points[:, 2]) > 1e-9 * np.ptp(points[:, :2], axis=0).max():
+        raise BadInput(f"it is not flat: z from {points[:, 2].min():g} to {points[:, 2].max():g} m (accepted: one z)")
+    points, triangles = points[:, :2], mesh.counter_clockwise(points[:, :2], triangles.reshape(-1, 3))
+    edges = boundary(triangles)
+    if curves is None:
+        labels = np.where(_is_outer(points, edges), mesh.FREE, OTHER)
+    else:
+        number = {int(tag): k for k, tag in enumerate(used)}
+        labelled = {frozenset((number.get(a, -1), number.get(b, -1))): label for a, b, label in curves}
+        labels = np.array([labelled.get(frozenset(edge), OTHER) for edge in edges.tolist()], dtype=int)
+        if not (labels == mesh.FREE).any():
+            raise BadInput(f"none of its physical curves ({_names(model)}) has the name 'contact', or without a name the number {mesh.FREE}, on its boundary: nothing "
+                           "of it could touch (accepted: such a one, or no physical curve)")
+    return mesh.Mesh(points, triangles, edges, labels)
+
+
+def _physical_curves(model) -> list[tuple[int, int, int]] | None:
+    """(node, node, label) of every line in a physical curve, None where there is no such curve. A name decides what the label
+    is, a number where there is no name."""
+    groups = model.getPhysicalGroups(1)
+    lines = []
+    for _, number in groups:
+        name = model.getPhysicalName(1, number).strip().lower()
+        label = LABELS.get(name, OTHER) if name else number if number in LABELS.values() else OTHER
+        for entity in model.getEntitiesForPhysicalGroup(1, number):
+            for kind, _, nodes in zip(*model.mesh.getElements(1, entity)):
+                if kind not in LINES:
+                    raise BadInput(f"it has elements '{model.mesh.getElementProperties(kind)[0]}' (accepted: lines of 2 or 3 nodes)")
+                lines += [(int(a), int(b), label) for a, b, *_ in nodes.reshape(-1, LINES[kind])]
+    return lines if groups else None
+
+
+def _names(model) -> str:
+    return ", ".join(model.getPhysicalName(1, number) or str(number) for _, number in model.getPhysicalGroups(1))
+
+
+def boundary(triangles: np.ndarray) -> np.ndarray:
+    """The sides (e, 2) that belong to one triangle, in its direction."""
+    sides = triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+    _, first, count = np.unique(np.sort(sides, axis=1), axis=0, return_index=True, return_counts=True)
+    return sides[np.sort(first[count == 1])]
+
+
+def _is_outer(points: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """Which boundary edges (body to their left) belong to a loop around the body rather than around a hole."""
+    leaving = {a: k for k, a in enumerate(edges[:, 0].tolist())}
+    outer, seen = np.zeros(len(edges), dtype=bool), np.zeros(len(edges), dtype=bool)
+    for first in range(len(edges)):
+        loop = []
+        k = first
+        while k is not None and not seen[k]:
+            seen[k] = True
+            loop.append(k)
+            k = leaving.get(int(edges[k, 1]))
+        (ax, ay), (bx, by) = points[edges[loop, 0]].T, points[edges[loop, 1]].T
+        outer[loop] = (ax * by - ay * bx).sum() > 0
+    return outer
+
+
+if __name__ == "__main__":
+    try:
+        mesh.write(read(Path(sys.argv[1])), Path(sys.argv[2]))
+    except BadInput as failure:
+        print(failure, file=sys.stderr)
+        sys.exit(failure.code)

@@ -1,0 +1,213 @@
+"""Meshes: a disc (or half of it) graded towards its contact arc, made by gmsh, written as FreeFEM's own .msh.
+
+Boundary labels: 1 = the free outer boundary (the circle), 2 = the symmetry axis x = 0. The triangles are straight;
+the FreeFEM side curves the boundary. The lowest point of the disc touches the plane y = 0.
+"""
+
+import atexit
+import math
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from functools import cache
+from importlib import metadata
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+
+from ..failure import BadInput, NotInstalled
+from ..places import INSTALLED
+
+FREE, AXIS = 1, 2          # boundary labels
+LIBRARIES = "apt-get install libglu1-mesa libxcursor1 libxft2 libxinerama1 libgomp1"   # that gmsh's wheel needs, with what they need
+GROWTH = 0.3               # element size gained per length of distance from the contact arc
+DIGITS = 10                # decimals of what gmsh is given, in sizes of the body: round-off settles ties, and the mesh would depend on the unit of length
+OWN = 360                  # the region of the triangles of our own discs, whose outline is a circle however long its edges are (edp/core/input/mesh-file.idp)
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """points (n, 2) in m, triangles (t, 3) counter-clockwise, edges (e, 2) of the boundary, their labels (e,); `hubs` (e, 2) are the centres of the
+    circles that the edges of a file lie on, nan of straight ones; `region` is that of all triangles."""
+
+    points: np.ndarray
+    triangles: np.ndarray
+    edges: np.ndarray
+    labels: np.ndarray
+    hubs: np.ndarray | None = None
+    region: int = 0
+
+    def moved(self, by: np.ndarray) -> "Mesh":
+        """The same mesh, `by` [m] elsewhere."""
+        return replace(self, points=self.points + by, hubs=None if self.hubs is None else self.hubs + by)
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """Element sizes of a body [m]: in the bulk, and within `near` (its points, as it is in its mesh) on the outline, to `slack`."""
+
+    bulk: float
+    contact: float
+    near: np.ndarray
+    slack: float                # half the distance of points on the outline
+
+    def at(self, points: np.ndarray) -> np.ndarray:
+        """Element sizes (n,): growing linearly with the distance from where the body touches."""
+        if not len(self.near):
+            return np.full(len(points), self.bulk)
+        away = np.maximum(nearest(points, self.near) - self.slack, 0.0)
+        return np.minimum(self.bulk, self.contact + GROWTH * away)
+
+
+def nearest(points: np.ndarray, others: np.ndarray, chunk: int = 500, most: int = 2000) -> np.ndarray:
+    """Distances (n,) to the nearest of the others; of many every few only."""
+    others = others[::-(-len(others) // most)]
+    return np.concatenate([np.sqrt(((points[at:at + chunk, None] - others)**2).sum(axis=2).min(axis=1)) for at in range(0, len(points), chunk)])
+
+
+@cache
+def gmsh_version() -> str:
+    """The version of the gmsh package."""
+    return metadata.version("gmsh")
+
+
+def disc(radius: float, mesh_size: float, contact_mesh_size: float, half: bool, contact_arc: float = math.pi / 4) -> Mesh:
+    """A disc, or its half x >= 0, centre (0, radius), all lengths in m.
+
+    The size is contact_mesh_size along the lowest arc of +-contact_arc radians (seen from the centre) and grows
+    linearly to mesh_size away from it. Vertices of the circle and of the axis lie on them to rounding.
+    """
+    bulk, contact, arc = (round(size, DIGITS) for size in (mesh_size / radius, contact_mesh_size / radius, contact_arc))   # gmsh's tolerances are absolute
+    with gmsh_session() as gmsh:
+        gmsh.option.setNumber("Mesh.Algorithm", 6)   # frontal Delaunay: the best triangles
+        for source in ("FromPoints", "FromCurvature", "ExtendFromBoundary"):
+            gmsh.option.setNumber(f"Mesh.MeshSize{source}", 0)
+        arcs, axis = _outline(gmsh.model.geo, half, min(arc, 0.99 * math.pi))
+        gmsh.model.geo.addPlaneSurface([gmsh.model.geo.addCurveLoop(arcs + axis)])
+        gmsh.model.geo.synchronize()
+        contact_arcs = arcs[:1] if half else [arcs[0], arcs[-1]]
+        _grade(gmsh.model.mesh.field, contact_arcs, bulk, contact, arc)
+        gmsh.model.mesh.generate(2)
+        tags, coordinates, _ = gmsh.model.mesh.getNodes()
+        _, triangle_tags = gmsh.model.mesh.getElementsByType(2)
+        pieces = [(label, gmsh.model.mesh.getElementsByType(1, curve)[1].reshape(-1, 2))
+                  for label, curves in ((FREE, arcs), (AXIS, axis)) for curve in curves]
+
+    # Number the vertices that a triangle uses from 0 (gmsh also keeps the centre of the arcs).
+    used, triangles = np.unique(triangle_tags, return_inverse=True)
+    row = np.empty(int(tags.max()) + 1, dtype=int)
+    row[tags] = np.arange(len(tags))
+    points = coordinates.reshape(-1, 3)[row[used], :2]
+    edges = np.searchsorted(used, np.vstack([nodes for _, nodes in pieces]))
+    labels = np.concatenate([np.full(len(nodes), label) for label, nodes in pieces])
+
+    circle = np.unique(edges[labels == FREE])
+    points[circle] /= np.linalg.norm(points[circle], axis=1, keepdims=True)
+    points[np.unique(edges[labels == AXIS]), 0] = 0.0
+    points = radius * (points + (0.0, 1.0))
+    return Mesh(points, counter_clockwise(points, triangles.reshape(-1, 3)), edges, labels, region=OWN)
+
+
+@cache
+def start_gmsh() -> ModuleType:
+    """The module gmsh, started once in the life of this program; NotInstalled where a system library is missing.
+
+    For a moment gmsh sets signal handlers back to their defaults: a run starts it before it makes anything that a signal could leave behind.
+    """
+    try:
+        import gmsh
+    except OSError as error:
+        raise NotInstalled(f"gmsh does not load ({error}); run: {LIBRARIES if INSTALLED else 'make setup'}") from None
+    handlers = {number: signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGPIPE)}
+    gmsh.initialize([], readConfigFiles=False, interruptible=False)
+    if threading.current_thread() is threading.main_thread():
+        for number, handler in handlers.items():
+            signal.signal(number, handler)
+    atexit.register(gmsh.finalize)
+    return gmsh
+
+
+@contextmanager
+def gmsh_session() -> Iterator[ModuleType]:
+    """The module gmsh as it is at its start, silent."""
+    gmsh = start_gmsh()
+    gmsh.option.restoreDefaults()
+    gmsh.option.setNumber("General.Terminal", 0)
+    gmsh.option.setNumber("General.AbortOnError", 2)   # exceptions, as after initialize()
+    try:
+        yield gmsh
+    finally:
+        gmsh.clear()
+
+
+def _outline(geo, half: bool, contact_arc: float) -> tuple[list[int], list[int]]:
+    """Arcs of the unit circle, counter-clockwise from its lowest point, and the axis; as curves of gmsh."""
+    def point(angle):   # measured from the lowest point
+        return geo.addPoint(math.sin(angle), -math.cos(angle), 0)
+
+    centre, bottom, top = geo.addPoint(0, 0, 0), point(0.0), point(math.pi)
+    corners = [bottom, point(contact_arc), top]
+    if not half:
+        corners += [point(-contact_arc), bottom]
+    arcs = [geo.addCircleArc(a, centre, b) for a, b in zip(corners, corners[1:])]
+    return arcs, [geo.addLine(top, bottom)] if half else []
+
+
+def _grade(field, contact_arcs: list[int], bulk: float, contact: float, contact_arc: float) -> None:
+    """Element size `contact` on the arcs, growing linearly with the distance from them up to `bulk`."""
+    distance, size = field.add("Distance"), field.add("Threshold")
+    field.setNumbers(distance, "CurvesList", contact_arcs)
+    field.setNumber(distance, "Sampling", math.ceil(2 * contact_arc / contact))
+    for name, value in dict(InField=distance, SizeMin=contact, SizeMax=bulk, DistMin=0,
+                            DistMax=max(bulk - contact, 1e-9) / GROWTH).items():
+        field.setNumber(size, name, value)
+    field.setAsBackgroundMesh(size)
+
+
+def counter_clockwise(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """The triangles (t, 3), those that are clockwise turned over."""
+    a, b, c = (points[triangles[:, k]] for k in range(3))
+    clockwise = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) < (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+    return np.where(clockwise[:, None], triangles[:, [0, 2, 1]], triangles)
+
+
+def write(mesh: Mesh, path: Path) -> None:
+    """Writes FreeFEM's 2D .msh: counts; x y label; v1 v2 v3 region; v1 v2 label; vertices count from 1."""
+    point_labels = np.zeros(len(mesh.points), dtype=int)
+    for label in (AXIS, FREE):   # the ends of the axis belong to the free boundary too
+        point_labels[mesh.edges[mesh.labels == label]] = label
+    with open(path, "w") as file:
+        file.write(f"{len(mesh.points)} {len(mesh.triangles)} {len(mesh.edges)}\n")
+        file.writelines(f"{x:.17g} {y:.17g} {label}\n" for (x, y), label in zip(mesh.points, point_labels))
+        file.writelines(f"{a} {b} {c} {mesh.region}\n" for a, b, c in mesh.triangles + 1)
+        file.writelines(f"{a} {b} {label}\n" for (a, b), label in zip(mesh.edges + 1, mesh.labels))
+
+
+def load(path: Path) -> bytes:
+    """The mesh in a file as FreeFEM's .msh: one of gmsh is converted, one of FreeFEM is taken as it is (what is in it is checked
+    by edp/core/input/mesh-file.idp). BadInput where it cannot be read or is neither."""
+    try:
+        text = path.read_bytes()
+    except OSError as error:
+        raise BadInput(f"mesh: {path} cannot be read: {error.strerror}") from None
+    if text.startswith(b"$"):
+        from . import gmsh_file
+        return gmsh_file.convert(path)
+    return text
+
+
+def read(path: Path) -> Mesh:
+    """Reads what `write` writes; BadInput where the file is not such a mesh."""
+    try:
+        words = path.read_text().split()
+        n, t, e = map(int, words[:3])
+        points, triangles, edges = np.split(np.array(words[3:], dtype=float), [3 * n, 3 * n + 4 * t])
+        points, triangles, edges = points.reshape(n, 3), triangles.reshape(t, 4), edges.reshape(e, 3)
+    except OSError as error:
+        raise BadInput(f"mesh: {path} cannot be read: {error.strerror}") from None
+    except ValueError as error:
+        raise BadInput(f"mesh: {path} is not a 2D mesh of FreeFEM: {error}") from None
+    return Mesh(points[:, :2], triangles[:, :3].astype(int) - 1, edges[:, :2].astype(int) - 1, edges[:, 2].astype(int))

@@ -1,0 +1,186 @@
+"""A solid in a file: a mesh of tetrahedra (gmsh's .msh, Medit's .mesh) or a geometry that gmsh meshes (.geo, .step, .stp), lengths in m.
+
+Faces of a physical surface named `contact` may touch, others never; without physical surfaces the outer surface may, cavities never.
+gmsh reads the file in a process of its own (`python -m orchestrate.mesh.solid_file FILE OUT [SIZES]`): some broken files kill it.
+"""
+
+import signal
+import subprocess
+import sys
+import tempfile
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from . import mesh
+from ..failure import BadInput
+from .mesh import FREE, Sizes
+from ..places import ROOT
+from .solid_mesh import NEVER, TURN, SolidMesh, boundary, cell_volumes, cells_of, generate, pieces
+
+MESHES, GEOMETRIES = (".msh", ".mesh"), (".geo", ".step", ".stp")
+CONTACT = "contact"
+HEADER = b"$MeshFormat"
+TRIANGLES = {2: 3, 9: 6}         # gmsh's types of element: their nodes, of which the first three are the corners
+COARSE = 15                      # elements along the largest extent where only the shape of a geometry is wanted
+
+
+def is_geometry(path: Path) -> bool:
+    """Whether gmsh has to mesh it."""
+    return path.suffix.lower() in GEOMETRIES
+
+
+def read(path: Path) -> SolidMesh:
+    """The mesh in a file; of a geometry one that is good for its shape only. BadInput, by the file's name, where it cannot be used."""
+    if path.suffix.lower() not in MESHES + GEOMETRIES:
+        raise BadInput(f"{path.name!r} is no mesh or geometry (accepted: {', '.join(MESHES + GEOMETRIES)})")
+    try:
+        if not path.is_file():
+            raise BadInput(f"{path.name!r} is no file (accepted: {', '.join(MESHES + GEOMETRIES)})")
+        stamp = path.stat()
+    except (OSError, ValueError) as error:
+        raise BadInput(f"{path.name!r} cannot be read: {getattr(error, 'strerror', None) or error}") from None
+    return _read(path.resolve(), stamp.st_mtime_ns)
+
+
+def meshed(path: Path, sizes: Sizes) -> SolidMesh:
+    """The mesh of a geometry with element sizes, which are of the coordinates in the file."""
+    return _child(path, sizes)
+
+
+@cache
+def _read(path: Path, changed: int) -> SolidMesh:
+    return _child(path, None)
+
+
+def _child(path: Path, sizes: Sizes | None) -> SolidMesh:
+    with tempfile.TemporaryDirectory() as folder:
+        out, wanted = Path(folder) / "mesh.npz", Path(folder) / "sizes.npz"
+        if sizes:
+            np.savez(wanted, bulk=sizes.bulk, contact=sizes.contact, near=sizes.near, slack=sizes.slack)
+        child = subprocess.run([sys.executable, "-m", __name__, str(path), str(out), *([str(wanted)] if sizes else [])], cwd=ROOT,
+                               stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace")
+        if child.returncode == 0 and out.exists():     # a script in a geometry may end gmsh
+            with np.load(out) as found:
+                return SolidMesh(found["points"], found["cells"], found["faces"], found["labels"])
+        if child.returncode == BadInput("").code:
+            raise BadInput(f"'{path.name}': {child.stderr.strip().splitlines()[-1].replace(str(path), path.name)}")
+        how = signal.Signals(-child.returncode).name if child.returncode < 0 else f"exit code {child.returncode}"
+        raise BadInput(f"'{path.name}': gmsh broke down over it ({how})")
+
+
+# ---- in the process of its own
+
+def _taken(path: Path, sizes: Sizes | None) -> SolidMesh:
+    try:
+        if is_geometry(path):
+            return _meshed(path, sizes)
+        if path.suffix.lower() == ".msh":              # what gmsh does not know it runs as a script
+            with open(path, "rb") as file:
+                if not file.read(len(HEADER)) == HEADER:
+                    raise BadInput(f"it does not begin with {HEADER.decode()} (accepted: gmsh's .msh)")
+        with mesh.gmsh_session() as gmsh:
+            gmsh.open(str(path))
+            return _labelled(gmsh.model, *cells_of(gmsh.model))
+    except BadInput:
+        raise
+    except Exception as error:   # gmsh knows no other
+        raise BadInput(f"gmsh cannot read or mesh it: {error}") from None
+
+
+def _meshed(path: Path, sizes: Sizes | None) -> SolidMesh:
+    found = []
+
+    def build(gmsh) -> None:
+        gmsh.option.setString("Geometry.OCCTargetUnit", "M")
+        gmsh.open(str(path))
+        if not gmsh.model.getEntities(3):
+            raise BadInput("it has no volume")
+        if sizes is None:
+            low, high = np.reshape(gmsh.model.getBoundingBox(-1, -1), (2, 3))
+            gmsh.option.setNumber("Mesh.MeshSizeMax", float((high - low).max()) / COARSE)
+
+    def label(gmsh, points: np.ndarray, cells: np.ndarray) -> None:
+        found.append(_labelled(gmsh.model, points, cells))
+
+    generate(build, sizes or Sizes(0.0, 0.0, np.empty((0, 3)), 0.0), TURN, label)
+    return found[0]
+
+
+def _labelled(model, points: np.ndarray, cells: np.ndarray) -> SolidMesh:
+    """With the labels of boundary faces from the physical surfaces of a model."""
+    volumes = cell_volumes(points, cells)
+    if not (volumes > 1e-12 * np.ptp(points, axis=0).max()**3 / len(cells)).all():
+        raise BadInput(f"a tetrahedron is flat: its volume is {np.nanmin(volumes):.3g} m3, or it has a corner that is no number")
+    count = len(np.unique(pieces(len(points), cells)[cells[:, 0]]))
+    if count > 1:
+        raise BadInput(f"its tetrahedra are {count} pieces that hang together nowhere (accepted: one, a [[body]] table and a file a piece)")
+    faces = boundary(cells)
+    _check_surface(points, faces)
+    named = _contact_triangles(model)
+    if named is None:
+        return SolidMesh(points, cells, faces, np.where(_is_outer(points, faces), FREE, NEVER))
+    scale = np.ptp(points, axis=0).max()
+    def keys(corners: np.ndarray) -> list[tuple]:
+        """Triangles by their corners, to a billionth of the size."""
+        return [tuple(sorted(map(tuple, one))) for one in np.round(corners / scale, 9).tolist()]
+    wanted = set(keys(named))
+    labels = np.array([FREE if key in wanted else NEVER for key in keys(points[faces])])
+    if not (labels == FREE).any():
+        raise BadInput(f"its physical surface '{CONTACT}' is not on its boundary")
+    return SolidMesh(points, cells, faces, labels)
+
+
+def _check_surface(points: np.ndarray, faces: np.ndarray) -> None:
+    """BadInput where the body hangs together by an edge or a point alone: a side of boundary faces belongs to two of them, and around a point of the boundary
+    they follow each other in one turn."""
+    corners = np.arange(3 * len(faces)).reshape(-1, 3)
+    sides, ends = (of[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2) for of in (faces, corners))
+    ends = np.where((sides[:, 0] > sides[:, 1])[:, None], ends[:, ::-1], ends)
+    found, which, count = np.unique(np.sort(sides, axis=1), axis=0, return_inverse=True, return_counts=True)
+    def place(point: int) -> str:
+        return "({:g}, {:g}, {:g})".format(*points[point])
+    if (count != 2).any():
+        a, b = found[np.argmax(count != 2)]
+        raise BadInput(f"it hangs together by an edge alone, from {place(a)} to {place(b)} (accepted: tetrahedra that hang together by faces)")
+    first, second = ends[np.argsort(which.ravel(), kind="stable")].reshape(-1, 2, 2).transpose(1, 0, 2)
+    turns = np.unique(np.column_stack([faces.ravel(), pieces(corners.size, np.column_stack([first.ravel(), second.ravel()]))]), axis=0)[:, 0]
+    if len(twice := turns[1:][turns[1:] == turns[:-1]]):
+        raise BadInput(f"it hangs together by a point alone, {place(twice[0])} (accepted: tetrahedra that hang together by faces)")
+
+
+def _contact_triangles(model) -> np.ndarray | None:
+    """Corners (t, 3, 3) of the triangles in the physical surfaces named `contact`; None where no physical surface has a name."""
+    names = {number: model.getPhysicalName(2, number).strip().lower() for _, number in model.getPhysicalGroups(2)}
+    if not any(names.values()):
+        return None
+    if CONTACT not in names.values():
+        raise BadInput(f"none of its physical surfaces ({', '.join(filter(None, names.values()))}) has the name '{CONTACT}' (accepted: such a one, or none with a name)")
+    tags, coordinates, _ = model.mesh.getNodes()
+    row = np.zeros(int(tags.max()) + 1, dtype=int)
+    row[tags] = np.arange(len(tags))
+    corners = [row[np.reshape(nodes, (-1, TRIANGLES[kind]))[:, :3]] for number, name in names.items() if name == CONTACT
+               for surface in model.getEntitiesForPhysicalGroup(2, number) for kind, _, nodes in zip(*model.mesh.getElements(2, surface)) if kind in TRIANGLES]
+    return coordinates.reshape(-1, 3)[np.vstack(corners or [np.empty((0, 3), dtype=int)])]
+
+
+def _is_outer(points: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """Which boundary faces (f,) are around a body rather than around a cavity: pieces of surface that hang together, with a volume above 0."""
+    piece = pieces(len(points), faces)
+    a, b, c = points[faces].transpose(1, 0, 2) - points.mean(axis=0)
+    volume = np.bincount(piece[faces[:, 0]], weights=(a * np.cross(b, c)).sum(axis=1), minlength=len(points))
+    return volume[piece[faces[:, 0]]] > 0
+
+
+if __name__ == "__main__":
+    try:
+        wanted = None
+        if len(sys.argv) > 3:
+            with np.load(sys.argv[3]) as given:
+                wanted = Sizes(float(given["bulk"]), float(given["contact"]), given["near"], float(given["slack"]))
+        made = _taken(Path(sys.argv[1]), wanted)
+        np.savez(sys.argv[2], points=made.points, cells=made.cells, faces=made.faces, labels=made.labels)
+    except BadInput as failure:
+        print(failure, file=sys.stderr)
+        sys.exit(failure.code)

@@ -1,0 +1,237 @@
+"""Meshes of tetrahedra: of balls, boxes and cylinders by gmsh, or parts of them on one side of planes of symmetry; written in Medit's format, as FreeFEM reads it.
+
+Labels of boundary faces: 1 may touch, 2 on the plane x = 0 of what is computed by symmetry, 3 on its plane z = 0, 4 never touches.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from . import mesh
+from ..failure import BadInput
+from .mesh import AXIS, FREE, GROWTH, Sizes
+
+DEPTH, NEVER = 3, 4
+PLANES = {0: AXIS, 2: DEPTH}       # of symmetry: the axis across it, and its label
+TURN = 20                          # elements on a full turn of a curved surface at least
+LARGEST = 0.52                     # element of a ball over its radius: twelve on a full turn
+FACES = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])     # of a tetrahedron, counter-clockwise seen from outside
+MOST_SOURCES = 2000                # points that sizes are measured from
+FILL = 0.118                       # volume of a regular tetrahedron over the cube of its side
+MOST_CELLS = 400_000               # that gmsh is asked for
+MOST_UNKNOWNS = 150_000            # displacement unknowns of a run
+
+
+@dataclass(frozen=True)
+class Curved:
+    """A sphere, without an axis (), or a cylinder, about a point of its axis with its direction (3,)."""
+
+    centre: np.ndarray
+    axis: np.ndarray
+    radius: float
+
+    def arms(self, points: np.ndarray) -> np.ndarray:
+        """Vectors (..., 3) to points from the centre, or from the nearest points of the axis."""
+        away = points - self.centre
+        return away - (away @ self.axis)[..., None] * self.axis if len(self.axis) else away
+
+    def onto(self, points: np.ndarray) -> np.ndarray:
+        """Points (n, 3) moved straight onto it."""
+        arms = self.arms(points)
+        return points + arms * (self.radius / np.linalg.norm(arms, axis=1, keepdims=True) - 1)
+
+
+@dataclass(frozen=True)
+class SolidMesh:
+    """points (n, 3) in m, tetrahedra (t, 4) of positive volume, faces (f, 3) of the boundary seen counter-clockwise from outside, their labels (f,); the
+    spheres and cylinders that faces lie on."""
+
+    points: np.ndarray
+    cells: np.ndarray
+    faces: np.ndarray
+    labels: np.ndarray
+    curved: tuple[Curved, ...] = ()
+
+    def moved(self, by: np.ndarray) -> "SolidMesh":
+        """The same mesh, `by` [m] elsewhere."""
+        return replace(self, points=self.points + by)
+
+    @property
+    def volumes(self) -> np.ndarray:
+        """Those of the tetrahedra (t,) [m3]."""
+        return cell_volumes(self.points, self.cells)
+
+    @property
+    def centre(self) -> np.ndarray:
+        """The centre of volume."""
+        return (self.volumes[:, None] * self.points[self.cells].mean(axis=1)).sum(axis=0) / self.volumes.sum()
+
+
+def cell_volumes(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
+    a, b, c, d = (points[cells[:, k]] for k in range(4))
+    return ((b - a) * np.cross(c - a, d - a)).sum(axis=1) / 6
+
+
+def boundary(cells: np.ndarray) -> np.ndarray:
+    """The faces (f, 3) that belong to one tetrahedron, seen counter-clockwise from outside."""
+    faces = cells[:, FACES].reshape(-1, 3)
+    _, first, count = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
+    return faces[np.sort(first[count == 1])]
+
+
+def right_handed(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
+    """The tetrahedra (t, 4), those that are inside out turned over."""
+    return np.where(cell_volumes(points, cells)[:, None] < 0, cells[:, [0, 1, 3, 2]], cells)
+
+
+def pieces(points: int, elements: np.ndarray) -> np.ndarray:
+    """The piece (points,) that each point belongs to, by the lowest number of a point in it: elements (n, corners) hang together by common points."""
+    piece = np.arange(points)
+    while True:
+        least = piece[elements].min(axis=1)
+        before = piece.copy()
+        np.minimum.at(piece, elements.ravel(), np.repeat(least, elements.shape[1]))
+        piece = piece[piece]
+        if (piece == before).all():
+            return piece
+
+
+def unknowns(cells: np.ndarray, degree: int) -> int:
+    """Displacement unknowns: three a vertex, of degree 2 three an edge more."""
+    vertices = len(np.unique(cells))
+    edges = np.unique(np.sort(cells[:, [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]]].reshape(-1, 2), axis=1), axis=0)
+    return 3 * (vertices + (len(edges) if degree == 2 else 0))
+
+
+# ---- meshes of shapes
+
+def mesh_shape(kind: str, lengths: np.ndarray, rotation: np.ndarray, folded: tuple[int, ...], sizes: Sizes, scale: float) -> SolidMesh:
+    """The mesh of a ball (radius), box (extents) or cylinder (radius, height, its axis y) about the origin, turned: only what lies on the positive
+    side of the planes across the axes `folded`. `scale` [m] is about its size: gmsh's tolerances are absolute."""
+    bulk = min(sizes.bulk, LARGEST * lengths[0]) if kind == "ball" else sizes.bulk
+    inside = Sizes(*(np.round(size / scale, mesh.DIGITS) for size in (bulk, min(bulk, sizes.contact), sizes.near, sizes.slack)))
+    sides = np.round(lengths / scale, 12)        # its corners are exact to as much
+
+    def build(gmsh) -> None:
+        occ, (a, *more) = gmsh.model.occ, map(float, sides)
+        if kind == "ball":
+            tag = occ.addSphere(0, 0, 0, a)
+        elif kind == "cylinder":
+            tag = occ.addCylinder(0, -more[0] / 2, 0, 0, more[0], 0, a)
+        else:
+            tag = occ.addBox(-a / 2, -more[0] / 2, -more[1] / 2, a, *more)
+        if kind == "ball":
+            occ.rotate([(3, tag)], 0, 0, 0, 1, 0, 0, np.pi / 2)      # its poles on the axis y
+        else:
+            occ.affineTransform([(3, tag)], [*np.column_stack([rotation, np.zeros(3)]).ravel(), 0, 0, 0, 1])
+        if folded:
+            far = 4 * np.linalg.norm(sides)
+            corner = [0 if axis in folded else -far for axis in range(3)]
+            half = occ.addBox(*corner, *(far - low for low in corner))
+            occ.intersect([(3, tag)], [(3, half)])
+        occ.synchronize()
+
+    points, cells = generate(build, inside, TURN if kind == "cylinder" else 0)
+    points = points * scale
+    faces = boundary(cells)
+    labels = np.full(len(faces), FREE)
+    for axis in folded:
+        on = (abs(points[faces][:, :, axis]) < 1e-7 * scale).all(axis=1)
+        labels[on] = PLANES[axis]
+        points[np.unique(faces[on]), axis] = 0
+    if kind == "box":
+        return SolidMesh(points, cells, faces, labels)
+    round_one = Curved(np.zeros(3), rotation[:, 1] if kind == "cylinder" else np.array([]), float(lengths[0]))
+    ends = np.zeros(len(faces), dtype=bool) if kind == "ball" else np.ptp(points[faces] @ rotation[:, 1], axis=1) < 1e-7 * scale
+    side = np.unique(faces[(labels == FREE) & ~ends])
+    points[side] = round_one.onto(points[side])
+    return SolidMesh(points, cells, faces, labels, (round_one,))
+
+
+def generate(build: Callable, sizes: Sizes, turn: int, look: Callable | None = None) -> tuple[np.ndarray, np.ndarray]:
+    """Points and tetrahedra of what `build` puts into gmsh, also shown to `look`; on curved surfaces `turn` elements a full turn at least. Sizes of
+    0 are open: `build` sets the largest."""
+    with mesh.gmsh_session() as gmsh:
+        build(gmsh)
+        for name, value in {"FromPoints": 0, "ExtendFromBoundary": 0, "FromCurvature": turn}.items():
+            gmsh.option.setNumber(f"Mesh.MeshSize{name}", value)
+        if sizes.bulk:
+            gmsh.option.setNumber("Mesh.MeshSizeMax", sizes.bulk)
+        gmsh.option.setNumber("Mesh.Algorithm", 6)
+        gmsh.option.setNumber("Mesh.OptimizeNetgen", 1)
+        _grade(gmsh, sizes)
+        gmsh.model.mesh.generate(3)
+        found = cells_of(gmsh.model)
+        if look:
+            look(gmsh, *found)
+        return found
+
+
+def _grade(gmsh, sizes: Sizes) -> None:
+    """The size grows linearly with the distance from the points where the body touches."""
+    if not len(sizes.near) or sizes.contact >= sizes.bulk:
+        return
+    free = 1 + max(tag for _, tag in gmsh.model.getEntities(0))      # whose own numbers do not know those of another kernel
+    sources = [gmsh.model.geo.addPoint(*point, tag=free + k) for k, point in enumerate(sizes.near[::-(-len(sizes.near) // MOST_SOURCES)])]
+    gmsh.model.geo.synchronize()
+    field = gmsh.model.mesh.field
+    distance, size = field.add("Distance"), field.add("Threshold")
+    field.setNumbers(distance, "PointsList", sources)
+    for name, value in dict(InField=distance, SizeMin=sizes.contact, SizeMax=sizes.bulk, DistMin=sizes.slack,
+                            DistMax=sizes.slack + (sizes.bulk - sizes.contact) / GROWTH).items():
+        field.setNumber(size, name, value)
+    field.setAsBackgroundMesh(size)
+
+
+def cells_of(model) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices (n, 3) and tetrahedra (t, 4) of a model of gmsh, of those of second order the corners; BadInput for other elements."""
+    tags, coordinates, _ = model.mesh.getNodes()
+    kinds = {4: 4, 11: 10}
+    found = []
+    for kind in model.mesh.getElementTypes(3):
+        if kind not in kinds:
+            raise BadInput(f"it has elements '{model.mesh.getElementProperties(kind)[0]}' (accepted: tetrahedra of 4 or 10 nodes)")
+        found.append(model.mesh.getElementsByType(kind)[1].reshape(-1, kinds[kind])[:, :4])
+    if not found:
+        raise BadInput("it has no tetrahedra")
+    used, cells = np.unique(np.vstack(found), return_inverse=True)
+    row = np.full(int(max(tags.max(), used.max())) + 1, -1)
+    row[tags] = np.arange(len(tags))
+    if (row[used] < 0).any():
+        raise BadInput(f"a tetrahedron names node {used[row[used] < 0][0]}, which is not there")
+    points = coordinates.reshape(-1, 3)[row[used]]
+    return points, right_handed(points, cells.reshape(-1, 4))
+
+
+def expected_cells(volume: float, sizes: Sizes) -> float:
+    """About how many tetrahedra a body gets: those of its bulk, and around where it touches, in layers whose area grows with the distance."""
+    bulk = volume / (FILL * sizes.bulk**3)
+    if not len(sizes.near) or sizes.contact >= sizes.bulk:
+        return bulk
+    away = np.linspace(0, (sizes.bulk - sizes.contact) / GROWTH, 200)
+    patch = np.ptp(sizes.near, axis=0).max() / 2 + sizes.slack
+    return bulk + np.trapezoid(np.pi * (patch + away)**2 / (FILL * (sizes.contact + GROWTH * away)**3), away)
+
+
+# ---- several bodies in one file
+
+def stack(meshes: list[SolidMesh], centres: np.ndarray) -> tuple[SolidMesh, np.ndarray]:
+    """All bodies as one mesh, and the body (t,) of each tetrahedron."""
+    first = np.cumsum([0, *(len(one.points) for one in meshes)])
+    together = SolidMesh(np.vstack([one.points + centre for one, centre in zip(meshes, centres)]), np.vstack([one.cells + k for one, k in zip(meshes, first)]),
+                         np.vstack([one.faces + k for one, k in zip(meshes, first)]), np.concatenate([one.labels for one in meshes]))
+    return together, np.repeat(np.arange(len(meshes)), [len(one.cells) for one in meshes])
+
+
+def write(together: SolidMesh, regions: np.ndarray, path: Path) -> None:
+    """Medit's text format: tetrahedra with the number of their body, boundary faces with their labels; vertices count from 1."""
+    with open(path, "w") as file:
+        file.write(f"MeshVersionFormatted 2\nDimension 3\nVertices\n{len(together.points)}\n")
+        file.writelines(f"{x:.17g} {y:.17g} {z:.17g} 0\n" for x, y, z in together.points)
+        file.write(f"Tetrahedra\n{len(together.cells)}\n")
+        file.writelines(f"{a} {b} {c} {d} {region}\n" for (a, b, c, d), region in zip(together.cells + 1, regions))
+        file.write(f"Triangles\n{len(together.faces)}\n")
+        file.writelines(f"{a} {b} {c} {label}\n" for (a, b, c), label in zip(together.faces + 1, together.labels))
+        file.write("End\n")

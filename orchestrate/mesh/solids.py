@@ -1,0 +1,415 @@
+"""Bodies in three dimensions: [[body]] tables as solids with signed distances, their places and motions, SI units. y is up, z completes x and y.
+
+    [[body]]
+    shape = "ball"               # radius
+                                 # box: width, height, depth along x, y, z;  cylinder: radius, height, its axis y
+                                 # mesh: file, tetrahedra (gmsh's .msh, Medit's .mesh) or a geometry that gmsh meshes (.geo, .step, .stp), lengths in m;
+                                 # a physical surface `contact` may touch, others never; without one the whole outer surface may
+    position = [0, 1.5, 0]       # centre of its volume at the start [m]
+    turn = [0, 0, 30]            # turned about it: axis times angle [deg]; angle = 30 is a turn about z
+    velocity = [0, -10, 0]       # [m/s]
+    spin = [0, 0, 5]             # [rad/s]; spin = 5 is one about z
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+
+from ..geometry import tumbling
+from . import curved, solid_file
+from ..failure import BadInput, brief
+from ..geometry.outlines import normal_of
+from .solid_mesh import MOST_CELLS, Sizes, SolidMesh, expected_cells, mesh_shape
+from ..input.tables import LONGEST, SHORTEST, Table
+from ..geometry.tumbling import rotation
+
+SHAPES = {"ball": ("radius",), "box": ("width", "height", "depth"), "cylinder": ("radius", "height"), "mesh": ("file",)}
+MOTION = ("angle", "turn", "spin")
+SAMPLES = 1500               # points on a surface where its shape is wanted as points
+NEAREST = 16                 # triangles of a surface, by their centres, among which the nearest one is sought
+AT_ONCE = 500_000            # pairs of a point and a triangle
+
+
+class Shape(Protocol):
+    """What a solid is, about its centre of volume and not turned."""
+
+    extent: np.ndarray        # along x, y, z [m]
+    volume: float             # [m3]
+    area: float               # [m2]
+    reach: float              # distance of its farthest point from the centre [m]
+    moments: np.ndarray       # (3, 3), of inertia over the density, about the centre [m5]
+
+    def gap(self, points: np.ndarray) -> np.ndarray:
+        """Signed distances (n,) of points (n, 3), negative inside."""
+
+    def sampled(self, spacing: float) -> np.ndarray:
+        """Points (n, 3) on the surface, corners and edges included, about `spacing` [m] from each other."""
+
+    def is_mirrored(self, normal: np.ndarray) -> bool:
+        """Whether it is its own mirror image in the plane through its centre with this unit normal."""
+
+
+@dataclass(frozen=True)
+class Ball:
+    radius: float
+
+    @property
+    def extent(self) -> np.ndarray:
+        return np.full(3, 2 * self.radius)
+
+    @property
+    def volume(self) -> float:
+        return 4 / 3 * math.pi * self.radius**3
+
+    @property
+    def area(self) -> float:
+        return 4 * math.pi * self.radius**2
+
+    @property
+    def reach(self) -> float:
+        return self.radius
+
+    @property
+    def moments(self) -> np.ndarray:
+        return 2 / 5 * self.volume * self.radius**2 * np.eye(3)
+
+    def gap(self, points: np.ndarray) -> np.ndarray:
+        return np.linalg.norm(points, axis=1) - self.radius
+
+    def sampled(self, spacing: float) -> np.ndarray:
+        """A spiral of points of equal shares, golden section turns apart, from the lowest to the highest."""
+        n = max(20, round(self.area / spacing**2))
+        y, turn = np.linspace(-1, 1, n), math.pi * (3 - math.sqrt(5)) * np.arange(n)
+        away = np.sqrt(np.maximum(1 - y**2, 0))
+        return self.radius * np.column_stack([away * np.cos(turn), y, away * np.sin(turn)])
+
+    def is_mirrored(self, normal: np.ndarray) -> bool:
+        return True
+
+
+@dataclass(frozen=True)
+class Box:
+    extent: np.ndarray
+
+    @property
+    def volume(self) -> float:
+        return float(np.prod(self.extent))
+
+    @property
+    def area(self) -> float:
+        a, b, c = self.extent
+        return float(2 * (a * b + b * c + c * a))
+
+    @property
+    def reach(self) -> float:
+        return float(np.linalg.norm(self.extent) / 2)
+
+    @property
+    def moments(self) -> np.ndarray:
+        square = self.extent**2
+        return self.volume / 12 * np.diag(square.sum() - square)
+
+    def gap(self, points: np.ndarray) -> np.ndarray:
+        beyond = abs(points) - self.extent / 2
+        return np.linalg.norm(np.maximum(beyond, 0), axis=1) + np.minimum(beyond.max(axis=1), 0)
+
+    def sampled(self, spacing: float) -> np.ndarray:
+        along = [np.linspace(-half, half, 1 + max(2, math.ceil(2 * half / spacing))) for half in self.extent / 2]
+        faces = []
+        for axis in range(3):
+            sides = [one if k != axis else one[[0, -1]] for k, one in enumerate(along)]
+            faces.append(np.stack(np.meshgrid(*sides, indexing="ij"), axis=-1).reshape(-1, 3))
+        return np.unique(np.vstack(faces), axis=0)
+
+    def is_mirrored(self, normal: np.ndarray) -> bool:
+        return abs(normal).max() > 1 - 1e-12
+
+
+@dataclass(frozen=True)
+class Cylinder:
+    """Its axis is y."""
+
+    radius: float
+    height: float
+
+    @property
+    def extent(self) -> np.ndarray:
+        return np.array([2 * self.radius, self.height, 2 * self.radius])
+
+    @property
+    def volume(self) -> float:
+        return math.pi * self.radius**2 * self.height
+
+    @property
+    def area(self) -> float:
+        return 2 * math.pi * self.radius * (self.radius + self.height)
+
+    @property
+    def reach(self) -> float:
+        return math.hypot(self.radius, self.height / 2)
+
+    @property
+    def moments(self) -> np.ndarray:
+        across = (3 * self.radius**2 + self.height**2) / 12
+        return self.volume * np.diag([across, self.radius**2 / 2, across])
+
+    def gap(self, points: np.ndarray) -> np.ndarray:
+        beyond = np.column_stack([np.hypot(points[:, 0], points[:, 2]) - self.radius, abs(points[:, 1]) - self.height / 2])
+        return np.linalg.norm(np.maximum(beyond, 0), axis=1) + np.minimum(beyond.max(axis=1), 0)
+
+    def sampled(self, spacing: float) -> np.ndarray:
+        def ring(radius: float, y: float) -> np.ndarray:
+            turn = 2 * math.pi * np.arange(n := max(1, math.ceil(2 * math.pi * radius / spacing))) / n
+            return np.column_stack([radius * np.cos(turn), np.full(n, y), radius * np.sin(turn)])
+        side = np.linspace(-self.height / 2, self.height / 2, 1 + max(2, math.ceil(self.height / spacing)))
+        inner = np.linspace(0, self.radius, 1 + max(2, math.ceil(self.radius / spacing)))[:-1]
+        return np.vstack([ring(self.radius, y) for y in side] + [ring(r, y) for r in inner for y in side[[0, -1]]])
+
+    def is_mirrored(self, normal: np.ndarray) -> bool:
+        return abs(normal[1]) < 1e-12 or abs(normal[1]) > 1 - 1e-12
+
+
+@dataclass(frozen=True)
+class Surface:
+    """The boundary of a mesh of tetrahedra: triangles (t, 3, 3) of corners, counter-clockwise seen from outside."""
+
+    triangles: np.ndarray
+
+    @cached_property
+    def corners(self) -> np.ndarray:
+        return np.unique(self.triangles.reshape(-1, 3), axis=0)
+
+    @property
+    def extent(self) -> np.ndarray:
+        return np.ptp(self.corners, axis=0)
+
+    @property
+    def volume(self) -> float:
+        a, b, c = self.triangles.transpose(1, 0, 2)
+        return float((a * np.cross(b, c)).sum() / 6)
+
+    @property
+    def area(self) -> float:
+        a, b, c = self.triangles.transpose(1, 0, 2)
+        return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)
+
+    @property
+    def reach(self) -> float:
+        return float(np.linalg.norm(self.corners, axis=1).max())
+
+    @cached_property
+    def moments(self) -> np.ndarray:
+        """The integral of x x^T over the tetrahedra between the centre and each triangle is 1/120 of six times its volume times (s s^T + a a^T + b b^T +
+        c c^T), s = a + b + c."""
+        a, b, c = self.triangles.transpose(1, 0, 2)
+        six = (a * np.cross(b, c)).sum(axis=1)
+        square = sum(np.einsum("t,ti,tj->ij", six, one, one) for one in (a + b + c, a, b, c)) / 120
+        return np.trace(square) * np.eye(3) - square
+
+    def gap(self, points: np.ndarray) -> np.ndarray:
+        """The distance from the nearest triangle; inside, where they are seen under a full solid angle."""
+        chunk = max(1, AT_ONCE // len(self.triangles))
+        distance = np.concatenate([self._distance(points[at:at + chunk]) for at in range(0, len(points), chunk)])
+        low, high = self.corners.min(axis=0), self.corners.max(axis=0)
+        for at in np.array_split(boxed := np.flatnonzero(((points > low) & (points < high)).all(axis=1)), len(boxed) // chunk + 1):
+            distance[at] *= np.where(self._solid_angle(points[at]) > 2 * math.pi, -1, 1)
+        return distance
+
+    def _distance(self, points: np.ndarray) -> np.ndarray:
+        away = ((points[:, None] - self.triangles.mean(axis=1))**2).sum(axis=2)
+        few = min(NEAREST, len(self.triangles))
+        near = self.triangles[np.argpartition(away, few - 1, axis=1)[:, :few]]
+        return distance_to_triangles(points[:, None], near).min(axis=1)
+
+    def _solid_angle(self, points: np.ndarray) -> np.ndarray:
+        """Of all triangles, seen from points: 4 pi inside, 0 outside (van Oosterom and Strackee 1983)."""
+        a, b, c = (self.triangles[:, k] - points[:, None] for k in range(3))
+        la, lb, lc = (np.linalg.norm(one, axis=2) for one in (a, b, c))
+        below = la * lb * lc + (a * b).sum(axis=2) * lc + (b * c).sum(axis=2) * la + (c * a).sum(axis=2) * lb
+        return 2 * np.arctan2((a * np.cross(b, c)).sum(axis=2), below).sum(axis=1)
+
+    def sampled(self, spacing: float) -> np.ndarray:
+        """Corners, and points of a grid in each triangle whose sides are longer than the spacing."""
+        longest = np.linalg.norm(self.triangles - np.roll(self.triangles, 1, axis=1), axis=2).max(axis=1)
+        parts, found = np.ceil(longest / spacing).astype(int), [self.corners]
+        for n in np.unique(parts[parts > 1]):
+            i, j = np.array([(i, j) for i in range(n + 1) for j in range(n + 1 - i)]).T
+            weights = np.column_stack([i, j, n - i - j]) / n
+            found.append(np.einsum("pk,tkx->tpx", weights, self.triangles[parts == n]).reshape(-1, 3))
+        return np.vstack(found)
+
+    def is_mirrored(self, normal: np.ndarray) -> bool:
+        return False
+
+
+def distance_to_triangles(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Distances (...) of points (..., 3) from triangles (..., 3, 3)."""
+    a, b, c = (triangles[..., k, :] for k in range(3))
+    def dot(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        return (u * v).sum(axis=-1)
+    normal = np.cross(b - a, c - a)
+    square = np.maximum(dot(normal, normal), np.finfo(float).tiny)
+    inside = np.all([dot(np.cross(q - p, points - p), normal) >= 0 for p, q in ((a, b), (b, c), (c, a))], axis=0)
+    found = np.where(inside, abs(dot(points - a, normal)) / np.sqrt(square), np.inf)
+    for p, q in ((a, b), (b, c), (c, a)):
+        s = np.clip(dot(points - p, q - p) / np.maximum(dot(q - p, q - p), np.finfo(float).tiny), 0, 1)
+        found = np.minimum(found, np.linalg.norm(points - p - s[..., None] * (q - p), axis=-1))
+    return found
+
+
+@dataclass(frozen=True)
+class Solid:
+    """A shape with its centre of volume at `centre`, turned by the matrix `rotation`; where gmsh is to mesh a file, that `geometry` and where in it
+    the centre is."""
+
+    shape: Shape
+    centre: np.ndarray
+    rotation: np.ndarray
+    geometry: tuple[Path, np.ndarray] | None = None
+
+    @property
+    def volume(self) -> float:
+        return self.shape.volume
+
+    @property
+    def area_centre(self) -> np.ndarray:
+        return self.centre
+
+    @property
+    def extent(self) -> np.ndarray:
+        return self.shape.extent
+
+    @property
+    def reach(self) -> float:
+        return self.shape.reach
+
+    @property
+    def radius(self) -> float | None:
+        """That of a ball, None for anything else."""
+        return self.shape.radius if isinstance(self.shape, Ball) else None
+
+    @property
+    def half_thickness(self) -> float:
+        """What stands for the radius of a body that is no ball: half its smallest extent, or 3 volume / area where that is less."""
+        return float(min(self.extent.min() / 2, 3 * self.volume / self.shape.area))
+
+    def placed(self, centre: np.ndarray, rotation: np.ndarray) -> "Solid":
+        return replace(self, centre=self.centre + centre, rotation=rotation @ self.rotation)
+
+    def turned(self, turn: np.ndarray, spin: np.ndarray, t: float) -> np.ndarray:
+        """The matrix at time t of a body that begins with a turn [rad] and a spin [rad/s]."""
+        return tumbling.turned(self.shape.moments, rotation(turn), spin, t)
+
+    def fastest(self, turn: np.ndarray, spin: np.ndarray) -> float:
+        """No spin [rad/s] is larger that a turned body comes to which begins with this one."""
+        return tumbling.fastest(self.shape.moments, rotation(turn), spin)
+
+    def carried(self, moved: "Solid", points: np.ndarray) -> np.ndarray:
+        """Points of this solid carried along to where it is moved."""
+        return moved.centre + (points - self.centre) @ self.rotation @ moved.rotation.T
+
+    @cached_property
+    def points(self) -> np.ndarray:
+        """Points on the surface."""
+        return self.sampled(math.sqrt(self.shape.area / SAMPLES))
+
+    def sampled(self, spacing: float) -> np.ndarray:
+        return self.shape.sampled(spacing) @ self.rotation.T + self.centre
+
+    def samples(self, size: float) -> tuple[np.ndarray, float]:
+        """Points on the surface, twice as dense as elements of a size, and their distance [m]."""
+        spacing = math.sqrt(self.shape.area / np.clip(4 * self.shape.area / size**2, SAMPLES, 20000))
+        return self.sampled(spacing), spacing
+
+    def width(self, count: int, spacing: float) -> float:
+        """Of a patch with so many of the samples."""
+        return 2 * spacing * math.sqrt(count / math.pi)
+
+    def gap(self, points: np.ndarray) -> np.ndarray:
+        """Signed distances (n,) of points (n, 3), negative inside."""
+        return self.shape.gap((points - self.centre) @ self.rotation)
+
+    def least(self, gap: Callable[[np.ndarray], np.ndarray]) -> float:
+        """The least value of a distance on the surface: of a ball exactly, else at its points."""
+        return float(gap(self.centre[None])[0] - self.radius if self.radius else gap(self.points).min())
+
+    def normal_from(self, other) -> np.ndarray:
+        """The outward normal of another body or an obstacle where this one is nearest to it."""
+        if not getattr(other, "is_exact", True):
+            return other.nearest(self)[1]
+        if self.radius:
+            return normal_of(other, self.centre)
+        if getattr(other, "radius", None):
+            return -normal_of(self, other.centre)
+        return normal_of(other, self.points[other.gap(self.points).argmin()])
+
+
+# ---- meshes
+
+def mesh_of(body, sizes: Sizes | None, folded: tuple[int, ...]) -> SolidMesh:
+    """The mesh of a body (bodies.Body) about its centre of volume, turned as it is at the start: that of its file, or one with sizes, which are of the
+    body not turned; of that what lies on the positive side of the planes across the axes `folded`."""
+    solid = body.at(0.0, np.zeros(3))
+    if body.mesh:
+        return _with_curves(replace(body.mesh, points=body.mesh.points @ solid.rotation.T))
+    expected = expected_cells(solid.volume, sizes) / 2**len(folded)
+    if expected > MOST_CELLS:
+        raise BadInput(f"mesh_size: '{body.name}' would have about {expected:.2g} tetrahedra (accepted: up to {MOST_CELLS}; larger mesh_size, contact_mesh_size or accuracy)")
+    if solid.geometry:
+        path, centre = solid.geometry
+        made = solid_file.meshed(path, replace(sizes, near=sizes.near + centre))
+        return _with_curves(replace(made, points=(made.points - (centre if solid.radius else made.centre)) @ solid.rotation.T))
+    shape = solid.shape
+    lengths = shape.extent if isinstance(shape, Box) else np.array([shape.radius] if isinstance(shape, Ball) else [shape.radius, shape.height])
+    return mesh_shape(type(shape).__name__.lower(), lengths, solid.rotation, folded, replace(sizes, near=sizes.near @ solid.rotation.T), solid.half_thickness)
+
+
+def _with_curves(made: SolidMesh) -> SolidMesh:
+    """The same with the spheres and cylinders that it has."""
+    return replace(made, curved=tuple(one for one, _ in curved.surfaces(made.points, made.faces)))
+
+
+# ---- tables
+
+def shape(table: Table, folder: Path) -> tuple[Solid, SolidMesh | None]:
+    """The solid of a body about its centre of volume, and its mesh where a file brings it."""
+    kind = table.given["shape"]
+    if kind == "mesh":
+        return _of_file(table, folder)
+    sizes = [table.number(key, SHORTEST, LONGEST) for key in SHAPES[kind]]
+    found = Box(np.array(sizes)) if kind == "box" else {"ball": Ball, "cylinder": Cylinder}[kind](*sizes)
+    return Solid(found, np.zeros(3), np.eye(3)), None
+
+
+def _of_file(table: Table, folder: Path) -> tuple[Solid, SolidMesh | None]:
+    name = table.text("file", "")
+    if not name:
+        raise BadInput(f"{table.at('file')}: is missing (accepted: {', '.join(solid_file.MESHES + solid_file.GEOMETRIES)})")
+    path = folder / name
+    try:
+        found = solid_file.read(path)
+    except BadInput as error:
+        raise BadInput(f"{table.path}.file: {error}") from None
+    ball = next((one for one, own in curved.surfaces(found.points, found.faces) if not len(one.axis) and len(own) == len(found.faces)), None)
+    centre = ball.centre if ball else found.centre
+    centred = found.moved(-centre)
+    shape = Ball(ball.radius) if ball else Surface(centred.points[centred.faces])
+    if solid_file.is_geometry(path):
+        return Solid(shape, np.zeros(3), np.eye(3), (path, centre)), None
+    return Solid(shape, np.zeros(3), np.eye(3)), centred
+
+
+def motion(table: Table) -> dict:
+    """Where a body is at the start and how it moves: position [m], turn [rad], velocity [m/s], spin [rad/s], vectors (3,)."""
+    if "angle" in table and "turn" in table:
+        raise BadInput(f"{table.path}.angle: '{brief(table.given['angle'])}' stands beside turn (accepted: angle about z, or turn = [x, y, z])")
+    turn = [0.0, 0.0, table.number("angle", -36000, 36000)] if "angle" in table else table.numbers("turn", -36000, 36000, (0.0,) * 3, 3)
+    about_z = "spin" in table and not isinstance(table.given["spin"], list)
+    spin = [0.0, 0.0, table.number("spin", -1e12, 1e12)] if about_z else table.numbers("spin", -1e12, 1e12, (0.0,) * 3, 3)
+    return {"position": table.numbers("position", -LONGEST, LONGEST, count=3), "angle": np.radians(turn),
+            "velocity": table.numbers("velocity", -LONGEST, LONGEST, (0.0,) * 3, 3), "spin": np.array(spin)}

@@ -1,0 +1,207 @@
+"""The error of a run, estimated from a second one with larger elements and steps; finer runs until it is below what is asked.
+
+Of the two runs of a pair the finer is the answer. What an answer differs by between them is about its error: elements and steps of
+the coarser are COARSER times as large, so that an error quadratic in them doubles. But one difference can be small by chance, and impulse,
+rebound and energy of an impact without friction are one number, small together. What cannot be small by chance is the largest difference
+of the two runs on their way: of the running impulse, the velocities, the elastic energy, the friction work. So the error that is stated of an answer is
+    BOUND D^(1/3) d^(2/3),   d: the largest difference of its course over its scale; D: the mean of the promised answers' differences over their usual ones,
+and no less than their difference: an error that 95 of 100 runs keep (docs/promise.md; BOUND is calibrated on other scenes), and so some three
+times the usual one. It is that of mesh and steps: penalty and slip velocity are the same in all runs. Where that of a promised answer is
+more than WORTH times what is asked finer runs follow. Where the contact time alone is off and a finer run has not halved its estimate it scatters
+with the vibration at the last touch (by 0.8 % rms in hard impacts, on any mesh and at any step that was tried): no finer run follows, and the
+estimate says by how much.
+"""
+
+import math
+import os
+import shutil
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import numpy as np
+
+from ..failure import Failure
+from ..input.parameters import Value
+from .results import Answers, suffixes
+
+COARSER = math.sqrt(2)
+COARSE, FINE = "coarser", "finer"   # folders of the runs beside the main one
+MOST = 2                    # refinements: elements and steps are then half as large as at first
+SIZES = ("mesh_size", "contact_mesh_size", "dt")
+LARGEST = 0.4               # accuracy that the scripts take
+LOOSER = 2
+WORTH = 1.5                 # of what is asked: a stated error that a finer run is worth its price for
+REGULARISED = ("penalty", "slip_velocity")
+NO_ANSWER = (11, 12)        # exit codes of a run that the step or the material ended
+# What the answers of a pair usually differ by, beside each other; the first six are promised. What is stated of them; both calibrated over other
+# scenes than those of docs/promise.md.
+USUAL = {"impulse": 0.06, "rebound": 0.12, "rebound_spin": 0.08, "energy": 0.16, "friction_work": 0.04, "thresholded_contact_time": 0.4,
+         "contact_time": 0.8, "peak_force": 1.2}
+BOUND = {"impulse": 0.41, "rebound": 0.49, "rebound_spin": 0.94, "energy": 0.70, "friction_work": 1.20, "thresholded_contact_time": 3.6,
+         "contact_time": 6.0, "peak_force": 6.2}
+PROMISED = tuple(USUAL)[:6]
+COURSE = {"thresholded_contact_time": "impulse", "contact_time": "impulse", "peak_force": "impulse"}   # whose course stands for theirs
+THROUGH = 2                 # friction that goes another way changes speed and spin, too: its share in them
+NONE = 1e-12                # a difference that is round-off
+SCATTERS = "thresholded_contact_time"
+OF_ITSELF = "friction_work of itself"   # accuracy_of = friction_work
+
+Scaled = Callable[[Mapping, Mapping, float, bool], dict[str, Value]]
+Solve = Callable[[dict[str, Value], Path], None]   # runs the scene with these values in a folder; Failure where it fails
+
+
+def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solve, read: Callable, scaled: Scaled | None = None) -> dict:
+    """What joins the summary of the run in `stage`, made from the scene `values`: estimated_error (by answer, see difference(); None if
+    it could not be estimated), estimated_error_excludes (what all runs have alike), estimate_cpu_seconds, refinements, and the sentences `warnings`.
+
+    Where sizes and steps follow from the accuracy and the estimate is above it, finer runs take the run's place in `stage`.
+    `read` gives the Answers of a folder, `scaled` the entries of the scene with larger or smaller elements and steps (left out: other).
+    """
+    scaled = scaled or other
+    coarser, finer = stage / COARSE, stage / FINE
+    answers = read(stage)
+    summary, used = answers.summary, answers.used
+    asked, seconds, refinements, estimated, before, sentences = values["accuracy"], 0.0, 0, None, math.inf, []
+    try:
+        solve(scaled(values, used, COARSER, own_mesh), coarser)
+    except Failure as failure:
+        if failure.code not in NO_ANSWER:
+            raise
+        sentences = [f"the error is not estimated: the run with {COARSER:.1f} times larger elements and steps ended with: {failure}"]
+    while not sentences:
+        before_it = read(coarser)
+        coarse = before_it.summary
+        seconds += coarse["cpu_seconds"]
+        if all(coarse.get(name) == summary.get(name) is not None for name in ("dofs", "steps")):
+            sentences = ["the error is not estimated: steps 1.4 times larger are too large for this scene, a second run took the same ones: ask for a smaller accuracy"]
+            break
+        estimated = errors(difference(summary, coarse, answers.speed, used.get("radius")), course(answers, before_it))
+        above = [name for name in wanted(values["accuracy_of"]) if estimated[name] > WORTH * asked]
+        scatters, before = above == [SCATTERS] and estimated[SCATTERS] > before / 2, estimated[SCATTERS]
+        sentences = excess(estimated, asked, values["accuracy_of"])
+        sentences = sentences and (touches(summary, coarse) or sentences)
+        fixed = not own_mesh or any(values[name] for name in SIZES)
+        if not above or scatters or fixed or refinements == MOST or summary.get("ellipticity_lost_time") is not None:
+            break
+        try:
+            solve(scaled(values, used, 1 / COARSER, own_mesh) | {"fields": values["fields"]}, finer)
+        except Failure as failure:
+            if failure.code not in NO_ANSWER:
+                raise
+            sentences.append(f"a run with {COARSER:.1f} times smaller elements and steps ended with: {failure}")
+            break
+        _swap(stage, coarser, finer)
+        answers = read(stage)
+        summary, used = answers.summary, answers.used
+        refinements += 1
+        sentences = []
+    excludes = [*REGULARISED, *([] if own_mesh else ["mesh"])]
+    if estimated and not own_mesh:
+        sentences.append("estimated errors are those of the step: what the mesh of the file is good for they do not say: run a finer one beside it")
+    for folder in (coarser, finer):
+        shutil.rmtree(folder, ignore_errors=True)
+    return {"estimated_error": estimated, "estimated_error_excludes": excludes, "estimate_cpu_seconds": seconds, "refinements": refinements, "warnings": sentences}
+
+
+def _swap(stage: Path, coarser: Path, finer: Path) -> None:
+    """The run in `stage` becomes the coarser one, that in `finer` takes its place."""
+    shutil.rmtree(coarser)
+    coarser.mkdir()
+    kept = ("checkpoint.json", coarser.name, finer.name)     # what the run was asked for stays where it is
+    for source, target in ((stage, coarser), (finer, stage)):
+        for entry in [entry for entry in source.iterdir() if entry.name not in kept]:
+            os.rename(entry, target / entry.name)
+    shutil.rmtree(finer)
+
+
+def other(values: Mapping[str, Value], used: Mapping[str, Value], factor: float, own_mesh: bool = True) -> dict[str, Value]:
+    """The scene `values` with `factor` times the elements and steps that it had as `used`; on a mesh file with other steps only.
+
+    The accuracy then sets the adaptive step alone, as the sizes are given; the contact's own parameters stay as they were.
+    """
+    sizes = {name: factor * used[name] for name in SIZES if used[name] > 0 and (own_mesh or name == "dt")}
+    if own_mesh:
+        sizes["mesh_size"] = min(sizes["mesh_size"], used["radius"])
+    kept = {name: used[name] for name in ("penalty", "slip_velocity", "friction_dynamic")}
+    return dict(values) | kept | sizes | {"accuracy": min(LARGEST, factor**2 * used["accuracy"]), "fields": 0, "modes": 0}
+
+
+def difference(fine: Mapping, coarse: Mapping, speed: float, radius: float | None) -> dict[str, float]:
+    """How far the answers of two summaries differ, each over its scale: impulse, times and force over themselves, velocities and
+    spin over `speed` [m/s] (spin times `radius` [m]; of several bodies the largest, and spin times its reach), energies and friction work over the largest energy, where the summary has it,
+    else over that at the start."""
+    def value(summary: Mapping, name: str) -> float:
+        found = summary.get(name)
+        return 0.0 if found is None or math.isnan(found) else float(found)
+
+    def apart(name: str, scale: float) -> float:
+        return abs(value(fine, name) - value(coarse, name)) / abs(scale) if scale else 0.0
+
+    energy = value(fine, "largest_energy") or value(fine, "energy_initial") or value(fine, "energy_final")
+    rebound = max(math.hypot(*(apart(f"rebound_v{axis}{of}", speed) for axis in "xyz")) for of in suffixes(fine))
+    rim = max(math.hypot(*(apart(f"rebound_spin{about}{of}", speed / (value(fine, f"reach{of}") or radius)) for about in ("", "_x", "_y"))) for of in suffixes(fine))
+    found = {"impulse": apart("impulse", value(fine, "impulse")), "rebound": rebound, "rebound_spin": rim, "energy": max(apart(name, energy) for name in ("energy_final", "vibration_energy")),
+             "friction_work": apart("friction_work", energy)}
+    for name in ("thresholded_contact_time", "contact_time", "peak_force"):
+        found[name] = apart(name, value(fine, name))
+    return found | {OF_ITSELF: apart("friction_work", value(fine, "friction_work"))}
+
+
+def course(fine: Answers, coarse: Answers) -> dict[str, float]:
+    """How far two runs are apart on their way, by answer and over its scale as in difference(): impulse, velocities, spins, elastic energy
+    (with the contact's) and friction work at the time when they are farthest from each other."""
+    summary, history = fine.summary, (fine.history, coarse.history)
+    ends = [one["t"] for one in history]
+    t = np.union1d(*ends)
+    t = t[t <= min(one[-1] for one in ends)]
+
+    def apart(values: Callable[[Mapping], list[np.ndarray]], scale: float) -> float:
+        first, second = (np.array([np.interp(t, one["t"], each) for each in values(one)]) for one in history)
+        return float(np.linalg.norm(first - second, axis=0).max() / abs(scale)) if scale else 0.0
+
+    def vector(*names: str) -> Callable[[Mapping], list[np.ndarray]]:
+        return lambda one: [one[name] for name in names if name in one]
+
+    energy, work, bodies = summary["largest_energy"], summary["friction_work"] or 0.0, suffixes(fine.history)
+    reach = {of: summary.get(f"reach{of}") or fine.used["radius"] for of in bodies}
+    found = {"impulse": apart(lambda one: [np.cumsum(one["normal_force"] * one["dt"])], summary["impulse"]),
+             "rebound": max(apart(vector(*(f"v{axis}{of}" for axis in "xyz")), fine.speed) for of in bodies),
+             "rebound_spin": max(apart(vector(*(f"spin{about}{of}" for about in ("", "_x", "_y"))), fine.speed / reach[of]) for of in bodies),
+             "energy": apart(lambda one: [one["elastic"] + one["contact"]], energy), "friction_work": apart(vector("friction_work"), energy)}
+    for name in ("rebound", "rebound_spin"):
+        found[name] += THROUGH * found["friction_work"]
+    found |= {name: found[stands] for name, stands in COURSE.items()}
+    return found | {OF_ITSELF: found["friction_work"] * energy / work if work else 0.0}
+
+
+def errors(apart: Mapping[str, float], way: Mapping[str, float]) -> dict[str, float]:
+    """The error that is stated of every answer, from the differences of a pair at the end and on its way (course()), in the same units."""
+    shares = [apart[name] / USUAL[name] for name in PROMISED if apart[name] > NONE]
+    whole = sum(shares) / len(shares) if shares else 0.0
+    found = {name: max(apart[name], bound * math.cbrt(whole * way[name]**2)) for name, bound in BOUND.items()}
+    return found | {OF_ITSELF: found["friction_work"] * way[OF_ITSELF] / way["friction_work"] if way["friction_work"] else 0.0}
+
+
+def wanted(also: str) -> list[str]:
+    """The promised answers, and the one that accuracy_of names."""
+    return [*PROMISED, *([] if also == "promised" else [OF_ITSELF if also == "friction_work" else also])]
+
+
+def largest(estimated: Mapping[str, float]) -> float:
+    """The largest estimated error of the promised answers."""
+    return max(estimated[name] for name in PROMISED)
+
+
+def touches(fine: Mapping, coarse: Mapping) -> list[str]:
+    """A sentence where the runs of a pair saw different numbers of touches, so that what they differ by estimates nothing."""
+    seen, other = (summary.get("contact_intervals") for summary in (fine, coarse))
+    return [f"touches: contact intervals are {seen} in the run and {other} in one with {COARSER:.1f} times larger elements and steps: answers that are beyond the accuracy asked for "
+            "are known to no more than that: look at contacts.csv for what each touch does, or ask for a smaller accuracy"] if seen != other else []
+
+
+def excess(estimated: Mapping[str, float], accuracy: float, also: str) -> list[str]:
+    """A sentence about the answers whose estimated error is above the accuracy; above LOOSER times it where it is not promised."""
+    limits = {name: accuracy for name in wanted(also)} | {name: LOOSER * accuracy for name in ("contact_time", "peak_force") if name != also}
+    above = [f"{name.replace('_', ' ')} {100 * estimated[name]:.2g} %" for name, limit in limits.items() if estimated[name] > limit]
+    return [f"estimated errors above the {100 * accuracy:g} % that are asked for: {', '.join(above)}: take these answers as known to no more than that, or ask for "
+            "a smaller accuracy (contact times and peak forces scatter in hard impacts on any mesh)"] if above else []

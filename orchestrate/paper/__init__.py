@@ -1,0 +1,1 @@
+"""The page of the paper's statements, each beside our results."""

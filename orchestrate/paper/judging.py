@@ -1,0 +1,210 @@
+"""What the statements of the paper are judged with: the verdicts, the results that `make paper` leaves, error bars.
+
+Every verdict follows from numbers by the rule in the docstring of its statement (paper_limits, paper_friction, paper_impacts, paper_pairs, paper_bodies,
+paper_times). Section 3 is told of the paper's law, St. Venant-Kirchhoff (5), except where it names (6): with it a verdict is decided; the neo-Hookean
+answer, which converges, stands beside it.
+
+Where that law loses ellipticity in a run that decides, its answer depends on the mesh, and "agrees" becomes "partly" (`_on_any_mesh`), whatever the
+statement is; but not of what every step keeps exactly, on any mesh: the discrete energy and momentum.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import cache, wraps
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from ..output.results import read_frame, read_history, read_scene, read_summary
+from ..sweeps import study
+from ..sweeps import sweep, sweep_figures
+from ..report import vibration
+
+AGREES, DIFFERS, PARTLY, OPEN = "agrees", "does not agree", "partly", "not decided"
+CONSTANT = 1e-9             # of the energy at the start: below, an energy is constant
+LAWS = {"svk": "SVK", "neohookean": "neo-Hookean"}   # the paper's law first
+
+History = dict[str, np.ndarray]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What we found: the verdict, our number in words, the pictures, the folders of the runs it rests on, and when those of them with
+    St. Venant-Kirchhoff that decide lost ellipticity [s], None or nan where they kept it."""
+
+    verdict: str
+    ours: str
+    figures: list[Path] = field(default_factory=list)
+    runs: list[Path] = field(default_factory=list)
+    lost: list[float | None] = field(default_factory=list)
+
+
+class Results:
+    """The finished cases in a folder of results."""
+
+    def __init__(self, folder: Path):
+        self.folder = folder
+
+    def run(self, name: str) -> Path:
+        """The folder of a run."""
+        return self.folder / name
+
+    def has(self, name: str) -> bool:
+        """Whether a run is there."""
+        return (self.run(name) / "summary.json").exists()
+
+    def picture(self, name: str, kind: str) -> Path:
+        """A picture of a run."""
+        return self.run(name) / f"figures/{kind}.png"
+
+    def summary(self, name: str) -> dict:
+        """The summary of a run."""
+        return read_summary(self.run(name))
+
+    def history(self, name: str) -> History:
+        """The history of a run."""
+        return read_history(self.run(name))
+
+    def scene(self, name: str) -> dict:
+        """The parameters of a run."""
+        return read_scene(self.run(name))
+
+    def sweep(self, name: str) -> Path:
+        """The folder of a sweep."""
+        return self.folder / "sweeps" / name
+
+    def drawn(self, name: str) -> list[Path]:
+        """The picture of a sweep."""
+        return [self.sweep(name) / "sweep.png"]
+
+    def table(self, name: str) -> pd.DataFrame:
+        """The points of a sweep, from its runs."""
+        return sweep.table(loaded(name), self.sweep(name))
+
+    def sweep_runs(self, name: str) -> list[Path]:
+        """The folders of the runs of a sweep."""
+        return [study.place(self.sweep(name), point) for point in loaded(name).runs]
+
+    def pair(self, name: str, **values) -> list[Path]:
+        """The runs of the point of a sweep with these values: plain and, where the sweep refines, refined."""
+        wanted = loaded(name)
+        point = next(point for point in wanted.points if values.items() <= point.items())
+        return [study.place(self.sweep(name), point | more) for more in ([{}, wanted.refine] if wanted.refine else [{}])]
+
+    def histories(self, name: str, **values) -> list[History]:
+        """The histories of `pair`."""
+        return [read_history(folder) for folder in self.pair(name, **values)]
+
+    def summaries(self, name: str, **values) -> list[dict]:
+        """The summaries of `pair`."""
+        return [read_summary(folder) for folder in self.pair(name, **values)]
+
+    def modes(self, name: str, **values) -> list[pd.DataFrame]:
+        """The natural modes of `pair`."""
+        return [vibration.read(folder) for folder in self.pair(name, **values)]
+
+    def friction_laws(self) -> pd.DataFrame:
+        """The table that figure 3 is drawn from."""
+        return read_frame(self.folder / "friction-laws/laws.csv")
+
+    def stick_slip(self) -> pd.DataFrame:
+        """The table of the search for the paper's order of sliding and sticking."""
+        return read_frame(self.folder / "stick-slip/stick-slip.csv")
+
+
+@cache
+def loaded(name: str) -> sweep.Sweep:
+    """A built-in sweep."""
+    return sweep.load(name)
+
+
+# ---- the statements, in the order of the paper
+
+STATEMENTS: list[tuple[str, str, Callable[[Results], Finding]]] = []
+
+
+def states(item: str, text: str, exact: bool = False) -> Callable:
+    """Registers how a statement of the paper is judged; `exact`: it is about what every step keeps exactly, on any mesh."""
+    def register(find: Callable[[Results], Finding]) -> Callable[[Results], Finding]:
+        @wraps(find)
+        def judged(results: Results) -> Finding:
+            return _on_any_mesh(find(results), exact)
+        STATEMENTS.append((item, text, judged))
+        return judged
+    return register
+
+
+def _on_any_mesh(found: Finding, exact: bool) -> Finding:
+    """The rule of all statements on St. Venant-Kirchhoff: "agrees" becomes "partly" where a run that decides lost ellipticity, as another mesh
+    may decide otherwise; not where the statement is `exact`."""
+    lost = [time for time in found.lost if known(time)]
+    if found.verdict != AGREES or not lost:
+        return found
+    since = f"SVK loses ellipticity from {1e3 * min(lost):.2f} ms on"
+    if exact:
+        return replace(found, ours=f"{found.ours} ({since}; but this is kept exactly by every step, on any mesh.)")
+    return replace(found, verdict=PARTLY, ours=f"{found.ours} Partly: {since}, from where its answer depends on the mesh.")
+
+
+def of_both(of: Callable[[str], tuple[bool, str]]) -> tuple[str, str]:
+    """(verdict, words) of what holds of a law: agrees with both, partly with the paper's alone, not where the paper's does not;
+    `of` gives (holds, words) of "svk" and "neohookean"."""
+    found = {law: of(law) for law in LAWS}
+    paper, other = (holds for holds, _ in found.values())
+    return AGREES if paper and other else PARTLY if paper else DIFFERS, "; ".join(f"{LAWS[law]}: {words}" for law, (_, words) in found.items())
+
+
+def finished(results: Results, name: str) -> pd.DataFrame:
+    """The points of a sweep that finished."""
+    rows = results.table(name)
+    return rows[rows.exit == 0]
+
+
+def bar(rows: pd.DataFrame, column: str, **values) -> tuple[float, float]:
+    """(value, error bar) of the point with these values; the bar is at least the root mean square of those of `rows`."""
+    here = np.logical_and.reduce([rows[name] == value for name, value in values.items()])
+    return float(rows[column][here].iloc[0]), float(sweep_figures.bars(rows, column)[here][0])
+
+
+def within(value: float, paper: float, half_digit: float, error: float = 0.0) -> bool:
+    """Whether the paper's number is met: to half a unit of its last digit, and our error bar."""
+    return abs(value - paper) <= half_digit + error
+
+
+def total(history: History) -> np.ndarray:
+    """Kinetic, elastic and contact energy together."""
+    return history["kinetic"] + history["elastic"] + history["contact"]
+
+
+def touching(history: History) -> np.ndarray:
+    """The steps from the first to the last touch, as indices."""
+    steps = np.flatnonzero(history["normal_force"] > 0)
+    return np.arange(steps[0], steps[-1] + 1)
+
+
+def maxima(values: np.ndarray, least: float) -> int:
+    """How many maxima stand out: between two of them the values fall and rise again by more than `least`."""
+    count, low, high, rising = 0, values[0], values[0], True
+    for value in values:
+        if rising and value < high - least:
+            count, rising, low = count + 1, False, value
+        elif not rising and value > low + least:
+            rising, high = True, value
+        low, high = min(low, value), max(high, value)
+    return count
+
+
+def when(time: float | None, words: str) -> str:
+    """Since when something is so in a run [s], in words."""
+    return f"{words} from {1e3 * time:.2f} ms on" if known(time) else f"{words}: never"
+
+
+def known(time: float | None) -> bool:
+    """Whether a time of the summary is there."""
+    return time is not None and not np.isnan(time)
+
+
+def both_times(summary: dict) -> str:
+    """The contact time, and that between the crossings of 1 % of the peak force, in words."""
+    return f"{1e3 * summary['contact_time']:.3f} ms (above 1 % of the peak force {1e3 * summary['thresholded_contact_time']:.3f} ms)"

@@ -1,0 +1,132 @@
+"""FreeFem++ runs of one scene in the folder of a run: the main one, those that estimate its error, and what each has left."""
+
+import multiprocessing
+import shutil
+import signal
+from collections.abc import Mapping
+from contextlib import ExitStack, suppress
+from pathlib import Path
+
+import numpy as np
+
+from ..freefem import freefem
+from ..output import estimate
+from ..failure import Failure, Unreadable
+from ..scenes.multibody import Multibody
+from ..input.parameters import Value
+from ..progress import Line
+from ..output.results import read_history, read_json, read_summary, write_json
+from ..scene import Scene
+from .told import Told
+
+FAILURES = {10: "bad input", 11: "step failed", 12: "material broke down", 13: "not installed", 14: "unreadable"}
+
+
+class Solver:
+    """Runs the scene with some values in a folder, one run after the other, but the coarser one beside the main one where `pair` says that it will be
+    wanted and a core is free: a study has a run on every core already."""
+
+    def __init__(self, program: freefem.FreeFem, scene: Scene | Multibody, mesh_file: Path | None, foreign: bytes | None, stage: Path, lock: int,
+                 line: Line, pair: bool):
+        self.program, self.scene, self.mesh_file, self.foreign, self.stage, self.lock, self.line = program, scene, mesh_file, foreign, stage, lock, line
+        self.pair = pair and freefem.CORES > 1 and not multiprocessing.parent_process()
+        self.own_mesh = foreign is None and not scene.of_files
+        self.number = 0
+        self.beside: tuple[Path, dict[str, Value], freefem.Process, str] | None = None
+        self.leaving = ExitStack()
+
+    def __enter__(self) -> "Solver":
+        return self
+
+    def __exit__(self, *_) -> None:
+        """Ends a run beside; of a main one that is lost nothing else is of use."""
+        self.leaving.close()
+        if not any((self.stage / name).exists() for name in ("summary.json", "checkpoint")):
+            shutil.rmtree(self.stage / estimate.COARSE, ignore_errors=True)
+
+    def __call__(self, given: dict[str, Value], where: Path) -> None:
+        """Runs in the folder `where`: from its checkpoint where there is one, not again where it is finished."""
+        self.number += 1
+        told = Told(self.line, self.scene, self.mesh_file, "main run" if where == self.stage else f"{where.name} run", self.number)
+        taken = self._taken(given, where)
+        if taken or not (where / "summary.json").exists():
+            with ExitStack() as leaving:
+                process, scene_toml = taken or self._started(given, where, leaving, told)
+                exit_code, said = process.end(told.show)
+            if scene_toml and (where / "scene.toml").exists():
+                (where / "scene.toml").write_text(scene_toml, "utf-8")
+            _check(where, exit_code, said)
+        told.at("ready", 1.0)
+
+    def _started(self, given: dict[str, Value], where: Path, leaving: ExitStack, told: Told | None = None) -> tuple[freefem.Process, str]:
+        """A process at work in the folder until `leaving`, and the scene.toml that Python writes there."""
+        scene, goes_on = self.scene.override(given), (where / "checkpoint").exists()
+        if not goes_on:
+            if where != self.stage:
+                shutil.rmtree(where, ignore_errors=True)
+            where.mkdir(exist_ok=True)
+            if not (where / "checkpoint.json").exists():   # what makes the folder ours
+                write_json(where / "checkpoint.json", scene.asked)
+        if told:
+            told.at("mesh")
+        flags, used, scene_toml = scene.prepare(where, self.foreign)
+        if told:
+            told.at("set-up")
+        flags |= {"out": where} | ({"restart": where / "checkpoint"} if goes_on else {})
+        words = [text for name, value in flags.items() for text in (f"-{name}", str(value))]
+        process = leaving.enter_context(freefem.start(self.program, scene.script, words, where / "log.txt", self.lock))
+        if where == self.stage and self.pair:
+            self._start_beside(used)
+        return process, scene_toml
+
+    def _start_beside(self, used: Mapping) -> None:
+        """The coarser run, as settle() will ask for it. What hinders it is said then."""
+        where = self.stage / estimate.COARSE
+        given = self.scene.scaled(self.scene.values | self.scene.sizes, used, estimate.COARSER, self.own_mesh)
+        if not (where / "summary.json").exists():
+            with suppress(Failure):
+                self.beside = where, given, *self._started(given, where, self.leaving)
+
+    def _taken(self, given: dict[str, Value], where: Path) -> tuple[freefem.Process, str] | None:
+        """The process beside the main one, where it is the one that is asked for; else it ends."""
+        if not self.beside:
+            return None
+        place, values, process, scene_toml = self.beside
+        self.beside = None
+        if (place, values) == (where, given):
+            return process, scene_toml
+        self.leaving.close()
+        shutil.rmtree(place)
+        return None
+
+
+def _check(stage: Path, exit_code: int, said: str) -> None:
+    """Failure unless FreeFem++ ended well AND left a finished summary and a finite history (0 alone says little).
+
+    Its code is that of the process, its words those of the failure.json that the script wrote, else what it `said`.
+    """
+    if exit_code == 0:
+        try:
+            read_summary(stage)
+            history = read_history(stage)
+        except Unreadable as error:
+            problem = str(error).replace(f"{stage}/", "")
+            raise Failure(f"FreeFem++ ended without a result: {problem}; {_tail(stage)}") from None
+        for name, column in history.items():
+            if not np.isfinite(column).all():
+                raise Failure(f"history.csv: {name} is not finite from row {1 + np.argmin(np.isfinite(column))} on")
+        return
+    log = (stage / "log.txt").read_text()
+    said = read_json(stage / "failure.json").get("message") or said
+    if exit_code in FAILURES and said:
+        raise Failure(said, exit_code)
+    if "Load error" in log:
+        raise Failure(f"FreeFem++ lacks a plugin: {_tail(stage)}; {freefem.HOW}", 13)
+    how = f"was killed by {signal.Signals(-exit_code).name}" if exit_code < 0 else f"stopped with exit code {exit_code}"
+    goes_on = "; the same command goes on from the last checkpoint" if (stage / "checkpoint").exists() else ""
+    raise Failure(f"FreeFem++ {how}; {_tail(stage)}{goes_on}")
+
+
+def _tail(stage: Path) -> str:
+    lines = [line.strip() for line in (stage / "log.txt").read_text().splitlines()]
+    return "end of its log: " + " | ".join([line for line in lines if line and not line.startswith("progress ")][-4:])

@@ -1,0 +1,248 @@
+"""Where bodies of a scene first touch: they fly as rigid bodies, r = r0 + v t + b t^2 / 2, angle = angle0 + spin t, until the gap closes.
+
+While the spheres around them are apart time is skipped at once, between roots of polynomials (as edp/core/run/reach.idp has it)."""
+
+import itertools
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.polynomial import Polynomial
+
+from ..geometry import polyline
+from .bodies import Body
+from ..input.dimension import PLANE_STRAIN
+from ..failure import BadInput
+from .multibody import Multibody, gap_between
+from .obstacles import Obstacle
+from ..geometry.outlines import Outline
+from ..mesh.solids import Solid
+
+Shape = Outline | Solid
+STEPS = 2000                 # of bodies within reach of each other: what has not met by then is not known to
+FAR = 1e9                    # of the smaller thickness: a gap from an obstacle without parts to be within reach of, that is followed no further
+RESTITUTION = 0.5            # of a hit that turns bodies: much of it goes to vibration, and they turn while it lasts
+ECCENTRIC = 1e-2             # lever of a hit over the reach of the body that it turns
+MORE = 3                     # touches of two bodies that follow the first one
+MET, CLOSED = 1e-3, 1e-9     # of the smaller thickness: a gap that counts as met, and one that is followed no further
+
+
+@dataclass(frozen=True)
+class Meeting:
+    """Body `first` and `second` (body k, or -1 - k for obstacle k) when they first touch, or, where they do not, at the start: both
+    as they are then; the parts along and across the normal, positive, of their relative velocity [m/s] and of the constant force
+    between them [m/s2]; the radius that stands for the pair [m]; the time [s], infinite where they do not; the normal, outward of the second; whether as
+    rigid bodies they never meet."""
+
+    first: int
+    second: int
+    outlines: tuple[Shape, Shape | Obstacle]
+    closing: float
+    sliding: float
+    pressing: float
+    pulling: float
+    radius: float
+    time: float
+    normal: np.ndarray
+    never: bool = False
+
+    def gaps(self, body: int, points: np.ndarray) -> np.ndarray:
+        """Gaps (n,) from the other one of the points of `body`, as it is at the meeting."""
+        return self.outlines[1 if body == self.first else 0].gap(points)
+
+
+def meetings(scene: Multibody) -> list[Meeting]:
+    """One for each two bodies and each body with each obstacle, and those that follow as a hit turns them."""
+    bodies = len(scene.bodies)
+    pairs = [(i, j) for i in range(bodies) for j in [*range(i + 1, bodies), *(-1 - k for k in range(len(scene.obstacles)))]]
+    return [one for pair in pairs for one in _in_turn(scene, _meeting(scene, *pair))]
+
+
+def _fall(scene: Multibody) -> np.ndarray:
+    """The acceleration of free bodies [m/s2]."""
+    fall = np.zeros(scene.dimension.axes)
+    fall[:2] = scene.values.get("body_force_x", 0.0), scene.values["body_force_y"] - scene.values["gravity"]
+    return fall
+
+
+def _in_turn(scene: Multibody, one: Meeting) -> list[Meeting]:
+    """A meeting, and in the plane those of the same two that follow, where rigid bodies without friction are turned by it: other corners strike."""
+    found = [one]
+    while scene.dimension is PLANE_STRAIN and len(found) <= MORE and math.isfinite(one.time):
+        scene = _rebound(scene, one)
+        if scene is None:
+            break
+        one = _meeting(scene, one.first, one.second)
+        found += [one] if math.isfinite(one.time) else []
+    return found
+
+
+def _rebound(scene: Multibody, one: Meeting) -> Multibody | None:
+    """The bodies of a meeting a little later, when they have parted and nothing pulls them on. None where the hit does not turn
+    them."""
+    n = one.normal
+    point = _middle(one)
+    fall = _fall(scene) * one.time
+    moves = scene.obstacles[-1 - one.second].velocity if one.second < 0 else np.zeros(len(n))    # of the obstacle, which stays where it is
+    hit, yields, closing = [], 0.0, 0.0
+    for sign, k in ((1, one.first), (-1, one.second)):
+        if k < 0:
+            closing += scene.obstacles[-1 - k].velocity @ n
+            continue
+        body = scene.bodies[k]
+        shape = one.outlines[0 if k == one.first else 1]
+        arm = point - shape.area_centre
+        lever, mass = arm[0] * n[1] - arm[1] * n[0], body.density * shape.area
+        yields += (1 + lever**2 / shape.gyration) / mass
+        closing -= sign * ((body.velocity + fall) @ n + body.spin * lever)
+        hit.append((sign, k, shape, lever, mass))
+    turning = max(abs(lever) / shape.reach for _, _, shape, lever, _ in hit)
+    if closing <= 0 or turning < ECCENTRIC:
+        return None
+    soon, bodies = 4 * MET * one.radius / (RESTITUTION * closing), list(scene.bodies)
+    for sign, k, shape, lever, mass in hit:
+        body, push = bodies[k], sign * (1 + RESTITUTION) * closing / yields / mass
+        velocity, spin = body.velocity + fall + push * n, body.spin + push * lever / shape.gyration
+        bodies[k] = replace(body, position=shape.area_centre + (velocity - moves) * soon, angle=body.angle + body.spin * one.time + spin * soon, velocity=velocity, spin=spin)
+    still = {name: 0.0 for name in ("gravity", "body_force_x", "body_force_y") if name in scene.values}
+    return replace(scene, bodies=bodies, values=scene.values | still)
+
+
+def _middle(one: Meeting) -> np.ndarray:
+    """Where the two bodies of a meeting touch; of a face that lies on another the middle, so that a body that is set down flat is not turned."""
+    points = np.vstack([shape.points for shape in one.outlines if isinstance(shape, Outline)])
+    off = np.max([abs(shape.gap(points)) for shape in one.outlines], axis=0)
+    along = (points - points[off.argmin()]) @ one.normal
+    on = points[(off <= off.min() + CLOSED * one.radius) & (abs(along) <= CLOSED * one.radius)]
+    return (on.min(axis=0) + on.max(axis=0)) / 2
+
+
+def _meeting(scene: Multibody, first: int, second: int) -> Meeting:
+    body = scene.bodies[first]
+    other = scene.bodies[second] if second >= 0 else scene.obstacles[-1 - second]
+    pull = _fall(scene) if second < 0 else np.zeros(scene.dimension.axes)    # two bodies fall alike
+    start = body.velocity - other.velocity
+    radius = min([body.outline.half_thickness, *([other.outline.half_thickness] if second >= 0 else [])])
+    turning = sum(one.outline.fastest(one.angle, one.spin) * one.outline.reach for one in (body, other) if isinstance(one, Body))
+    t, never = _first_touch(body, other, start, pull, turning, radius)
+    met = not math.isinf(t)
+    t = t if met else 0.0
+    outlines, velocity = _at(body, other, t, pull), start + pull * t
+    normal = outlines[0].normal_from(outlines[1])
+    if not met:                                                # what lets them meet later may turn them in any direction
+        return Meeting(first, second, outlines, float(np.linalg.norm(velocity)), 0.0, float(np.linalg.norm(pull)), 0.0, float(radius), math.inf, normal, never)
+    return Meeting(first, second, outlines, *_parts(velocity, normal), *_parts(pull, normal), float(radius), t, normal)
+
+
+def turned(scene: Multibody) -> Multibody:
+    """The scene with its discs turned so that what touches first is their lowest point when they are not turned: where a disc is meshed finely
+    does not depend on the frame in which the scene is written."""
+    if scene.dimension is not PLANE_STRAIN:
+        return scene
+    met = meetings(scene)
+    found = list(scene.bodies)
+    for k, body in enumerate(scene.bodies):
+        mine = [one for one in met if k in (one.first, one.second)]
+        if not body.outline.disc or not mine:
+            continue
+        soonest = min(one.time for one in mine)
+        first = next(one for one in mine if one.time <= soonest * (1 + 1e-9))
+        outward = -first.normal if k == first.first else first.normal
+        found[k] = replace(body, angle=math.atan2(outward[1], outward[0]) + math.pi / 2 - (body.spin * first.time if math.isfinite(first.time) else 0.0))
+    return replace(scene, bodies=found)
+
+
+def refuse_nothing(scene: Multibody, met: list[Meeting]) -> None:
+    """BadInput where nothing can ever move, or nothing touch before an end that is left open."""
+    moving = [*(one.velocity for one in [*scene.bodies, *scene.obstacles]), *(np.atleast_1d(body.spin) for body in scene.bodies)]
+    forces = [scene.values.get(name, 0.0) for name in ("gravity", "body_force_x", "body_force_y")]
+    if not any(np.any(one) for one in moving) and not any(forces):
+        raise BadInput("velocity: 0 of every body, without spin, gravity or body force: nothing would ever move (accepted: one of them)")
+    if scene.values["end_time"] == 0 and all(one.never for one in met):
+        raise BadInput("end_time: 0 is the end of the contact, but nothing ever touches: the bodies miss each other and every obstacle "
+                       "(accepted: an end_time > 0, or velocities and positions that lead them together)")
+    for one in met if scene.values["end_time"] == 0 else []:
+        body = scene.bodies[one.first]
+        if one.second < 0 and one.time == 0 and one.closing == 0 and not np.any(body.spin) and _fall(scene) @ one.normal < 0:
+            raise BadInput(f"end_time: 0 is the end of the contact, but '{body.name}' is set down on '{scene.obstacles[-1 - one.second].name}' and does not leave it "
+                           "(accepted: an end_time > 0)")
+
+
+def _parts(vector: np.ndarray, normal: np.ndarray) -> tuple[float, float]:
+    """Its parts along and across a unit vector, positive; what is left of the latter by round-off is none."""
+    along, across = abs(vector @ normal), np.linalg.norm(vector - (vector @ normal) * normal)
+    return float(along), float(across) if across > 1e-6 * along else 0.0
+
+
+def _at(body: Body, other: Body | Obstacle, t: float, pull: np.ndarray) -> tuple[Shape, Shape | Obstacle]:
+    """Both at a time, seen by one who moves with the obstacle, or falls with the bodies."""
+    def flown(one: Body, velocity: np.ndarray) -> Shape:
+        return one.at(t, one.position + velocity * t + pull * t**2 / 2)
+    if isinstance(other, Body):
+        return flown(body, body.velocity), flown(other, other.velocity)
+    return flown(body, body.velocity - other.velocity), other
+
+
+def _first_touch(body: Body, other: Body | Obstacle, start: np.ndarray, pull: np.ndarray, turning: float, radius: float) -> tuple[float, bool]:
+    """When the gap is closed [s], infinite where it is not known to, and whether it never is. By conservative advancement where they are within
+    reach of each other: in each step no point can come nearer than the gap."""
+    rate, steps, met, before = np.linalg.norm(pull), 0, False, math.inf
+    for t, end in _within_reach(body, other, start, pull):
+        while t < end:
+            gap, speed = _gap(*_at(body, other, t, pull)), np.linalg.norm(start + pull * t) + turning
+            met = met or gap <= MET * radius
+            if met and (gap <= CLOSED * radius or gap >= before):               # closed, or passing by
+                return t, False
+            steps, before = steps + 1, gap
+            if steps > STEPS or gap > FAR * radius:
+                return math.inf, False
+            if speed + rate == 0:
+                return math.inf, True
+            t += 2 * gap / (speed + math.sqrt(speed**2 + 2 * rate * gap))       # speed t + rate t^2 / 2 = gap
+    return math.inf, True
+
+
+def _within_reach(body: Body, other: Body | Obstacle, start: np.ndarray, pull: np.ndarray) -> Iterator[tuple[float, float]]:
+    """From when to when the sphere around the body touches that around the other one, or some part of the obstacle."""
+    parts = [[gate.trim() for gate in gates] for gates in _gates(body, other, start, pull)]
+    roots = np.concatenate([gate.roots() for gates in parts for gate in gates if gate.degree() > 0] or [np.empty(0)])
+    times = [0.0, *sorted(set(roots.real[(abs(roots.imag) <= 1e-6 * abs(roots)) & (roots.real > 0)].tolist())), math.inf]
+    for begin, end in itertools.pairwise(times):
+        middle = (begin + end) / 2 if end < math.inf else 2 * begin + 1
+        if any(all(gate(middle) <= 0 for gate in gates) for gates in parts):
+            yield begin, end
+
+
+def _gates(body: Body, other: Body | Obstacle, start: np.ndarray, pull: np.ndarray) -> Iterator[list[Polynomial]]:
+    """Of each part of the other one polynomials of time that are all <= 0 within reach of it."""
+    reach = 1.01 * body.outline.reach
+    def seen_from(point: np.ndarray) -> np.ndarray:
+        return np.array([Polynomial([x, v, a / 2]) for x, v, a in zip(body.position - point, start, pull)])
+    if isinstance(other, Body):
+        yield [(seen_from(other.position)**2).sum() - (reach + 1.01 * other.outline.reach)**2]
+    elif other.kind == "implicit":
+        yield []
+    elif other.kind == "polyline":
+        sides, reach = polyline.sides_of(other.numbers), reach + other.numbers[1]
+        for point, along, low, high in zip(sides.start, sides.along, sides.low, sides.high):
+            r = seen_from(point)
+            above, at = r @ np.array([-along[1], along[0]]), r @ along
+            yield [above - reach, -above - reach, *([low - reach - at] if np.isfinite(low) else []), *([at - high - reach] if np.isfinite(high) else [])]
+    else:
+        axes = len(start)
+        r, more = seen_from(np.array(other.numbers[:axes])), other.numbers[axes:]
+        if other.kind == "plane":
+            yield [r @ np.array(more) - reach]
+        elif other.kind != "bowl":
+            yield [(r**2).sum() - (more[0] + reach)**2]
+        else:
+            yield [max(0.0, more[0] - reach)**2 - (r**2).sum()]
+
+
+def _gap(first: Shape, second: Shape | Obstacle) -> float:
+    """The gap; of two bodies far apart that of the circles around them, which is no larger."""
+    if isinstance(second, Obstacle):
+        return second.gap_from(first)
+    away, around = np.linalg.norm(first.area_centre - second.area_centre), first.reach + second.reach
+    return float(away - around) if away > 2 * around else gap_between(first, second)

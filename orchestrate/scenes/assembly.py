@@ -1,0 +1,401 @@
+"""What FreeFEM computes a scene of bodies on: one mesh of all of them, apart from each other, and a data file of words and numbers.
+
+Region k of the mesh is body k, from 0; its edges have the label 1 where the body may touch, another one where nothing reaches. The
+bodies stand side by side along x, not turned, each about its own centre of area; scene.dat says where they are at the start. Of bodies of
+revolution it is the half x >= 0 of their sections, the axis with the label 2, one above the other.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from ..mesh import mesh, revolution, solid_mesh, solids
+from .approach import Meeting, meetings
+from .bodies import MATERIAL, Body
+from ..freefem.describe import describe
+from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID
+from ..failure import BadInput
+from ..mesh.mesh import AXIS, FREE, GROWTH, Sizes, nearest
+from .mirror import COPIES, FOLDED, copies
+from .multibody import OWN, Multibody, Pair
+from ..geometry.outlines import Loop
+from ..input.parameters import Value
+
+NEVER = 3                    # the label of what nothing reaches
+ROUND = 0.5                  # largest element size on a circle or ellipse, over its smaller semi-axis
+SAMPLED = 0.25               # a step between points at which an element size is asked for, over that size
+LIKE = ("radius", "young", "nu", "density", "speed", "angle", "spin")
+NARROW = 0.6                 # of the contact of a disc on a plane: where less of an outline is near, elements are smaller; of two equal discs it is 0.71
+POINTED = 0.5                # largest half-width of a contact over the radius of the obstacle, as over that of a disc on a plane (sizes.idp)
+ASIDE = 0.02                 # of the pair's radius: as near to a corner of an obstacle is on it
+SMALLEST = 1e-3              # element in a contact over the pair's radius, however small the obstacle is
+BETWEEN = 0.2                # from body to body in the reference configuration, over the largest extent
+
+Rule = Callable[[dict[str, Value]], dict]    # describe: what the scripts make of a disc or a ball on a plane
+Curve = Callable[[np.ndarray], np.ndarray]   # points (n, 2) [m] at parameters (n,) in [0, 1]
+
+
+@dataclass(frozen=True)
+class Assembly:
+    """`mesh` holds all bodies, `regions` (t,) their numbers, `centres` (bodies, axes) where their centres of area are in it; `data` is
+    the text of scene.dat; `values` are all parameters of run and contact, nothing left open, and `used` the tables of the scene with
+    them in it: read again, they make this very assembly."""
+
+    mesh: mesh.Mesh | solid_mesh.SolidMesh
+    regions: np.ndarray
+    centres: np.ndarray
+    data: str
+    values: dict[str, Value]
+    used: dict
+
+    def write(self, folder: Path) -> None:
+        """mesh.msh (in three dimensions mesh.mesh) and scene.dat, what edp/bodies.edp reads."""
+        if isinstance(self.mesh, solid_mesh.SolidMesh):
+            solid_mesh.write(self.mesh, self.regions, folder / "mesh.mesh")
+        else:
+            write_mesh(self.mesh, self.regions, folder / "mesh.msh")
+        (folder / "scene.dat").write_text(self.data)
+
+
+def assemble(scene: Multibody, rule: Rule | None = None, met: list[Meeting] | None = None) -> Assembly:
+    """Meshes the bodies of a scene and writes down the rest. What the scene leaves open is settled by `rule` (left out: describe), which is
+    asked for a disc, or a ball, of the pair's radius that hits a plane. `met`: the scene's meetings, where they are known already."""
+    ask = Asker(scene, meetings(scene) if met is None else met, rule or partial(describe, script=scene.dimension.like))
+    values = scene.values | contact_values(scene.bodies, scene.contact, ask, "contact")
+    scene = replace(scene, pairs=_with_small_obstacles(scene, ask))
+    pairs = [pair_values(pair, ask, values) for pair in scene.pairs]
+    sizes = [None if body.mesh else _sizes(k, ask) for k, body in enumerate(scene.bodies)]
+    together, regions, centres, rounds = (_solids if scene.dimension is SOLID else _sections)(scene, sizes)
+    disc = ask.disc(scene.bodies, min(body.outline.half_thickness for body in scene.bodies), slides=True)
+    return Assembly(together, regions, centres, data_file(scene, disc, centres, rounds, pairs), values, used_tables(scene, sizes, values, pairs))
+
+
+def _sections(scene: Multibody, sizes: list[Sizes | None]) -> tuple[mesh.Mesh, np.ndarray, np.ndarray, list[tuple]]:
+    """The mesh of bodies in the plane, the body of each triangle, the centres in it, the lines of circles in scene.dat (of sections those that are not
+    another's mirror image)."""
+    meshes = [body.mesh or mesh_body(_boundary(scene, k), sizes[k], body.outline.half_thickness) for k, body in enumerate(scene.bodies)]
+    centres = side_by_side(meshes, 1 if scene.dimension is AXISYMMETRIC else 0)
+    circles = [(k, *(centre + at), radius) for k, (body, centre) in enumerate(zip(scene.bodies, centres)) for loop in body.outline.loops
+               for at, radius in loop.circles if scene.dimension is not AXISYMMETRIC or at[0] >= 0]
+    return *stack(meshes, centres), centres, [("circles", len(circles)), *circles]
+
+
+def _solids(scene: Multibody, sizes: list[Sizes | None]) -> tuple[solid_mesh.SolidMesh, np.ndarray, np.ndarray, list[tuple]]:
+    """The same in three dimensions: bodies turned as they are at the start, one above the other; half or a quarter of them where that is enough."""
+    folded = FOLDED[copies(scene)]
+    meshes = [solids.mesh_of(body, one, folded) for body, one in zip(scene.bodies, sizes)]
+    count = sum(solid_mesh.unknowns(one.cells, scene.values["degree"]) for one in meshes)
+    if count > solid_mesh.MOST_UNKNOWNS:
+        raise BadInput(f"mesh_size: the bodies have {count} unknowns (accepted: up to {solid_mesh.MOST_UNKNOWNS}; larger mesh_size, contact_mesh_size or accuracy, coarser files, degree = 1)")
+    centres = side_by_side(meshes, 1)
+    surfaces = [(k, *(centre + one.centre), *one.axis, one.radius) for k, (made, centre) in enumerate(zip(meshes, centres)) for one in made.curved]
+    spheres, cylinders = ([one for one in surfaces if len(one) == size] for size in (5, 8))
+    return *solid_mesh.stack(meshes, centres), centres, [("spheres", len(spheres)), *spheres, ("cylinders", len(cylinders)), *cylinders]
+
+
+# ---- what the scene leaves open
+
+@dataclass(frozen=True)
+class Asker:
+    """Asks the rule for discs (balls) that hit a plane as the scene's bodies hit each other: with its largest speeds and forces, along and
+    across the normal."""
+
+    scene: Multibody
+    met: list[Meeting]
+    rule: Rule
+
+    def answer(self, bodies: list[Body], radius: float, slides: bool = False, **more: Value) -> dict:
+        """Of the rule, for such a disc."""
+        return self.rule(self.disc(bodies, radius, slides) | more)
+
+    def small(self, first: int, second: int) -> float:
+        """The radius [m] of an obstacle where a body meets it, if that is less than half of the body's own, 0 at a sharp corner; else infinite."""
+        for one in self.met:
+            if (one.first, one.second) == (first, second) and second < 0 and not one.never:
+                body, obstacle = one.outlines
+                radius = obstacle.radius_at(body.points[obstacle.gap(body.points).argmin()], ASIDE * one.radius)
+                return radius if radius < one.radius / 2 else math.inf
+        return math.inf
+
+    def disc(self, bodies: list[Body], radius: float, slides: bool) -> dict[str, Value]:
+        """A disc of this radius [m] and the softer body's material; straight on unless it `slides`."""
+        along, across, pressing, pulling = (float(f"{max((getattr(one, name) for one in self.met), default=0.0):.6g}")    # no round-off: a mesh follows every digit
+                                            for name in ("closing", "sliding", "pressing", "pulling"))
+        soft = min(bodies, key=lambda body: body.young)
+        asked = {name: self.scene.values[name] for name in ("accuracy", "accuracy_of", "end_time")}
+        asked |= {"exponent": self.scene.contact["exponent"], "young": soft.young, "nu": soft.nu, "density": soft.density,
+                  "radius": radius, "symmetry": "full", "speed": along, "angle": 90.0, "spin": 0.0, "gravity": pressing}
+        if slides:
+            asked |= {"speed": math.hypot(along, across), "angle": math.degrees(math.atan2(along, across)),
+                      "spin": max(float(np.linalg.norm(body.spin)) for body in bodies), "body_force_x": pulling}
+        return asked
+
+
+def contact_values(bodies: list[Body], contact: dict[str, Value], ask: Asker, path: str, least: float = math.inf) -> dict[str, Value]:
+    """`contact` with penalty, friction_dynamic and slip_velocity as numbers: for the softest of the bodies and the smallest radius, `least` [m] that of an
+    obstacle."""
+    radius = min([least, *(body.outline.half_thickness for body in bodies)])
+    given = [body.contact_mesh_size for body in bodies]
+    more = {"contact_mesh_size": min(*given, radius)} if min(given) > 0 else {}
+    used = ask.answer(bodies, radius, slides=True, exponent=contact["exponent"], **more)["used"]
+    found = contact | {name: used[name] for name in ("penalty", "slip_velocity") if contact[name] == "auto"}
+    if contact["friction_dynamic"] == "auto":
+        found["friction_dynamic"] = contact["friction_static"]
+    if found["friction_dynamic"] > found["friction_static"]:
+        raise BadInput(f"{path}.friction_dynamic: {found['friction_dynamic']:g} is larger than friction_static {found['friction_static']:g} "
+                       f"(accepted: 0 to friction_static)")
+    return found
+
+
+def pair_values(pair: Pair, ask: Asker, values: dict[str, Value]) -> dict[str, Value]:
+    """All that a pair may have of its own: what it does not say is as settled for the scene, and open again where it depends on what
+    the pair says."""
+    bodies = [ask.scene.bodies[k] for k in (pair.first, pair.second) if k >= 0]
+    alone = "friction_static" in pair.values                    # sets both
+    inherited = {name: values[name] for name in ask.scene.contact} | {"friction_dynamic": "auto" if alone else ask.scene.contact["friction_dynamic"]}
+    small = ask.small(pair.first, pair.second)
+    if 0 < small < math.inf:
+        inherited["penalty"] = ask.scene.contact["penalty"]
+    own = contact_values(bodies, inherited | pair.values, ask, pair.path, small or math.inf)
+    return {name: own[name] for name in OWN}
+
+
+def _with_small_obstacles(scene: Multibody, ask: "Asker") -> list[Pair]:
+    """The scene's pairs, and those that an open penalty makes differ: a body and an obstacle that is smaller than its contact on a plane would be."""
+    said = {(pair.first, pair.second) for pair in scene.pairs}
+    small = [(one.first, one.second) for one in ask.met if 0 < ask.small(one.first, one.second) < math.inf] if scene.contact["penalty"] == "auto" else []
+    pairs = scene.pairs + [Pair(*both, {}, f"obstacle.{-both[1]}") for both in dict.fromkeys(small) if both not in said]
+    return sorted(pairs, key=lambda pair: (pair.first, pair.second))
+
+
+def used_tables(scene: Multibody, sizes: list[Sizes | None], values: dict[str, Value], pairs: list[dict[str, Value]]) -> dict:
+    """The tables of a scene with everything as used; what obstacles say of contact stands in [[contact.pair]]."""
+    def names(pair: Pair) -> list[str]:
+        return [(scene.bodies[k] if k >= 0 else scene.obstacles[-1 - k]).name for k in (pair.first, pair.second)]
+    bodies = []
+    for given, body, size in zip(scene.given["body"], scene.bodies, sizes):
+        used = {"name": body.name} | given | {key: getattr(body, key) for key in MATERIAL}
+        used |= {"mesh_size": size.bulk, "contact_mesh_size": size.contact} if size else {}
+        used |= {"file": str((scene.folder / given["file"]).resolve())} if "file" in given else {}
+        bodies.append(used)
+    obstacles = [{"name": one.name} | {key: value for key, value in given.items() if key not in OWN}
+                 for given, one in zip(scene.given.get("obstacle", []), scene.obstacles)]
+    contact = {key: values[key] for key in scene.contact} | {"pair": [{"bodies": names(pair)} | own for pair, own in zip(scene.pairs, pairs)]}
+    top = {"title": scene.title, "script": scene.script, "dimension": scene.dimension.name} | _symmetry(scene) | {key: values[key] for key in scene.values}
+    return top | {"body": bodies, "obstacle": obstacles, "contact": contact}
+
+
+def _symmetry(scene: Multibody) -> dict[str, str]:
+    return {"symmetry": next(word for word, count in COPIES.items() if count == copies(scene))} if scene.dimension is SOLID else {}
+
+
+def _sizes(k: int, ask: Asker) -> Sizes:
+    """The element sizes of body k: in the bulk for its own thickness, in the contacts as each pair asks for."""
+    body = ask.scene.bodies[k]
+    given = {name: value for name, value in (("mesh_size", body.mesh_size), ("contact_mesh_size", body.contact_mesh_size)) if value}
+    try:
+        bulk = float(ask.answer([body], body.outline.half_thickness, **given)["used"]["mesh_size"])
+    except BadInput as error:
+        raise BadInput(f"body.{k + 1}.{error} (of a {'disc' if ask.scene.dimension is PLANE_STRAIN else 'ball'} as thick as '{body.name}')") from None
+    hits = [_hit(body, k, one, ask) for one in ask.met if k in (one.first, one.second)]
+    contact = body.contact_mesh_size or min([bulk, *(size for size, *_ in hits)])
+    near = np.vstack([np.empty((0, ask.scene.dimension.axes)), *(points for _, points, _ in hits)])
+    return Sizes(bulk, min(bulk, contact), near, max([0.0, *(slack for *_, slack in hits)]))
+
+
+def _hit(body: Body, k: int, one: Meeting, ask: Asker) -> tuple[float, np.ndarray, float]:
+    """Where body k touches at a meeting: the element size there, points (n, 2) of its outline, and half their distance [m]."""
+    bodies = [ask.scene.bodies[j] for j in (one.first, one.second) if j >= 0]
+    straight = ask.answer(bodies, one.radius)
+    arc, size = straight["touch_arc"], float(straight["used"]["contact_mesh_size"])
+    depth, small = one.radius * (1 - math.cos(min(arc, math.pi / 2))), ask.small(one.first, one.second)
+    points, spacing = body.outline.samples(size)
+    near = _near(body, k, one, depth, points)
+    wider = body.outline.width(max(2, len(near)), spacing) / (2 * arc * one.radius)    # than the contact of a disc: flat faces; or less wide: corners, pegs
+    if small > 0:                              # a sharp corner no elements resolve
+        wider = min(max(1.0, wider), wider / NARROW, POINTED * small / (2 / math.pi * arc * one.radius))
+    if small > 0 and wider < 1:
+        size = max(SMALLEST * one.radius / wider, size)
+        points, spacing = body.outline.samples(size * wider)
+        near = _near(body, k, one, min(depth, small), points)
+    slide = (ask.answer(bodies, one.radius, slides=True)["touch_arc"] - arc) * one.radius
+    if slide > 0:
+        near = points[nearest(points, near) <= slide]
+    return size * (wider if small > 0 else max(1.0, wider)), near, spacing / 2
+
+
+def _near(body: Body, k: int, one: Meeting, depth: float, points: np.ndarray) -> np.ndarray:
+    """Those of the points of body k where the gap at the meeting is larger than the least by `depth` [m] at most, which of a disc on a plane is that at
+    touch_arc from its lowest point."""
+    gaps = one.gaps(k, body.outline.carried(one.outlines[0 if k == one.first else 1], points))
+    return points[gaps <= gaps.min() + depth]
+
+
+def _boundary(scene: Multibody, k: int) -> list[list[tuple[Curve, float, int]]]:
+    """The closed curves that bound the mesh of body k, the outer first, counter-clockwise: each piece with the largest element size on it and its label.
+    Nothing reaches a hole that holds no other body and no obstacle."""
+    outer, *holes = scene.bodies[k].outline.loops
+    if scene.dimension is AXISYMMETRIC:
+        *surface, axis = revolution.boundary(outer)
+        return [[*((piece, _largest(outer), FREE) for piece in surface), (axis, np.inf, AXIS)]]
+    reached = [True, *(_holds(scene, k, hole) for hole in scene.bodies[k].placed.loops[1:])]
+    return [[(partial(loop.at, piece), _largest(loop), FREE if touched else NEVER) for piece in range(len(loop.corners))]
+            for loop, touched in zip((outer, *holes), reached)]
+
+
+def _largest(loop: Loop) -> float:
+    return np.inf if loop.semi_axes is None else ROUND * loop.semi_axes.min()
+
+
+def _holds(scene: Multibody, k: int, hole: Loop) -> bool:
+    centre = hole.area_centre
+    farthest = np.linalg.norm(hole.polygon - centre, axis=1).max()
+    bodies = any(hole.gap(other.placed.points[:1])[0] < 0 for j, other in enumerate(scene.bodies) if j != k)
+    return bodies or any(obstacle.gap(centre[None])[0] < farthest for obstacle in scene.obstacles)
+
+
+# ---- meshes
+
+def mesh_body(boundary: list[list[tuple[Curve, float, int]]], sizes: Sizes, scale: float) -> mesh.Mesh:
+    """The mesh inside closed curves, of a body about as large as `scale` [m]: the ends of their pieces are vertices, and all vertices of the boundary lie
+    on them to rounding; boundary edges have the body to their left, and the label of their piece."""
+    pieces = [[nodes_on(curve, largest, sizes) for curve, largest, _ in loop] for loop in boundary]
+    labels = [np.repeat([label for *_, label in loop], [len(nodes) for nodes in each]) for loop, each in zip(boundary, pieces)]
+    loops = [np.vstack(each) for each in pieces]
+    loops = [nodes if k == 0 else nodes[::-1] for k, nodes in enumerate(loops)]     # a hole has one label
+    bulk, inside = round(sizes.bulk / scale, mesh.DIGITS), [np.round(nodes / scale, mesh.DIGITS) for nodes in loops]    # gmsh's tolerances are absolute
+    with mesh.gmsh_session() as gmsh:
+        gmsh.option.setNumber("Mesh.Algorithm", 6)
+        for source in ("FromPoints", "FromCurvature", "ExtendFromBoundary"):
+            gmsh.option.setNumber(f"Mesh.MeshSize{source}", 0)
+        tags, curves = zip(*(_loop(gmsh.model, nodes) for nodes in inside))
+        gmsh.model.geo.addPlaneSurface([gmsh.model.geo.addCurveLoop(list(lines)) for lines in curves])
+        gmsh.model.geo.synchronize()
+        _grade(gmsh.model.mesh.field, inside, curves, bulk)
+        gmsh.model.mesh.generate(2)
+        node_tags, coordinates, _ = gmsh.model.mesh.getNodes()
+        _, triangle_tags = gmsh.model.mesh.getElementsByType(2)
+        corner_tags = [gmsh.model.mesh.getNodes(0, tag)[0][0] for tag in np.concatenate(tags)]
+    row = np.empty(int(node_tags.max()) + 1, dtype=int)
+    row[node_tags] = np.arange(len(node_tags))
+    points, corners = coordinates.reshape(-1, 3)[:, :2] * scale, row[np.array(corner_tags, dtype=int)]
+    points[corners] = np.vstack(loops)
+    triangles = mesh.counter_clockwise(points, row[triangle_tags].reshape(-1, 3))
+    ends = np.split(corners, np.cumsum([len(nodes) for nodes in loops])[:-1])
+    edges = np.vstack([np.column_stack([each, np.roll(each, -1)]) for each in ends])
+    return mesh.Mesh(points, triangles, edges, np.concatenate(labels))
+
+
+def nodes_on(curve: Curve, largest: float, sizes: Sizes) -> np.ndarray:
+    """Vertices (n, 2) on a curve from its first end on, without its last, in steps ds with the integral of ds / size constant."""
+    s, size = np.array([0.0, 1.0]), np.array([])
+    while len(size) < len(s):                    # halved until the size, which is Lipschitz, is known between points too
+        size = np.minimum(sizes.at(curve(s)), largest)
+        step = np.linalg.norm(np.diff(curve(s), axis=0), axis=1)
+        coarse = step > SAMPLED * np.minimum(size[1:], size[:-1])
+        s = np.sort(np.concatenate([s, (s[1:] + s[:-1])[coarse] / 2]))
+    passed = np.concatenate([[0.0], np.cumsum(step * (1 / size[1:] + 1 / size[:-1]) / 2)])
+    count = max(1, round(passed[-1]))
+    return curve(np.interp(passed[-1] * np.arange(count) / count, passed, s))
+
+
+def _loop(model, nodes: np.ndarray) -> tuple[list[int], list[int]]:
+    """Points and lines of gmsh along a loop, one element a line."""
+    points = [model.geo.addPoint(x, y, 0) for x, y in nodes]
+    lines = [model.geo.addLine(a, b) for a, b in zip(points, [*points[1:], points[0]])]
+    for line in lines:
+        model.geo.mesh.setTransfiniteCurve(line, 2)
+    return points, lines
+
+
+def _grade(field, loops: list[np.ndarray], curves: tuple[list[int], ...], bulk: float) -> None:
+    """Element sizes inside: those of the edges on the outline, growing linearly with the distance from them up to the bulk's. Edges
+    of about one length are one source."""
+    length = np.concatenate([np.linalg.norm(np.roll(nodes, -1, axis=0) - nodes, axis=1) for nodes in loops])
+    fineness = np.ceil(2 * np.log2(np.maximum(bulk / length, 1)) - 1e-9).astype(int)     # from bulk down in steps of sqrt(1/2)
+    lines, sources = np.concatenate(curves), []
+    for level in np.unique(fineness):
+        size = bulk * np.sqrt(0.5)**level
+        distance, source = field.add("Distance"), field.add("Threshold")
+        field.setNumbers(distance, "CurvesList", lines[fineness == level])
+        field.setNumber(distance, "Sampling", 5)   # points on a line; of 2 gmsh makes none
+        for name, value in dict(InField=distance, SizeMin=size, SizeMax=bulk, DistMin=0,
+                                DistMax=max(bulk - size, 1e-9 * bulk) / GROWTH).items():
+            field.setNumber(source, name, value)
+        sources.append(source)
+    least = field.add("Min")
+    field.setNumbers(least, "FieldsList", sources)
+    field.setAsBackgroundMesh(least)
+
+
+def side_by_side(meshes: list[mesh.Mesh | solid_mesh.SolidMesh], along: int) -> np.ndarray:
+    """Centres (bodies, axes) on an axis (0: x, 1: y), from 0 on, that keep meshes about them apart by a part of the largest."""
+    boxes = [np.array([one.points.min(axis=0), one.points.max(axis=0)]) for one in meshes]
+    between = BETWEEN * max(np.ptp(box, axis=0).max() for box in boxes)
+    centres = np.zeros((len(boxes), boxes[0].shape[1]))
+    for k in range(1, len(boxes)):
+        centres[k, along] = centres[k - 1, along] + boxes[k - 1][1, along] + between - boxes[k][0, along]
+    return centres
+
+
+def stack(meshes: list[mesh.Mesh], centres: np.ndarray) -> tuple[mesh.Mesh, np.ndarray]:
+    """All bodies as one mesh, and the body (t,) of each triangle."""
+    first = np.cumsum([0, *(len(one.points) for one in meshes)])
+    together = mesh.Mesh(np.vstack([one.points + centre for one, centre in zip(meshes, centres)]),
+                         np.vstack([one.triangles + k for one, k in zip(meshes, first)]),
+                         np.vstack([one.edges + k for one, k in zip(meshes, first)]), np.concatenate([one.labels for one in meshes]))
+    return together, np.repeat(np.arange(len(meshes)), [len(one.triangles) for one in meshes])
+
+
+def write_mesh(together: mesh.Mesh, regions: np.ndarray, path: Path) -> None:
+    """FreeFEM's 2D .msh: counts; x y label; v1 v2 v3 region; v1 v2 label; vertices count from 1."""
+    point_labels = np.zeros(len(together.points), dtype=int)
+    for label in np.unique(together.labels)[::-1]:     # where two meet, the contact's
+        point_labels[together.edges[together.labels == label]] = label
+    with open(path, "w") as file:
+        file.write(f"{len(together.points)} {len(together.triangles)} {len(together.edges)}\n")
+        file.writelines(f"{x:.17g} {y:.17g} {label}\n" for (x, y), label in zip(together.points, point_labels))
+        file.writelines(f"{a} {b} {c} {region}\n" for (a, b, c), region in zip(together.triangles + 1, regions))
+        file.writelines(f"{a} {b} {label}\n" for (a, b), label in zip(together.edges + 1, together.labels))
+
+
+# ---- scene.dat
+
+def data_file(scene: Multibody, disc: dict[str, Value], centres: np.ndarray, rounds: list[tuple], pairs: list[dict[str, Value]]) -> str:
+    """The text of scene.dat, words and numbers (SI, radians):
+        ffimpact-bodies 1
+        disc radius young nu density speed angle spin                                                   that the rules stand for
+        bodies N       name law young nu density  centreX centreY  placeX placeY angle  vx vy spin     a line a body
+        circles C      body x y radius                                                                  in the mesh
+        files F        body                                                                             whose mesh is that of a file
+        obstacles M    name kind count p1 ... pcount vx vy
+        pairs K        a b penalty friction_static friction_dynamic                                     a, b: body, or -1 - obstacle
+    centre: of the area in the mesh; place: where it is at the start; the angle of the disc in degrees. In three dimensions
+        ffimpact-bodies-3d 1
+        copies 1, 2 or 4                                                                                how often the mesh makes the whole bodies
+        bodies N       name law young nu density  centreX Y Z  shiftX Y Z  vx vy vz  spinX Y Z         shift: from the mesh to the start
+        spheres C      body x y z radius
+        cylinders C    body x y z axisX Y Z radius
+    and the rest alike. `rounds` are the lines of circles, or of spheres and cylinders."""
+    if scene.dimension is SOLID:
+        head = [("ffimpact-bodies-3d", 1), ("copies", copies(scene))]
+        starts = [(*(body.position - centre), *body.velocity, *body.spin) for body, centre in zip(scene.bodies, centres)]
+    else:
+        head = [("ffimpact-bodies", 1)]
+        starts = [(*body.position, body.angle, *body.velocity, body.spin) for body in scene.bodies]
+    lines = [*head, ("disc", *(float(disc[name]) for name in LIKE)), ("bodies", len(scene.bodies))]
+    lines += [(body.name, body.law + (f":{body.law_parameters}" if body.law_parameters != "none" else ""), body.young, body.nu, body.density, *centre, *start) for body, centre, start in zip(scene.bodies, centres, starts)]
+    lines += rounds
+    lines += [("files", len(files := [k for k, given in enumerate(scene.given["body"]) if "file" in given])), *((k,) for k in files)]
+    lines += [("obstacles", len(scene.obstacles))]
+    lines += [(one.name, "circle" if one.kind == "sphere" and scene.dimension is not SOLID else one.kind, len(one.numbers), *one.numbers, *one.velocity) for one in scene.obstacles]
+    lines += [("pairs", len(pairs)), *((pair.first, pair.second, *own.values()) for pair, own in zip(scene.pairs, pairs))]
+    return "".join(" ".join(map(_token, line)) + "\n" for line in lines)
+
+
+def _token(value) -> str:
+    return repr(float(value)) if isinstance(value, float) else str(value)

@@ -1,0 +1,117 @@
+"""The bodies of a scene: [[body]] tables as outlines (or meshes) with material, place and motion, SI units. In plane strain (flat.py; of revolution
+and in three dimensions shapes and motions are those of revolution.py and solids.py):
+
+    [[body]]
+    name = "disc"                # body1, body2 ... where it is left out
+    shape = "disc"               # radius
+                                 # ellipse: semi_axes [a, b];  rectangle: width, height;  ring: radius, inner_radius
+                                 # polygon: vertices [[x, y], ...], holes [[[x, y], ...], ...], in coordinates of its own
+                                 # mesh: file (FreeFEM's or gmsh's .msh), lengths in m; labels 1: may touch, others: never touch
+    position = [0, 1.5]          # centre of its area at the start [m]
+    angle = 30                   # turned about it, counter-clockwise [deg]
+    velocity = [0, -10]          # [m/s], or: speed = 10, direction = -90 [deg], counter-clockwise from x
+    spin = 0                     # [rad/s], counter-clockwise
+    young = 7e6                  # law, young, nu, density, law_parameters: those at the top of the file where they are left out
+    mesh_size = 0.1              # mesh_size, contact_mesh_size [m]: from the accuracy where they are left out
+"""
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+
+from ..input import parameters
+from ..mesh import flat, mesh, revolution, solids
+from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
+from ..failure import BadInput, brief
+from ..geometry.outlines import Outline
+from ..mesh.solid_mesh import SolidMesh
+from ..mesh.solids import Solid
+from ..input.tables import SHORTEST, Table
+
+GEOMETRY = {PLANE_STRAIN: flat, AXISYMMETRIC: revolution, SOLID: solids}     # SHAPES with their entries, shape(), MOTION, motion()
+MATERIAL = ("law", "young", "nu", "density", "law_parameters")
+SIZES = ("mesh_size", "contact_mesh_size")
+COMMON = ("name", "shape", "position", "velocity", *MATERIAL, *SIZES)
+NAME = re.compile(r"[A-Za-z][A-Za-z0-9_.-]*")
+
+
+@dataclass(frozen=True)
+class Body:
+    """`outline` and `mesh` (of a mesh file, else None) are about the centre of area (or volume), not turned; angle [rad], in three dimensions
+    a vector as spin is; a mesh size of 0 is open."""
+
+    name: str
+    outline: Outline | Solid
+    mesh: mesh.Mesh | SolidMesh | None
+    position: np.ndarray
+    angle: float | np.ndarray
+    velocity: np.ndarray
+    spin: float | np.ndarray
+    law: str
+    young: float
+    nu: float
+    density: float
+    law_parameters: str
+    mesh_size: float
+    contact_mesh_size: float
+
+    @property
+    def placed(self) -> Outline | Solid:
+        """The outline where it is at the start."""
+        return self.at(0.0, self.position)
+
+    def at(self, t: float, centre: np.ndarray) -> Outline | Solid:
+        """The outline about `centre`, turned as it is at time t [s] if nothing hinders it."""
+        return self.outline.placed(centre, self.outline.turned(self.angle, self.spin, t))
+
+
+def read(tables: list[dict], top: dict, folder: Path, dimension: Dimension = PLANE_STRAIN) -> list[Body]:
+    """The bodies of the [[body]] tables; `top` holds the entries at the top of the file, mesh files are sought from `folder` on."""
+    return [_body(f"body.{k}", given, top, folder, GEOMETRY[dimension]) for k, given in enumerate(tables, 1)]
+
+
+def _body(path: str, given: dict, top: dict, folder: Path, geometry: ModuleType) -> Body:
+    shapes = "|".join(geometry.SHAPES)
+    if "shape" not in given:
+        raise BadInput(f"{path}.shape: is missing (accepted: {shapes})")
+    if not isinstance(given["shape"], str) or given["shape"] not in geometry.SHAPES:
+        raise BadInput(f"{path}.shape: '{brief(given['shape'])}' is not known (accepted: {shapes})")
+    table = Table(path, given, (*COMMON, *geometry.MOTION, *geometry.SHAPES[given["shape"]]))
+    outline, body_mesh = geometry.shape(table, folder)
+    if not outline.half_thickness >= SHORTEST:
+        raise BadInput(f"{path}: is {2 * outline.half_thickness:.3g} m thick (accepted: from {2 * SHORTEST:g} m)")
+    material = dict(zip(MATERIAL, _material(table, top)))
+    bulk, contact = _sizes(table, top)
+    return Body(checked_name(path, given.get("name", path.replace(".", ""))), outline, body_mesh, **geometry.motion(table),
+                **material, mesh_size=bulk, contact_mesh_size=contact)
+
+
+def checked_name(path: str, name) -> str:
+    """A name that is one word in a data file; BadInput where it is none."""
+    if not isinstance(name, str) or not NAME.fullmatch(name):
+        raise BadInput(f"{path}.name: '{brief(name)}' is no name (accepted: letters, digits, _ - . without blanks, a letter first)")
+    return name
+
+
+def _material(table: Table, top: dict) -> tuple[str, float, float, float, str]:
+    """What MATERIAL names: the body's own, else those at the top of the file; BadInput where one is in neither."""
+    found = []
+    for key in MATERIAL:
+        rule = parameters.table()[key]
+        if key not in table and key not in top and rule.kind != "numbers":
+            raise BadInput(f"{table.path}.{key}: is missing, here and at the top of the file (accepted: {rule.accepted})")
+        found.append(table.parameter(key, rule) if key in table else rule.check(top.get(key, rule.default)))
+    return tuple(found)
+
+
+def _sizes(table: Table, top: dict) -> tuple[float, float]:
+    rules = [parameters.table()[key] for key in SIZES]
+    bulk, contact = (table.parameter(rule.name, rule) if rule.name in table else rule.check(top.get(rule.name, 0.0)) for rule in rules)
+    if 0 < bulk < contact:
+        raise BadInput(f"{table.path}.contact_mesh_size: {contact:g} is larger than mesh_size {bulk:g}")
+    return float(bulk), float(contact)
+
+

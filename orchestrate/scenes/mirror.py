@@ -1,0 +1,65 @@
+"""How much of a scene in three dimensions has to be computed: all of it, its half z >= 0, or of that the half x >= 0 (the entry `symmetry`)."""
+
+import numpy as np
+
+from ..geometry import implicit
+from .bodies import Body
+from ..input.dimension import SOLID
+from ..failure import BadInput
+from .obstacles import Obstacle
+from ..input.parameters import Parameter
+
+COPIES = {"full": 1, "half": 2, "quarter": 4}
+FOLDED = {1: (), 2: (2,), 4: (0, 2)}      # the axes across which what is computed is one side
+AXES = "xyz"
+
+
+def copies(scene) -> int:
+    """What the computed part stands for: 1, 2 or 4 times itself; 1 in the plane. BadInput where more symmetry is asked for than there is."""
+    if scene.dimension is not SOLID:
+        return 1
+    rule = Parameter("symmetry", "word", "auto", "-", "", words=("auto", *COPIES))
+    asked = rule.check(scene.given.get("symmetry", rule.default))
+    across_z = _broken(scene, 2)
+    across_x = across_z or _broken(scene, 0)
+    if asked == "auto":
+        return 1 if across_z else 2 if across_x else 4
+    why = {"full": "", "half": across_z, "quarter": across_x}[asked]
+    if why:
+        raise BadInput(f"symmetry: {asked}, but {why} (accepted: auto|full{'' if across_z else '|half'})")
+    return COPIES[asked]
+
+
+def _broken(scene, axis: int) -> str:
+    """What has no mirror image in the plane through the origin across an axis, "" where all has."""
+    plane = f"the plane {AXES[axis]} = 0"
+    if axis == 0 and scene.values["body_force_x"]:
+        return "body_force_x pushes along x"
+    for one in scene.bodies:
+        if why := _of_body(one, axis, plane):
+            return f"'{one.name}' {why}"
+    for one in scene.obstacles:
+        if _of_obstacle(one, axis):
+            return f"'{one.name}' is not its own mirror image in {plane}"
+    return ""
+
+
+def _of_body(one: Body, axis: int, plane: str) -> str:
+    normal = np.eye(3)[axis]
+    if one.position[axis] != 0:
+        return f"has its centre off {plane}"
+    if one.velocity[axis] != 0:
+        return f"moves along {AXES[axis]}"
+    if np.delete(one.spin, axis).any():                  # an axial vector keeps its part along the normal
+        return f"spins out of {plane}"
+    if one.mesh or one.outline.geometry:
+        return "is a file's"
+    mirrored = one.outline.shape.is_mirrored(one.placed.rotation.T @ normal)
+    return "" if mirrored else f"is not its own mirror image in {plane}"
+
+
+def _of_obstacle(one: Obstacle, axis: int) -> bool:
+    if one.kind == "implicit":
+        return one.velocity[axis] != 0 or not implicit.is_mirrored(one.numbers[2:], axis, 3)
+    across = one.numbers[3 + axis] if one.kind == "plane" else one.numbers[axis]
+    return across != 0 or one.velocity[axis] != 0
