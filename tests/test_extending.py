@@ -81,7 +81,7 @@ def test_figure_is_drawn_and_encloses_what_translation_lost(extended):
     folder = extended("A figure")
     summary = run(folder, "disc-normal", "--set", "accuracy=0.05")
     assert (folder / "out/figures/loop.png").stat().st_size > 10_000
-    call = "from orchestrate.report.loop import lost; from orchestrate.results import read_history; from pathlib import Path; print(lost(read_history(Path('out'))))"
+    call = "from orchestrate.report.loop import lost; from orchestrate.output.results import read_history; from pathlib import Path; print(lost(read_history(Path('out'))))"
     lost = summary["energy_initial"] - summary["translation_energy"]
     assert lost > 10 and float(go(folder, sys.executable, "-c", call)) == pytest.approx(lost, rel=1e-9)
 

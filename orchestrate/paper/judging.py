@@ -1,7 +1,7 @@
 """What the statements of the paper are judged with: the verdicts, the results that `make paper` leaves, error bars.
 
-Every verdict follows from numbers by the rule in the docstring of its statement (paper_limits, paper_friction, paper_impacts, paper_pairs, paper_bodies,
-paper_times). Section 3 is told of the paper's law, St. Venant-Kirchhoff (5), except where it names (6): with it a verdict is decided; the neo-Hookean
+Every verdict follows from numbers by the rule in the docstring of its statement (limits, friction, impacts, pairs, bodies,
+times). Section 3 is told of the paper's law, St. Venant-Kirchhoff (5), except where it names (6): with it a verdict is decided; the neo-Hookean
 answer, which converges, stands beside it.
 
 Where that law loses ellipticity in a run that decides, its answer depends on the mesh, and "agrees" becomes "partly" (`_on_any_mesh`), whatever the

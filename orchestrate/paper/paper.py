@@ -17,8 +17,8 @@ from ..places import COMMAND, RESULTS, ROOT, shown
 from ..studies import stick_slip
 from ..sweeps import study
 from ..sweeps import sweep
-from . import judging, making as paper_making
-from . import limits as paper_limits, friction as paper_friction, impacts as paper_impacts, pairs as paper_pairs, bodies as paper_bodies, times as paper_times   # noqa: F401: these register the statements, in this order
+from . import judging, making
+from . import limits, friction, impacts, pairs, bodies, times   # noqa: F401: these register the statements, in this order
 from .page import COLOURS, page, verification
 
 RUNS = {"disc-normal": ("force",), "disc-normal-neohookean": (), "disc-oblique": ("flight", "force", "energies"), "disc-oblique-svk": ("flight", "force", "rolling", "energies"),
@@ -34,7 +34,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--results", metavar="DIR", type=Path, default=RESULTS, help="where the cases are (default: results)")
     parser.add_argument("--make", metavar="TARGET", nargs="+", default=[], help="run these targets of make first")
     options = parser.parse_args(argv)
-    if code := paper_making.make(options.make):
+    if code := making.make(options.make):
         return code
     results = judging.Results(result_folder(options.results))
     require(results)
@@ -61,7 +61,7 @@ def _cases(results: judging.Results) -> list[str]:
     """The targets of the runs that are not there."""
     missing = [TARGETS.get(name, name) for name, pictures in RUNS.items() if not _holds([(results.run(name), scene.load(name))])
                or not all(results.picture(name, picture).exists() for picture in pictures)]
-    return missing + ["ball-comparison"] * (not all((results.folder / drawn).exists() for drawn in (paper_bodies.ACCELERATIONS, paper_bodies.LIKE_FOR_LIKE)))
+    return missing + ["ball-comparison"] * (not all((results.folder / drawn).exists() for drawn in (bodies.ACCELERATIONS, bodies.LIKE_FOR_LIKE)))
 
 
 def _sweeps(results: judging.Results) -> list[str]:
