@@ -1,4 +1,4 @@
-"""Contact on a frozen factorisation: how its systems are solved, and how far, does not change the answer."""
+"""Contact on a frozen factorisation: by what its systems are solved, and how far, does not change the answer."""
 
 import shutil
 import subprocess
@@ -10,8 +10,6 @@ from orchestrate.freefem import freefem
 from orchestrate.input import parameters
 from orchestrate.output import results
 
-ROWS = ("core/contact/window.idp", "byUnknowns = n < rows / 2 || rows > mostRows;", "byUnknowns = false;")
-UNKNOWNS = (ROWS[0], ROWS[1], "byUnknowns = true;")
 EXACTLY = ("core/step/project.idp", "enough = exact ? 0 : (last ? 1e-10 * contactForce.l2 : 2e-3 * residual.l2);", "enough = 0;")
 BALL = dict(law="neohookean", speed=12, angle=60, slip_velocity=0.1, accuracy=0.2, mesh_size=0.03, contact_mesh_size=0.015)
 SMOOTH = BALL | dict(friction_static=0.6, friction_dynamic=0.6)   # no jump of the law: a step has one solution
@@ -40,28 +38,18 @@ def assert_same(found: dict, expected: dict) -> None:
     assert np.abs(found["balance"]).max() < 1e-9 * expected["kinetic"][0]
 
 
-@pytest.fixture(scope="module")
-def plain(tmp_path_factory):
-    return history(tmp_path_factory.mktemp("plain"), SMOOTH)
-
-
-@pytest.mark.parametrize("change", [ROWS, UNKNOWNS, EXACTLY], ids=["rows", "unknowns", "exactly"])
-def test_friction_by_any_way(tmp_path, plain, change):
-    """By the dense inverse of the rows or by the iteration on the unknowns, to a share of the residual or to round-off."""
-    assert_same(history(tmp_path, SMOOTH, change), plain)
-
-
-@pytest.mark.parametrize("change", [ROWS, UNKNOWNS], ids=["rows", "unknowns"])
-def test_normal_contact_by_any_way(tmp_path, change):
-    flags = BALL | dict(angle=90)
-    assert_same(history(tmp_path / "one", flags, change), history(tmp_path / "other", flags, EXACTLY))
+@pytest.mark.parametrize("flags", [SMOOTH, BALL | dict(angle=90)], ids=["friction", "normal"])
+@pytest.mark.parametrize("without", ["none", "kernels"])
+def test_contact_is_solved_as_far_as_it_matters(tmp_path, flags, without):
+    """To a share of the residual of the step or to round-off, by the kernels or by the scripts: the same answer."""
+    assert_same(history(tmp_path / "share", flags | {"without": without}), history(tmp_path / "exactly", flags, EXACTLY))
 
 
 def test_jump_of_the_coefficient(tmp_path):
     """With a jump of the coefficient a step may have two solutions, and which is found depends on the way: energy is balanced, and the impulse
     and the friction work agree to what one point's choice makes."""
     flags = BALL | dict(friction_static=0.7, friction_dynamic=0.5)
-    one, other = (history(tmp_path / name, flags, *changes) for name, changes in (("one", [UNKNOWNS]), ("other", [ROWS])))
+    one, other = (history(tmp_path / without, flags | {"without": without}) for without in ("none", "kernels"))
     assert np.abs(one["balance"]).max() < 1e-8 * one["kinetic"][0]
     for name, share in (("vx", 2e-3), ("vy", 2e-3), ("friction_work", 2e-2)):
         assert abs(one[name][-1] - other[name][-1]) <= share * np.abs(other[name]).max(), name
