@@ -21,7 +21,6 @@ from .mesh import mesh
 from .output import estimate as estimates
 from .failure import BadInput, Failure, TooLong, Unreadable
 from .output.folder import checkpoints, clear, failed_beside, finished_in, replace, result_folder, staging, unfinished
-from .scenes.multibody import Multibody
 from .input.parameters import Value
 from .places import INSTALLED, PACKAGE, RESULTS, ROOT, shown
 from .progress import Line
@@ -31,13 +30,13 @@ from .running.solver import FAILURES, Solver
 from .input.tables import to_toml
 from .running.told import runs
 
-ENTRANCE = "scene"                     # the module that makes flags, mesh and scene.dat, with all that it imports
+ENTRANCE = "scenes/assembly"           # the module that makes flags, mesh and scene.dat, with all that it imports
 # of these: what asks, starts, says and reads, and does not decide a result
 HARMLESS = {"failure", "places", "freefem/describe", "freefem/freefem", "output/estimate", "output/results"}
 ESTIMATING = ("output/estimate", "output/results")   # what decides the stated errors besides
 
 
-def run(scene: Scene | Multibody, overrides: dict[str, Value] | None = None, out: Path | None = None, *,
+def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | None = None, *,
         mesh_file: Path | None = None, force: bool = False, progress: bool | None = None, estimate: bool = True) -> RunResult:
     """Runs `scene` with some parameters overridden in the folder `out` (default results/<scene>), or reuses it.
 
@@ -106,7 +105,7 @@ def _tell_accuracy(path: Path, asked: float) -> None:
         path.write_text(re.sub(r"(?m)^(accuracy = \S+)\n", rf"\1{why}", path.read_text("utf-8"), count=1), "utf-8")
 
 
-def _finish(stage: Path, scene: Scene | Multibody, found: dict, provenance: dict) -> None:
+def _finish(stage: Path, scene: Scene, found: dict, provenance: dict) -> None:
     """The summary with what was `found` beside the run and its provenance, last and by rename."""
     summary = read_summary(stage)
     found["warnings"] = summary.get("warnings", []) + found.get("warnings", [])
@@ -118,7 +117,7 @@ def _finish(stage: Path, scene: Scene | Multibody, found: dict, provenance: dict
     os.replace(stage / "summary.json.part", stage / "summary.json")
 
 
-def _keep_failed(stage: Path, failure: Failure, scene: Scene | Multibody, provenance: dict) -> None:
+def _keep_failed(stage: Path, failure: Failure, scene: Scene, provenance: dict) -> None:
     """failure.json: the one the script wrote, or what is known; never a summary.json."""
     (stage / "summary.json").unlink(missing_ok=True)
     if not (stage / "scene.toml").exists():
@@ -129,7 +128,7 @@ def _keep_failed(stage: Path, failure: Failure, scene: Scene | Multibody, proven
 
 # ---- reuse
 
-def reusable(scene: Scene | Multibody, folder: Path, mesh_file: Path | None = None, estimate: bool = False) -> RunResult | None:
+def reusable(scene: Scene, folder: Path, mesh_file: Path | None = None, estimate: bool = False) -> RunResult | None:
     """The finished run in `folder` if it is of this very scene, mesh and code, with an estimate of its error where that is asked for,
     else None; Unreadable if it is not ours."""
     summary = finished_in(folder, force=False)
@@ -166,7 +165,7 @@ def _hash(modules: Iterable[str], files: Iterable[Path] = ()) -> str:
     return digest.hexdigest()
 
 
-def _same_scene(folder: Path, scene: Scene | Multibody, mesh_file: Path | None) -> bool:
+def _same_scene(folder: Path, scene: Scene, mesh_file: Path | None) -> bool:
     """Whether the run in `folder`, finished or failed, is one of this scene on this mesh, by whatever code."""
     name = "summary.json" if (folder / "summary.json").exists() else "failure.json"
     try:
@@ -193,7 +192,7 @@ def _mesh_path(given: Path) -> Path:
     return path
 
 
-def _gmsh(scene: Scene | Multibody, mesh_file: Path | None) -> str | None:
+def _gmsh(scene: Scene, mesh_file: Path | None) -> str | None:
     """The version of the gmsh that makes the mesh, None where a file or the script itself brings it."""
     return mesh.gmsh_version() if scene.meshed and not mesh_file else None
 

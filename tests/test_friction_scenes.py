@@ -8,11 +8,11 @@ import pytest
 from orchestrate import run, scene
 from orchestrate.input import parameters
 from orchestrate.output import results, vtu
-from orchestrate.scenes import multibody
 from orchestrate.__main__ import main
 from orchestrate.failure import BadInput
 from orchestrate.report import compare, figures, report
 from orchestrate.sweeps import study
+from orchestrate.scenes.scene import RUN
 
 COARSE = {"degree": 1, "mesh_size": 0.0125, "contact_mesh_size": 0.0125, "fields": 3}
 FRICTIONLESS = {"contact", "energies", "force", "shapes", "velocity"}
@@ -31,7 +31,7 @@ def test_built_in_scenes_load(name):
     """Every built-in scene has a title, a script of its own kind and every parameter."""
     loaded = scene.load(name)
     known = parameters.names(loaded.script)
-    wanted = set(multibody.RUN) & set(known) if isinstance(loaded, multibody.Multibody) else known
+    wanted = set(RUN) & set(known) if loaded.bodies else known
     assert loaded.title != name and set(loaded.values) == set(wanted)
 
 

@@ -6,6 +6,7 @@ revolution it is the half x >= 0 of their sections, the axis with the label 2, o
 """
 
 import math
+import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
@@ -14,16 +15,17 @@ from pathlib import Path
 import numpy as np
 
 from ..mesh import mesh, revolution, solid_mesh, solids
-from .approach import Meeting, meetings
+from .approach import Meeting, meetings, refuse_nothing, turned
 from .bodies import MATERIAL, Body
 from ..freefem.describe import describe
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID
 from ..failure import BadInput
 from ..mesh.mesh import AXIS, FREE, GROWTH, Sizes, nearest
 from .mirror import COPIES, FOLDED, copies
-from .multibody import OWN, Multibody, Pair
+from .scene import OWN, Pair, Scene
 from ..geometry.outlines import Loop
 from ..input.parameters import Value
+from ..input.tables import to_toml
 
 NEVER = 3                    # the label of what nothing reaches
 ROUND = 0.5                  # largest element size on a circle or ellipse, over its smaller semi-axis
@@ -61,7 +63,33 @@ class Assembly:
         (folder / "scene.dat").write_text(self.data)
 
 
-def assemble(scene: Multibody, rule: Rule | None = None, met: list[Meeting] | None = None) -> Assembly:
+def prepare(scene: Scene, where: Path, foreign: bytes | None = None) -> tuple[dict[str, Value | Path], dict, str]:
+    """The flags of a run in the folder `where`, the scene as it will be used, and the text of its scene.toml, "" where the script writes it. Puts into the
+    folder what the flags name: the mesh of all bodies and what the script reads of them; of one of the paper's scenes the mesh, `foreign` or our own, of the
+    sizes and the part of the body that its description says."""
+    file = where / scene.mesh_name
+    if scene.bodies:
+        if len(scene.bodies) == 1 and not scene.obstacles:
+            raise BadInput("obstacle: is missing, and a second body too (accepted: one table [[obstacle]] or more, or several [[body]])")
+        scene = turned(scene)
+        met = meetings(scene)
+        refuse_nothing(scene, met)
+        built = assemble(scene, met=met)
+        built.write(where)
+        text = to_toml(built.used)
+        return built.values | {"mesh": file, "bodies": where / "scene.dat"}, tomllib.loads(text), text
+    said = scene.description(foreign)
+    if not scene.meshed:
+        return scene.values, said["used"], ""
+    if foreign is not None:
+        file.write_bytes(foreign)
+    else:
+        sizes = (said["used"][name] for name in ("radius", "mesh_size", "contact_mesh_size"))
+        mesh.write(mesh.disc(*sizes, said["half"], said["touch_arc"]), file)
+    return scene.values | {"mesh": file}, said["used"], ""
+
+
+def assemble(scene: Scene, rule: Rule | None = None, met: list[Meeting] | None = None) -> Assembly:
     """Meshes the bodies of a scene and writes down the rest. What the scene leaves open is settled by `rule` (left out: describe), which is
     asked for a disc, or a ball, of the pair's radius that hits a plane. `met`: the scene's meetings, where they are known already."""
     ask = Asker(scene, meetings(scene) if met is None else met, rule or partial(describe, script=scene.dimension.like))
@@ -74,7 +102,7 @@ def assemble(scene: Multibody, rule: Rule | None = None, met: list[Meeting] | No
     return Assembly(together, regions, centres, data_file(scene, disc, centres, rounds, pairs), values, used_tables(scene, sizes, values, pairs))
 
 
-def _sections(scene: Multibody, sizes: list[Sizes | None]) -> tuple[mesh.Mesh, np.ndarray, np.ndarray, list[tuple]]:
+def _sections(scene: Scene, sizes: list[Sizes | None]) -> tuple[mesh.Mesh, np.ndarray, np.ndarray, list[tuple]]:
     """The mesh of bodies in the plane, the body of each triangle, the centres in it, the lines of circles in scene.dat (of sections those that are not
     another's mirror image)."""
     meshes = [body.mesh or mesh_body(_boundary(scene, k), sizes[k], body.outline.half_thickness) for k, body in enumerate(scene.bodies)]
@@ -84,7 +112,7 @@ def _sections(scene: Multibody, sizes: list[Sizes | None]) -> tuple[mesh.Mesh, n
     return *stack(meshes, centres), centres, [("circles", len(circles)), *circles]
 
 
-def _solids(scene: Multibody, sizes: list[Sizes | None]) -> tuple[solid_mesh.SolidMesh, np.ndarray, np.ndarray, list[tuple]]:
+def _solids(scene: Scene, sizes: list[Sizes | None]) -> tuple[solid_mesh.SolidMesh, np.ndarray, np.ndarray, list[tuple]]:
     """The same in three dimensions: bodies turned as they are at the start, one above the other; half or a quarter of them where that is enough."""
     folded = FOLDED[copies(scene)]
     meshes = [solids.mesh_of(body, one, folded) for body, one in zip(scene.bodies, sizes)]
@@ -104,7 +132,7 @@ class Asker:
     """Asks the rule for discs (balls) that hit a plane as the scene's bodies hit each other: with its largest speeds and forces, along and
     across the normal."""
 
-    scene: Multibody
+    scene: Scene
     met: list[Meeting]
     rule: Rule
 
@@ -164,7 +192,7 @@ def pair_values(pair: Pair, ask: Asker, values: dict[str, Value]) -> dict[str, V
     return {name: own[name] for name in OWN}
 
 
-def _with_small_obstacles(scene: Multibody, ask: "Asker") -> list[Pair]:
+def _with_small_obstacles(scene: Scene, ask: "Asker") -> list[Pair]:
     """The scene's pairs, and those that an open penalty makes differ: a body and an obstacle that is smaller than its contact on a plane would be."""
     said = {(pair.first, pair.second) for pair in scene.pairs}
     small = [(one.first, one.second) for one in ask.met if 0 < ask.small(one.first, one.second) < math.inf] if scene.contact["penalty"] == "auto" else []
@@ -172,7 +200,7 @@ def _with_small_obstacles(scene: Multibody, ask: "Asker") -> list[Pair]:
     return sorted(pairs, key=lambda pair: (pair.first, pair.second))
 
 
-def used_tables(scene: Multibody, sizes: list[Sizes | None], values: dict[str, Value], pairs: list[dict[str, Value]]) -> dict:
+def used_tables(scene: Scene, sizes: list[Sizes | None], values: dict[str, Value], pairs: list[dict[str, Value]]) -> dict:
     """The tables of a scene with everything as used; what obstacles say of contact stands in [[contact.pair]]."""
     def names(pair: Pair) -> list[str]:
         return [(scene.bodies[k] if k >= 0 else scene.obstacles[-1 - k]).name for k in (pair.first, pair.second)]
@@ -189,7 +217,7 @@ def used_tables(scene: Multibody, sizes: list[Sizes | None], values: dict[str, V
     return top | {"body": bodies, "obstacle": obstacles, "contact": contact}
 
 
-def _symmetry(scene: Multibody) -> dict[str, str]:
+def _symmetry(scene: Scene) -> dict[str, str]:
     return {"symmetry": next(word for word, count in COPIES.items() if count == copies(scene))} if scene.dimension is SOLID else {}
 
 
@@ -235,7 +263,7 @@ def _near(body: Body, k: int, one: Meeting, depth: float, points: np.ndarray) ->
     return points[gaps <= gaps.min() + depth]
 
 
-def _boundary(scene: Multibody, k: int) -> list[list[tuple[Curve, float, int]]]:
+def _boundary(scene: Scene, k: int) -> list[list[tuple[Curve, float, int]]]:
     """The closed curves that bound the mesh of body k, the outer first, counter-clockwise: each piece with the largest element size on it and its label.
     Nothing reaches a hole that holds no other body and no obstacle."""
     outer, *holes = scene.bodies[k].outline.loops
@@ -251,7 +279,7 @@ def _largest(loop: Loop) -> float:
     return np.inf if loop.semi_axes is None else ROUND * loop.semi_axes.min()
 
 
-def _holds(scene: Multibody, k: int, hole: Loop) -> bool:
+def _holds(scene: Scene, k: int, hole: Loop) -> bool:
     centre = hole.area_centre
     farthest = np.linalg.norm(hole.polygon - centre, axis=1).max()
     bodies = any(hole.gap(other.placed.points[:1])[0] < 0 for j, other in enumerate(scene.bodies) if j != k)
@@ -365,7 +393,7 @@ def write_mesh(together: mesh.Mesh, regions: np.ndarray, path: Path) -> None:
 
 # ---- scene.dat
 
-def data_file(scene: Multibody, disc: dict[str, Value], centres: np.ndarray, rounds: list[tuple], pairs: list[dict[str, Value]]) -> str:
+def data_file(scene: Scene, disc: dict[str, Value], centres: np.ndarray, rounds: list[tuple], pairs: list[dict[str, Value]]) -> str:
     """The text of scene.dat, words and numbers (SI, radians):
         ffimpact-bodies 1
         disc radius young nu density speed angle spin                                                   that the rules stand for
