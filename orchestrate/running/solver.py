@@ -72,7 +72,7 @@ class Solver:
         flags, used, scene_toml = prepare(scene, where, self.foreign)
         if told:
             told.at("set-up")
-        flags |= {"out": where} | ({"restart": where / "checkpoint"} if goes_on else {})
+        flags = flags | {"out": where} | ({"restart": where / "checkpoint"} if goes_on else {})
         words = [text for name, value in flags.items() for text in (f"-{name}", str(value))]
         process = leaving.enter_context(freefem.start(self.program, scene.script, words, where / "log.txt", self.lock))
         if where == self.stage and self.pair:
