@@ -17,7 +17,7 @@ from pathlib import Path
 
 from . import __version__
 from .freefem import freefem
-from .mesh import mesh
+from .mesh import gmsh_file, mesh
 from .output import estimate as estimates
 from .failure import BadInput, Failure, TooLong, Unreadable
 from .output.folder import checkpoints, clear, failed_beside, finished_in, replace, result_folder, staging, unfinished
@@ -50,7 +50,7 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | Non
     folder = result_folder(out or RESULTS / scene.name)
     if mesh_file:
         mesh_file = _mesh_path(mesh_file)
-    foreign = mesh.load(mesh_file) if mesh_file else None
+    foreign = gmsh_file.load(mesh_file) if mesh_file else None
     scene.description(foreign)   # BadInput before anything is made
     finished = finished_in(folder, force)
     if not force and (there := reusable(scene, folder, mesh_file, estimate)):

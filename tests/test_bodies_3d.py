@@ -276,7 +276,7 @@ def prism(corners: int, path) -> None:
     sides = np.vstack([np.column_stack(one) for one in ((low, high, np.roll(high, -1)), (low, np.roll(high, -1), np.roll(low, -1)))])
     ends = np.vstack([np.column_stack([np.full(corners - 2, one[0]), one[1:-1], one[2:]]) for one in (low, high)])
     cells = solid_mesh.right_handed(points, np.column_stack([np.zeros(4 * corners - 4, dtype=int), np.vstack([sides, ends])]))
-    faces = solid_mesh.boundary(cells)
+    faces = mesh.boundary(cells)
     solid_mesh.write(solid_mesh.SolidMesh(points, cells, faces, np.ones(len(faces), dtype=int)), np.zeros(len(cells), dtype=int), path)
 
 
@@ -322,7 +322,7 @@ def test_bodies_that_hang_together_by_less_than_a_face_are_refused(tmp_path, cel
     """Two tetrahedra with an edge, or a point, in common are no body, as triangles with a point in common are none in the plane."""
     points = 0.1 * np.array([(0, 0, 0), (0, 0, 1), (1, 0, 0), (0, 1, 0), (-1, 0, 0), (0, -1, 0), (0, 0, -1)])[:max(map(max, cells)) + 1]
     cells = solid_mesh.right_handed(points, np.array(cells))
-    faces = solid_mesh.boundary(cells)
+    faces = mesh.boundary(cells)
     solid_mesh.write(solid_mesh.SolidMesh(points, cells, faces, np.ones(len(faces), dtype=int)), np.zeros(len(cells), dtype=int), tmp_path / "joined.mesh")
     with pytest.raises(BadInput) as caught:
         read({"shape": "mesh", "file": "joined.mesh"}, folder=tmp_path)

@@ -20,7 +20,8 @@ from .bodies import MATERIAL, Body
 from ..freefem.describe import describe
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID
 from ..failure import BadInput
-from ..mesh.mesh import AXIS, FREE, GROWTH, Sizes, nearest
+from ..mesh.mesh import AXIS, FREE, Sizes, nearest
+from ..mesh.outline_mesh import Curve, mesh_body
 from .mirror import COPIES, FOLDED, copies
 from .scene import OWN, Pair, Scene
 from ..geometry.outlines import Loop
@@ -29,7 +30,6 @@ from ..input.tables import to_toml
 
 NEVER = 3                    # the label of what nothing reaches
 ROUND = 0.5                  # largest element size on a circle or ellipse, over its smaller semi-axis
-SAMPLED = 0.25               # a step between points at which an element size is asked for, over that size
 LIKE = ("radius", "young", "nu", "density", "speed", "angle", "spin")
 NARROW = 0.6                 # of the contact of a disc on a plane: where less of an outline is near, elements are smaller; of two equal discs it is 0.71
 POINTED = 0.5                # largest half-width of a contact over the radius of the obstacle, as over that of a disc on a plane (sizes.idp)
@@ -38,7 +38,6 @@ SMALLEST = 1e-3              # element in a contact over the pair's radius, howe
 BETWEEN = 0.2                # from body to body in the reference configuration, over the largest extent
 
 Rule = Callable[[dict[str, Value]], dict]    # describe: what the scripts make of a disc or a ball on a plane
-Curve = Callable[[np.ndarray], np.ndarray]   # points (n, 2) [m] at parameters (n,) in [0, 1]
 
 
 @dataclass(frozen=True)
@@ -59,7 +58,7 @@ class Assembly:
         if isinstance(self.mesh, solid_mesh.SolidMesh):
             solid_mesh.write(self.mesh, self.regions, folder / "mesh.mesh")
         else:
-            write_mesh(self.mesh, self.regions, folder / "mesh.msh")
+            mesh.write(self.mesh, folder / "mesh.msh", self.regions)
         (folder / "scene.dat").write_text(self.data)
 
 
@@ -288,78 +287,6 @@ def _holds(scene: Scene, k: int, hole: Loop) -> bool:
 
 # ---- meshes
 
-def mesh_body(boundary: list[list[tuple[Curve, float, int]]], sizes: Sizes, scale: float) -> mesh.Mesh:
-    """The mesh inside closed curves, of a body about as large as `scale` [m]: the ends of their pieces are vertices, and all vertices of the boundary lie
-    on them to rounding; boundary edges have the body to their left, and the label of their piece."""
-    pieces = [[nodes_on(curve, largest, sizes) for curve, largest, _ in loop] for loop in boundary]
-    labels = [np.repeat([label for *_, label in loop], [len(nodes) for nodes in each]) for loop, each in zip(boundary, pieces)]
-    loops = [np.vstack(each) for each in pieces]
-    loops = [nodes if k == 0 else nodes[::-1] for k, nodes in enumerate(loops)]     # a hole has one label
-    bulk, inside = round(sizes.bulk / scale, mesh.DIGITS), [np.round(nodes / scale, mesh.DIGITS) for nodes in loops]    # gmsh's tolerances are absolute
-    with mesh.gmsh_session() as gmsh:
-        gmsh.option.setNumber("Mesh.Algorithm", 6)
-        for source in ("FromPoints", "FromCurvature", "ExtendFromBoundary"):
-            gmsh.option.setNumber(f"Mesh.MeshSize{source}", 0)
-        tags, curves = zip(*(_loop(gmsh.model, nodes) for nodes in inside))
-        gmsh.model.geo.addPlaneSurface([gmsh.model.geo.addCurveLoop(list(lines)) for lines in curves])
-        gmsh.model.geo.synchronize()
-        _grade(gmsh.model.mesh.field, inside, curves, bulk)
-        gmsh.model.mesh.generate(2)
-        node_tags, coordinates, _ = gmsh.model.mesh.getNodes()
-        _, triangle_tags = gmsh.model.mesh.getElementsByType(2)
-        corner_tags = [gmsh.model.mesh.getNodes(0, tag)[0][0] for tag in np.concatenate(tags)]
-    row = np.empty(int(node_tags.max()) + 1, dtype=int)
-    row[node_tags] = np.arange(len(node_tags))
-    points, corners = coordinates.reshape(-1, 3)[:, :2] * scale, row[np.array(corner_tags, dtype=int)]
-    points[corners] = np.vstack(loops)
-    triangles = mesh.counter_clockwise(points, row[triangle_tags].reshape(-1, 3))
-    ends = np.split(corners, np.cumsum([len(nodes) for nodes in loops])[:-1])
-    edges = np.vstack([np.column_stack([each, np.roll(each, -1)]) for each in ends])
-    return mesh.Mesh(points, triangles, edges, np.concatenate(labels))
-
-
-def nodes_on(curve: Curve, largest: float, sizes: Sizes) -> np.ndarray:
-    """Vertices (n, 2) on a curve from its first end on, without its last, in steps ds with the integral of ds / size constant."""
-    s, size = np.array([0.0, 1.0]), np.array([])
-    while len(size) < len(s):                    # halved until the size, which is Lipschitz, is known between points too
-        size = np.minimum(sizes.at(curve(s)), largest)
-        step = np.linalg.norm(np.diff(curve(s), axis=0), axis=1)
-        coarse = step > SAMPLED * np.minimum(size[1:], size[:-1])
-        s = np.sort(np.concatenate([s, (s[1:] + s[:-1])[coarse] / 2]))
-    passed = np.concatenate([[0.0], np.cumsum(step * (1 / size[1:] + 1 / size[:-1]) / 2)])
-    count = max(1, round(passed[-1]))
-    return curve(np.interp(passed[-1] * np.arange(count) / count, passed, s))
-
-
-def _loop(model, nodes: np.ndarray) -> tuple[list[int], list[int]]:
-    """Points and lines of gmsh along a loop, one element a line."""
-    points = [model.geo.addPoint(x, y, 0) for x, y in nodes]
-    lines = [model.geo.addLine(a, b) for a, b in zip(points, [*points[1:], points[0]])]
-    for line in lines:
-        model.geo.mesh.setTransfiniteCurve(line, 2)
-    return points, lines
-
-
-def _grade(field, loops: list[np.ndarray], curves: tuple[list[int], ...], bulk: float) -> None:
-    """Element sizes inside: those of the edges on the outline, growing linearly with the distance from them up to the bulk's. Edges
-    of about one length are one source."""
-    length = np.concatenate([np.linalg.norm(np.roll(nodes, -1, axis=0) - nodes, axis=1) for nodes in loops])
-    fineness = np.ceil(2 * np.log2(np.maximum(bulk / length, 1)) - 1e-9).astype(int)     # from bulk down in steps of sqrt(1/2)
-    lines, sources = np.concatenate(curves), []
-    for level in np.unique(fineness):
-        size = bulk * np.sqrt(0.5)**level
-        distance, source = field.add("Distance"), field.add("Threshold")
-        field.setNumbers(distance, "CurvesList", lines[fineness == level])
-        field.setNumber(distance, "Sampling", 5)   # points on a line; of 2 gmsh makes none
-        for name, value in dict(InField=distance, SizeMin=size, SizeMax=bulk, DistMin=0,
-                                DistMax=max(bulk - size, 1e-9 * bulk) / GROWTH).items():
-            field.setNumber(source, name, value)
-        sources.append(source)
-    least = field.add("Min")
-    field.setNumbers(least, "FieldsList", sources)
-    field.setAsBackgroundMesh(least)
-
-
 def side_by_side(meshes: list[mesh.Mesh | solid_mesh.SolidMesh], along: int) -> np.ndarray:
     """Centres (bodies, axes) on an axis (0: x, 1: y), from 0 on, that keep meshes about them apart by a part of the largest."""
     boxes = [np.array([one.points.min(axis=0), one.points.max(axis=0)]) for one in meshes]
@@ -377,18 +304,6 @@ def stack(meshes: list[mesh.Mesh], centres: np.ndarray) -> tuple[mesh.Mesh, np.n
                          np.vstack([one.triangles + k for one, k in zip(meshes, first)]),
                          np.vstack([one.edges + k for one, k in zip(meshes, first)]), np.concatenate([one.labels for one in meshes]))
     return together, np.repeat(np.arange(len(meshes)), [len(one.triangles) for one in meshes])
-
-
-def write_mesh(together: mesh.Mesh, regions: np.ndarray, path: Path) -> None:
-    """FreeFEM's 2D .msh: counts; x y label; v1 v2 v3 region; v1 v2 label; vertices count from 1."""
-    point_labels = np.zeros(len(together.points), dtype=int)
-    for label in np.unique(together.labels)[::-1]:     # where two meet, the contact's
-        point_labels[together.edges[together.labels == label]] = label
-    with open(path, "w") as file:
-        file.write(f"{len(together.points)} {len(together.triangles)} {len(together.edges)}\n")
-        file.writelines(f"{x:.17g} {y:.17g} {label}\n" for (x, y), label in zip(together.points, point_labels))
-        file.writelines(f"{a} {b} {c} {region}\n" for (a, b, c), region in zip(together.triangles + 1, regions))
-        file.writelines(f"{a} {b} {label}\n" for (a, b), label in zip(together.edges + 1, together.labels))
 
 
 # ---- scene.dat
