@@ -40,16 +40,15 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | Non
         mesh_file: Path | None = None, force: bool = False, progress: bool | None = None, estimate: bool = True) -> RunResult:
     """Runs `scene` with some parameters overridden in the folder `out` (default results/<scene>), or reuses it.
 
-    Raises Failure with the exit code of the run contract. `force` runs again, from the start, even if the folder is up to
-    date. With a checkpoint_every > 0 a run that is killed goes on from its last checkpoint when it is asked for again.
-    `progress` says whether a line shows how far it is (None: on a terminal and in a notebook).
-    With `estimate` a second, coarser run, beside it where there are two cores, estimates the error, and finer ones follow until it is below the accuracy (estimate.py).
+    Raises Failure with the exit code of the run contract. `force` runs again, from the start, even if the folder is up to date. With a checkpoint_every > 0
+    a run that is killed goes on from its last checkpoint when it is asked for again. `progress` says whether a line shows how far it is (None: on a terminal
+    and in a notebook). With `estimate` a second, coarser run, beside it where there are two cores, estimates the error, and finer ones follow until it is
+    below the accuracy (estimate.py).
     """
     started = time.monotonic()
     scene = scene.override(overrides or {})
     folder = result_folder(out or RESULTS / scene.name)
-    if mesh_file:
-        mesh_file = _mesh_path(mesh_file)
+    mesh_file = mesh_file and _mesh_path(mesh_file)
     foreign = gmsh_file.load(mesh_file) if mesh_file else None
     scene.description(foreign)   # BadInput before anything is made
     finished = finished_in(folder, force)
@@ -80,21 +79,20 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | Non
             elif not isinstance(failure, TooLong) and failure.code not in (BadInput("").code, Unreadable("").code):   # these leave nothing behind
                 failure.folder = failed_beside(folder) if finished else folder
                 _keep_failed(stage, failure, scene, provenance | asked_for)
-                _say_where(stage, failure.folder)
-                replace(stage, failure.folder, _same_scene(failure.folder, scene, mesh_file))
+                _put(stage, failure.folder, scene, mesh_file)
             raise
         provenance |= asked_for | {"git": commit(), "mesh": _sha256(mesh_file or stage / scene.mesh_name) if scene.meshed else None}
-        _say_where(stage, folder)
         _tell_accuracy(stage / "scene.toml", scene.values["accuracy"])
         _finish(stage, scene, found | {"total_seconds": time.monotonic() - started}, provenance)
-        replace(stage, folder, _same_scene(folder, scene, mesh_file))
+        _put(stage, folder, scene, mesh_file)
     return RunResult(folder, read_summary(folder), reused=False)
 
 
-def _say_where(stage: Path, folder: Path) -> None:
-    """The log names the folder that the run ends up in, not the one it was made in."""
+def _put(stage: Path, folder: Path, scene: Scene, mesh_file: Path | None) -> None:
+    """In its place; the log names the folder that the run ends up in, not the one it was made in."""
     log = stage / "log.txt"
     log.write_text(log.read_text(errors="replace").replace(str(stage), str(shown(folder))))
+    replace(stage, folder, _same_scene(folder, scene, mesh_file))
 
 
 def _tell_accuracy(path: Path, asked: float) -> None:

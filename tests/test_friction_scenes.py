@@ -10,7 +10,7 @@ from orchestrate.input import parameters
 from orchestrate.output import results, vtu
 from orchestrate.__main__ import main
 from orchestrate.failure import BadInput
-from orchestrate.report import compare, figures, report
+from orchestrate.report import compare, drawing, figures, report
 from orchestrate.sweeps import study
 from orchestrate.scenes.scene import RUN
 
@@ -82,7 +82,7 @@ def test_whole_body_without_friction(tmp_path):
 def test_figures_of_unusual_runs(tmp_path, values):
     """Falls from rest, spins, runs that end inside the contact or keep one or no snapshot are drawn without an error."""
     result = run.run(scene.load("disc-oblique"), COARSE | values, tmp_path / "run")
-    names = {path.stem for path in figures.draw(result.folder, [])}
+    names = {path.stem for path in drawing.draw(result.folder, [])}
     assert FRICTIONLESS - {"shapes", "contact"} <= names and ("flight" in names) == (result.scene["fields"] > 2)
 
 

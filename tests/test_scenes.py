@@ -18,7 +18,7 @@ from orchestrate.output import vtu
 from orchestrate.scenes import assembly
 from orchestrate.freefem.describe import describe
 from orchestrate.failure import BadInput, Failure
-from orchestrate.report import bodies, figures, impacts, report
+from orchestrate.report import bodies, drawing, figures, impacts, report
 from orchestrate.sweeps import sweep
 from orchestrate.scene import read as read_scene
 
@@ -190,7 +190,7 @@ def test_figures_of_several_bodies(which, request):
     assert drawn - {"bounces.png"} == {"contact.png", "energies.png", "force.png", "shapes.png", "velocity.png"}
     assert ("bounces.png" in drawn) == (len(impacts.several(impacts.read(found.folder))) > 0)
     assert all(path.stat().st_size > 5000 for path in (found.folder / "figures").iterdir())
-    assert ("target: neo-Hookean, E = 4 MPa" if which == "mine" else "disc on block: St. Venant") in figures.title(found.scene)
+    assert ("target: neo-Hookean, E = 4 MPa" if which == "mine" else "disc on block: St. Venant") in drawing.title(found.scene)
     assert "rebound velocity, " + ("x, target" if which == "mine" else "y, block") in report.report(found)
 
 
