@@ -92,7 +92,6 @@ robustness: $(READY) ## the tests that make test leaves out, malformed input and
 	@$(PYTHON) -m orchestrate promise --hard --of disc-block --scenes 20 --seed 202 --out results/robustness-block --page docs/robustness-block.md $(ARGS)
 	@$(PYTHON) -m orchestrate promise --hard --of ball-axisymmetric --scenes 20 --seed 203 --out results/robustness-ball --page docs/robustness-ball.md $(ARGS)
 	@$(PYTHON) -m orchestrate stress
-	@$(PYTHON) -m orchestrate stress-map
 
 disc-block-errors: override ARGS += --page docs/disc-block.md
 pairing-comparison: override ARGS += --page docs/pairing.md

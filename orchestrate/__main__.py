@@ -13,7 +13,7 @@ from .places import COMMAND, from_source, shown
 
 # the commands with a module of their own, which has a main(argv), by its package
 PACKAGES = {"sweeps": ("sweep",), "report": ("friction-laws", "compare", "movie", "pages"), "paper": ("paper",),
-            "studies": ("verify", "stick-slip", "oblique-angles", "stress", "stress-map", "bench", "textbook", "skipping", "costs", "promise", "refine", "scaling", "materials",
+            "studies": ("verify", "stick-slip", "oblique-angles", "stress", "bench", "textbook", "skipping", "costs", "promise", "refine", "scaling", "materials",
                         "pairing-comparison", "disc-block-errors")}
 FROM_SOURCE = ("verify", "pages", "paper", "bench", "textbook", "oblique-angles")   # these need the source folder
 OWN_MAIN = {name: f"{package}.{name.replace('-', '_')}" for package, names in PACKAGES.items() for name in names}
@@ -112,8 +112,8 @@ def _parameters(options: argparse.Namespace) -> None:
 
 def _figures(options: argparse.Namespace) -> None:
     from .output import results
-    from .report import figures, solid
-    drawn = figures.draw(options.folder, results.read_summary(options.folder)["warnings"])
+    from .report import drawing, solid
+    drawn = drawing.draw(options.folder, results.read_summary(options.folder)["warnings"])
     for path in drawn:
         print(path)
     if "z" in results.read_history(options.folder) and options.folder / "figures/solid.png" not in drawn and (reason := solid.missing()):

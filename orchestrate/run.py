@@ -17,11 +17,10 @@ from pathlib import Path
 
 from . import __version__
 from .freefem import freefem
-from .mesh import mesh
+from .mesh import gmsh_file, mesh
 from .output import estimate as estimates
 from .failure import BadInput, Failure, TooLong, Unreadable
 from .output.folder import checkpoints, clear, failed_beside, finished_in, replace, result_folder, staging, unfinished
-from .scenes.multibody import Multibody
 from .input.parameters import Value
 from .places import INSTALLED, PACKAGE, RESULTS, ROOT, shown
 from .progress import Line
@@ -31,27 +30,26 @@ from .running.solver import FAILURES, Solver
 from .input.tables import to_toml
 from .running.told import runs
 
-ENTRANCE = "scene"                     # the module that makes flags, mesh and scene.dat, with all that it imports
+ENTRANCE = "scenes/assembly"           # the module that makes flags, mesh and scene.dat, with all that it imports
 # of these: what asks, starts, says and reads, and does not decide a result
 HARMLESS = {"failure", "places", "freefem/describe", "freefem/freefem", "output/estimate", "output/results"}
 ESTIMATING = ("output/estimate", "output/results")   # what decides the stated errors besides
 
 
-def run(scene: Scene | Multibody, overrides: dict[str, Value] | None = None, out: Path | None = None, *,
+def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | None = None, *,
         mesh_file: Path | None = None, force: bool = False, progress: bool | None = None, estimate: bool = True) -> RunResult:
     """Runs `scene` with some parameters overridden in the folder `out` (default results/<scene>), or reuses it.
 
-    Raises Failure with the exit code of the run contract. `force` runs again, from the start, even if the folder is up to
-    date. With a checkpoint_every > 0 a run that is killed goes on from its last checkpoint when it is asked for again.
-    `progress` says whether a line shows how far it is (None: on a terminal and in a notebook).
-    With `estimate` a second, coarser run, beside it where there are two cores, estimates the error, and finer ones follow until it is below the accuracy (estimate.py).
+    Raises Failure with the exit code of the run contract. `force` runs again, from the start, even if the folder is up to date. With a checkpoint_every > 0
+    a run that is killed goes on from its last checkpoint when it is asked for again. `progress` says whether a line shows how far it is (None: on a terminal
+    and in a notebook). With `estimate` a second, coarser run, beside it where there are two cores, estimates the error, and finer ones follow until it is
+    below the accuracy (estimate.py).
     """
     started = time.monotonic()
     scene = scene.override(overrides or {})
     folder = result_folder(out or RESULTS / scene.name)
-    if mesh_file:
-        mesh_file = _mesh_path(mesh_file)
-    foreign = mesh.load(mesh_file) if mesh_file else None
+    mesh_file = mesh_file and _mesh_path(mesh_file)
+    foreign = gmsh_file.load(mesh_file) if mesh_file else None
     scene.description(foreign)   # BadInput before anything is made
     finished = finished_in(folder, force)
     if not force and (there := reusable(scene, folder, mesh_file, estimate)):
@@ -81,21 +79,20 @@ def run(scene: Scene | Multibody, overrides: dict[str, Value] | None = None, out
             elif not isinstance(failure, TooLong) and failure.code not in (BadInput("").code, Unreadable("").code):   # these leave nothing behind
                 failure.folder = failed_beside(folder) if finished else folder
                 _keep_failed(stage, failure, scene, provenance | asked_for)
-                _say_where(stage, failure.folder)
-                replace(stage, failure.folder, _same_scene(failure.folder, scene, mesh_file))
+                _put(stage, failure.folder, scene, mesh_file)
             raise
         provenance |= asked_for | {"git": commit(), "mesh": _sha256(mesh_file or stage / scene.mesh_name) if scene.meshed else None}
-        _say_where(stage, folder)
         _tell_accuracy(stage / "scene.toml", scene.values["accuracy"])
         _finish(stage, scene, found | {"total_seconds": time.monotonic() - started}, provenance)
-        replace(stage, folder, _same_scene(folder, scene, mesh_file))
+        _put(stage, folder, scene, mesh_file)
     return RunResult(folder, read_summary(folder), reused=False)
 
 
-def _say_where(stage: Path, folder: Path) -> None:
-    """The log names the folder that the run ends up in, not the one it was made in."""
+def _put(stage: Path, folder: Path, scene: Scene, mesh_file: Path | None) -> None:
+    """In its place; the log names the folder that the run ends up in, not the one it was made in."""
     log = stage / "log.txt"
     log.write_text(log.read_text(errors="replace").replace(str(stage), str(shown(folder))))
+    replace(stage, folder, _same_scene(folder, scene, mesh_file))
 
 
 def _tell_accuracy(path: Path, asked: float) -> None:
@@ -106,7 +103,7 @@ def _tell_accuracy(path: Path, asked: float) -> None:
         path.write_text(re.sub(r"(?m)^(accuracy = \S+)\n", rf"\1{why}", path.read_text("utf-8"), count=1), "utf-8")
 
 
-def _finish(stage: Path, scene: Scene | Multibody, found: dict, provenance: dict) -> None:
+def _finish(stage: Path, scene: Scene, found: dict, provenance: dict) -> None:
     """The summary with what was `found` beside the run and its provenance, last and by rename."""
     summary = read_summary(stage)
     found["warnings"] = summary.get("warnings", []) + found.get("warnings", [])
@@ -118,7 +115,7 @@ def _finish(stage: Path, scene: Scene | Multibody, found: dict, provenance: dict
     os.replace(stage / "summary.json.part", stage / "summary.json")
 
 
-def _keep_failed(stage: Path, failure: Failure, scene: Scene | Multibody, provenance: dict) -> None:
+def _keep_failed(stage: Path, failure: Failure, scene: Scene, provenance: dict) -> None:
     """failure.json: the one the script wrote, or what is known; never a summary.json."""
     (stage / "summary.json").unlink(missing_ok=True)
     if not (stage / "scene.toml").exists():
@@ -129,7 +126,7 @@ def _keep_failed(stage: Path, failure: Failure, scene: Scene | Multibody, proven
 
 # ---- reuse
 
-def reusable(scene: Scene | Multibody, folder: Path, mesh_file: Path | None = None, estimate: bool = False) -> RunResult | None:
+def reusable(scene: Scene, folder: Path, mesh_file: Path | None = None, estimate: bool = False) -> RunResult | None:
     """The finished run in `folder` if it is of this very scene, mesh and code, with an estimate of its error where that is asked for,
     else None; Unreadable if it is not ours."""
     summary = finished_in(folder, force=False)
@@ -166,7 +163,7 @@ def _hash(modules: Iterable[str], files: Iterable[Path] = ()) -> str:
     return digest.hexdigest()
 
 
-def _same_scene(folder: Path, scene: Scene | Multibody, mesh_file: Path | None) -> bool:
+def _same_scene(folder: Path, scene: Scene, mesh_file: Path | None) -> bool:
     """Whether the run in `folder`, finished or failed, is one of this scene on this mesh, by whatever code."""
     name = "summary.json" if (folder / "summary.json").exists() else "failure.json"
     try:
@@ -193,7 +190,7 @@ def _mesh_path(given: Path) -> Path:
     return path
 
 
-def _gmsh(scene: Scene | Multibody, mesh_file: Path | None) -> str | None:
+def _gmsh(scene: Scene, mesh_file: Path | None) -> str | None:
     """The version of the gmsh that makes the mesh, None where a file or the script itself brings it."""
     return mesh.gmsh_version() if scene.meshed and not mesh_file else None
 

@@ -12,10 +12,11 @@ import pytest
 
 from orchestrate.freefem import freefem
 from orchestrate.mesh import mesh
-from orchestrate.scenes import approach, assembly, multibody
+from orchestrate.scenes import approach, assembly
+from orchestrate.scenes.entries import set_entry
 from orchestrate.failure import BadInput
 from orchestrate.geometry.outlines import crossing_sides, ellipse_loop, polygon_loop, self_crossing
-from orchestrate.scene import load
+from orchestrate.scene import SCENES, Scene, built_in, load, read as read_scene
 from orchestrate.input.tables import to_toml
 
 DISC = {"name": "disc", "shape": "disc", "radius": 0.5, "position": [0, 1.5], "velocity": [0, -10]}
@@ -25,8 +26,8 @@ SCENE = {"young": 7e6, "nu": 0.45, "density": 1722, "law": "svk", "body": [DISC,
 SQUARE = [[0, 0], [1, 0], [1, 1], [0, 1]]
 
 
-def read(given: dict, folder=multibody.SCENES) -> multibody.Multibody:
-    return multibody.read(given, folder, "scene")
+def read(given: dict, folder=SCENES) -> Scene:
+    return read_scene(given, folder, "scene")
 
 
 def with_body(**entries) -> dict:
@@ -37,7 +38,7 @@ def with_body(**entries) -> dict:
 def changed(*entries: tuple) -> dict:
     given = copy.deepcopy(SCENE | {"obstacle": [FLOOR]})
     for name, value in entries:
-        given = multibody.set_entry(given, name, value)
+        given = set_entry(given, name, value)
     return given
 
 
@@ -315,7 +316,7 @@ def test_open_values_follow_the_scripts_rule():
     values = assembly.assemble(read(given), rule).values
     assert (values["penalty"], values["slip_velocity"], values["friction_dynamic"]) == (123.0, 0.5, 0.4)
     assert asked[0]["young"] == 7e6 and asked[0]["radius"] == pytest.approx(0.5, rel=1e-5) and asked[0]["speed"] == pytest.approx(10, rel=1e-4)
-    assert assembly.assemble(read(multibody.set_entry(given, "contact.penalty", 5e8)), rule).values["penalty"] == 5e8
+    assert assembly.assemble(read(set_entry(given, "contact.penalty", 5e8)), rule).values["penalty"] == 5e8
 
 
 def test_pairs_inherit_from_contact():
@@ -328,7 +329,7 @@ def test_pairs_inherit_from_contact():
         [0, -1, 1e9, 0.3, 0.1], [0, 1, 2e9, 0.5, 0.5], [1, -1, 1e9, 0.2, 0.2]]
 
 
-@pytest.mark.parametrize("name", multibody.built_in())
+@pytest.mark.parametrize("name", [name for name in built_in() if load(name).bodies])
 def test_the_scene_as_used_is_the_same_scene(name, tmp_path):
     """scene.toml, which has everything that was left open, makes the same mesh, data and values, byte for byte."""
     first, second = tmp_path / "first", tmp_path / "second"
@@ -342,7 +343,7 @@ def test_the_scene_as_used_is_the_same_scene(name, tmp_path):
         assert (first / file).read_text() == (second / file).read_text(), file
 
 
-@pytest.mark.parametrize("name", multibody.built_in())
+@pytest.mark.parametrize("name", [name for name in built_in() if load(name).bodies])
 def test_built_in_scenes_are_assembled(name):
     """Every scene that comes with the program makes a sound mesh of its bodies."""
     scene = load(name)
@@ -418,7 +419,7 @@ def test_missing_material_is_no_default(key):
 
 
 @pytest.mark.parametrize("given, words", [
-    ({}, "body: is missing (accepted: one table [[body]] or more)"),
+    ({"obstacle": []}, "body: is missing (accepted: one table [[body]] or more)"),
     ({"body": {"shape": "disc"}}, "body: '{'shape': 'disc'}' is no list of tables (accepted: [[body]])"),
     ({"body": [{}]}, "body.1.shape: is missing (accepted: disc|"),
     ({"body": [3]}, "body.1: '3' is no table (accepted: [[body]])"),
@@ -517,7 +518,7 @@ def test_entries_are_set_by_name():
 ])
 def test_names_that_reach_nothing_are_named(name, words):
     with pytest.raises(BadInput) as caught:
-        multibody.set_entry(SCENE | {"obstacle": [FLOOR]}, name, 1)
+        set_entry(SCENE | {"obstacle": [FLOOR]}, name, 1)
     assert words in str(caught.value)
 
 
@@ -577,14 +578,14 @@ def test_a_mesh_that_is_no_file(file, tmp_path):
     (tmp_path / "folder").mkdir()
     os.mkfifo(tmp_path / "pipe")
     with pytest.raises(BadInput, match=r"^body.1.file: '.*' is no file"):
-        multibody.read(SCENE | {"body": [dict(shape="mesh", file=file, position=[0, 1])]}, tmp_path, "mine")
+        read_scene(SCENE | {"body": [dict(shape="mesh", file=file, position=[0, 1])]}, tmp_path, "mine")
 
 
 def test_a_broken_mesh_file_is_named_as_given(tmp_path):
     """The message has the user's name of the file, and no other."""
     (tmp_path / "mine.msh").write_text("3 1 3\n0 0")
     with pytest.raises(BadInput, match="^body.1.file: mine.msh is not a 2D mesh of FreeFEM"):
-        multibody.read(SCENE | {"body": [dict(shape="mesh", file="mine.msh", position=[0, 1])]}, tmp_path, "mine")
+        read_scene(SCENE | {"body": [dict(shape="mesh", file="mine.msh", position=[0, 1])]}, tmp_path, "mine")
 
 
 def test_a_sliver_is_refused_by_its_thickness():

@@ -10,10 +10,10 @@ from orchestrate import run
 from orchestrate.geometry import tumbling
 from orchestrate.input import parameters
 from orchestrate.mesh import curved, mesh, solid_file, solid_mesh, solids
-from orchestrate.scenes import approach, assembly, mirror, multibody
+from orchestrate.scenes import approach, assembly, mirror
 from orchestrate.failure import BadInput
-from orchestrate.report import bodies, figures, report
-from orchestrate.scene import load
+from orchestrate.report import bodies, drawing, figures, report
+from orchestrate.scene import SCENES, Scene, load, read as read_scene
 from orchestrate.input.tables import to_toml
 from test_direct import call
 
@@ -24,8 +24,8 @@ FLOOR = {"name": "floor", "kind": "plane", "point": [0, -0.5, 0], "normal": [0, 
 SCENE = {"dimension": "3d", "law": "neohookean", "young": 7e6, "nu": 0.45, "density": 1722, "accuracy": 0.1}
 
 
-def read(*tables: dict, obstacles=(FLOOR,), folder=multibody.SCENES, **top) -> multibody.Multibody:
-    return multibody.read(SCENE | top | {"body": [{"position": [0, 0, 0]} | table for table in tables], "obstacle": list(obstacles)}, folder, "scene")
+def read(*tables: dict, obstacles=(FLOOR,), folder=SCENES, **top) -> Scene:
+    return read_scene(SCENE | top | {"body": [{"position": [0, 0, 0]} | table for table in tables], "obstacle": list(obstacles)}, folder, "scene")
 
 
 def quality(m: solid_mesh.SolidMesh) -> np.ndarray:
@@ -276,7 +276,7 @@ def prism(corners: int, path) -> None:
     sides = np.vstack([np.column_stack(one) for one in ((low, high, np.roll(high, -1)), (low, np.roll(high, -1), np.roll(low, -1)))])
     ends = np.vstack([np.column_stack([np.full(corners - 2, one[0]), one[1:-1], one[2:]]) for one in (low, high)])
     cells = solid_mesh.right_handed(points, np.column_stack([np.zeros(4 * corners - 4, dtype=int), np.vstack([sides, ends])]))
-    faces = solid_mesh.boundary(cells)
+    faces = mesh.boundary(cells)
     solid_mesh.write(solid_mesh.SolidMesh(points, cells, faces, np.ones(len(faces), dtype=int)), np.zeros(len(cells), dtype=int), path)
 
 
@@ -322,7 +322,7 @@ def test_bodies_that_hang_together_by_less_than_a_face_are_refused(tmp_path, cel
     """Two tetrahedra with an edge, or a point, in common are no body, as triangles with a point in common are none in the plane."""
     points = 0.1 * np.array([(0, 0, 0), (0, 0, 1), (1, 0, 0), (0, 1, 0), (-1, 0, 0), (0, -1, 0), (0, 0, -1)])[:max(map(max, cells)) + 1]
     cells = solid_mesh.right_handed(points, np.array(cells))
-    faces = solid_mesh.boundary(cells)
+    faces = mesh.boundary(cells)
     solid_mesh.write(solid_mesh.SolidMesh(points, cells, faces, np.ones(len(faces), dtype=int)), np.zeros(len(cells), dtype=int), tmp_path / "joined.mesh")
     with pytest.raises(BadInput) as caught:
         read({"shape": "mesh", "file": "joined.mesh"}, folder=tmp_path)
@@ -385,7 +385,7 @@ def test_what_is_wrong_is_named(entries, top, words):
 def test_symmetry_is_an_entry_of_three_dimensions():
     """In the plane the table has no such key."""
     with pytest.raises(BadInput, match="^symmetry: 'half' belongs to no such key"):
-        multibody.read({"symmetry": "half", "body": [{"shape": "disc", "radius": 1, "position": [0, 0]}]}, multibody.SCENES, "scene")
+        read_scene({"symmetry": "half", "body": [{"shape": "disc", "radius": 1, "position": [0, 0]}]}, SCENES, "scene")
 
 
 def test_three_numbers_of_obstacles():
@@ -445,12 +445,12 @@ def test_report_and_figures(falls, tmp_path):
     plane, = bodies.obstacles_of(found.scene)
     assert plane.gap_in_plane(np.array([[3, 2.0]]), 1.0) == pytest.approx([2.0])
     for run_of in (found, falls["full"]):
-        assert {"energies", "force", "velocity", "shapes"} <= {path.stem for path in figures.draw(run_of.folder, [])}
+        assert {"energies", "force", "velocity", "shapes"} <= {path.stem for path in drawing.draw(run_of.folder, [])}
 
 
 def test_it_is_the_ball_of_the_other_dimension(falls, tmp_path):
     """The same scene as a body of revolution, to the coarse meshes' error."""
-    scene = multibody.read(SCENE | {"dimension": "axisymmetric", "body": [{"shape": "ball", "radius": 0.05, "position": 0.05, "velocity": -2}],
+    scene = read_scene(SCENE | {"dimension": "axisymmetric", "body": [{"shape": "ball", "radius": 0.05, "position": 0.05, "velocity": -2}],
                                     "obstacle": [{"kind": "plane", "point": [0, 0], "normal": [0, 1]}]}, tmp_path, "flat")
     flat, solid = run.run(scene, {}, tmp_path / "flat", estimate=False).summary, falls["quarter"].summary
     assert solid["impulse"] == pytest.approx(flat["impulse"], rel=0.02) and solid["rebound_vy"] == pytest.approx(flat["rebound_vy"], rel=0.02)
@@ -485,7 +485,7 @@ def test_a_pair_is_that_of_the_other_dimension(tmp_path):
     ball = {key: value for key, value in BALL.items() if key not in ("position", "velocity")}
     top = {"end_time": 2e-3, "accuracy": 0.1}
     solid = run.run(read(BALL | {"position": [0, 0.05, 0]}, cylinder | {"position": [0, -0.03, 0]}, obstacles=(), **top), {}, tmp_path / "solid", estimate=False).summary
-    scene = multibody.read(SCENE | top | {"dimension": "axisymmetric", "body": [ball | {"position": 0.05, "velocity": -8}, cylinder | {"position": -0.03}]}, tmp_path, "flat")
+    scene = read_scene(SCENE | top | {"dimension": "axisymmetric", "body": [ball | {"position": 0.05, "velocity": -8}, cylinder | {"position": -0.03}]}, tmp_path, "flat")
     flat = run.run(scene, {}, tmp_path / "flat", estimate=False).summary
     assert flat["impulse"] > 2.5
     for name, off in (("impulse", 0.02), ("impulse_y_1", 0.02), ("rebound_vy_1", 0.02), ("rebound_vy_2", 0.03), ("peak_force", 0.06)):

@@ -8,10 +8,10 @@ import pytest
 from orchestrate import run
 from orchestrate.input import parameters
 from orchestrate.mesh import mesh
-from orchestrate.scenes import assembly, multibody
+from orchestrate.scenes import assembly
 from orchestrate.failure import BadInput
 from orchestrate.report import report
-from orchestrate.scene import load
+from orchestrate.scene import SCENES, Scene, load, read as read_scene
 from orchestrate.input.tables import to_toml
 from test_direct import call
 
@@ -21,8 +21,8 @@ FLOOR = {"name": "floor", "kind": "plane", "point": [0, -1], "normal": [0, 1]}
 SCENE = {"dimension": "axisymmetric", "young": 7e6, "nu": 0.45, "density": 1722, "law": "svk"}
 
 
-def read(*tables: dict, obstacles=(FLOOR,), folder=multibody.SCENES, **top) -> multibody.Multibody:
-    return multibody.read(SCENE | top | {"body": [{"position": 0} | table for table in tables], "obstacle": list(obstacles)}, folder, "scene")
+def read(*tables: dict, obstacles=(FLOOR,), folder=SCENES, **top) -> Scene:
+    return read_scene(SCENE | top | {"body": [{"position": 0} | table for table in tables], "obstacle": list(obstacles)}, folder, "scene")
 
 
 def volumes(m: mesh.Mesh) -> tuple[float, float]:

@@ -62,8 +62,8 @@ def test_run_reports_beside_the_published_numbers(fake, tmp_path):
 def test_a_run_needs_no_matplotlib(fake, tmp_path, monkeypatch, capsys):
     """Where nothing can be drawn one line says so, and the run is finished and reported all the same; drawn once it can be."""
     with monkeypatch.context() as without:
-        without.setitem(sys.modules, "orchestrate.report.figures", None)
-        without.delattr("orchestrate.report.figures", raising=False)
+        without.setitem(sys.modules, "orchestrate.report.drawing", None)
+        without.delattr("orchestrate.report.drawing", raising=False)
         assert main(["run", "disc-normal", "--out", str(tmp_path / "out")]) == 0
     said, starts = capsys.readouterr(), fake.starts()
     assert said.err.startswith("ffimpact: the figures could not be drawn: ") and said.err.count("\n") == 1 and "contact time" in said.out
@@ -189,7 +189,7 @@ def test_a_full_disk_is_one_line(tmp_path, monkeypatch, capsys):
     assert code == 14 and error.count("\n") == 1 and "No space left on device" in error and "--out" in error
 
 
-@pytest.mark.parametrize("command", ["promise", "scaling", "materials", "bench", "costs", "skipping", "stress", "stress-map", "textbook", "verify", "refine",
+@pytest.mark.parametrize("command", ["promise", "scaling", "materials", "bench", "costs", "skipping", "stress", "textbook", "verify", "refine",
                                      "stick-slip", "oblique-angles", "disc-block-errors"])
 def test_a_loop_of_links_is_no_folder(tmp_path, command):
     """A result folder behind a loop of links is exit code 14 in one line, for every study."""

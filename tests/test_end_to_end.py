@@ -16,7 +16,7 @@ from orchestrate.input import parameters
 from orchestrate.output import results, vtu
 from orchestrate.freefem.describe import describe
 from orchestrate.failure import Failure, NotInstalled
-from orchestrate.report import report
+from orchestrate.report import literature, report
 
 COLUMNS = ("t dt normal_force normal_load friction_force kinetic elastic contact friction_work external_work balance momentum_x momentum_y "
            "vx vy spin max_penetration contact_size sliding_fraction min_jacobian min_stretch newton_iterations min_ellipticity").split()
@@ -66,7 +66,7 @@ def test_history_and_summary_agree(result):
 
 def test_result_meets_the_independent_programs(result):
     """Contact time, impulse and rebound agree with NGSolve and GetFEM to the 0.5 % that the scene asks for, beside what those are known to."""
-    for key, numbers in report.references("disc-plane", result.scene).items():
+    for key, numbers in literature.references("disc-plane", result.scene).items():
         for number in numbers:
             if "error" in number:
                 assert abs(result.summary[key] - number["value"]) <= 5e-3 * number["value"] + number["error"], key

@@ -7,12 +7,12 @@ import pytest
 
 from orchestrate.output import vtu
 from orchestrate.failure import Unreadable
-from orchestrate.report import bodies, figures
+from orchestrate.report import bodies, drawing, figures
 
 
 def test_all_figures_are_drawn(finished_folder):
     """A folder with snapshots gives four pictures that are not empty."""
-    files = figures.draw(finished_folder, [])
+    files = drawing.draw(finished_folder, [])
     assert sorted(f.name for f in files) == ["energies.png", "force.png", "shapes.png", "velocity.png"]
     assert all(f.stat().st_size > 5000 for f in files)
 
@@ -20,7 +20,7 @@ def test_all_figures_are_drawn(finished_folder):
 def test_no_snapshots_no_shapes(finished_folder):
     """Without snapshots the shapes are left out and nothing else."""
     (finished_folder / "fields.pvd").unlink()
-    assert sorted(f.stem for f in figures.draw(finished_folder, [])) == ["energies", "force", "velocity"]
+    assert sorted(f.stem for f in drawing.draw(finished_folder, [])) == ["energies", "force", "velocity"]
 
 
 def test_half_a_body_is_mirrored(finished_folder):

@@ -8,8 +8,9 @@ import pandas as pd
 import pytest
 
 from orchestrate import run, scene
-from orchestrate.scenes import approach, multibody
+from orchestrate.scenes import approach
 from orchestrate.failure import BadInput
+from orchestrate.scene import Scene, read as read_scene
 
 RUBBER = {"young": 7e6, "nu": 0.3, "density": 1722, "law": "neohookean", "accuracy": 0.1}
 STEEL = RUBBER | {"young": 2e11, "density": 7800}
@@ -18,11 +19,11 @@ FLOOR = {"kind": "plane", "point": [0, 0], "normal": [0, 1]}
 ROOM = {"kind": "polyline", "vertices": [[-1, 0], [3, 0], [3, 1]]}
 
 
-def read(*bodies: dict, obstacles: tuple = (), **more) -> multibody.Multibody:
-    return multibody.read(RUBBER | more | {"body": [*bodies], "obstacle": [*obstacles]}, Path("."), "flights")
+def read(*bodies: dict, obstacles: tuple = (), **more) -> Scene:
+    return read_scene(RUBBER | more | {"body": [*bodies], "obstacle": [*obstacles]}, Path("."), "flights")
 
 
-def go(tmp_path: Path, given: multibody.Multibody | scene.Scene, values: dict | None = None) -> tuple[pd.DataFrame, run.RunResult]:
+def go(tmp_path: Path, given: scene.Scene, values: dict | None = None) -> tuple[pd.DataFrame, run.RunResult]:
     found = run.run(given, values or {}, tmp_path / "out", estimate=False)
     return pd.read_csv(found.folder / "contacts.csv"), found
 

@@ -166,7 +166,7 @@ def test_large_mesh_is_checked_within_a_second(tmp_path):
     low, right, up, far = number[:-1, :-1].ravel(), number[:-1, 1:].ravel(), number[1:, :-1].ravel(), number[1:, 1:].ravel()
     triangles = np.vstack([np.stack([low, right, far], axis=1), np.stack([low, far, up], axis=1)])
     points = np.stack(np.meshgrid(np.linspace(0, 0.1, n), np.linspace(0, 0.1, n)), axis=-1).reshape(-1, 2)
-    edges = gmsh_file.boundary(triangles)
+    edges = mesh.boundary(triangles)
     mesh.write(mesh.Mesh(points, triangles, edges, np.ones(len(edges), dtype=int)), tmp_path / "m.msh")
     describe({"radius": 0.0501})   # a start without a mesh, for comparison
     started = time.perf_counter()
@@ -408,7 +408,7 @@ def test_named_curves_without_contact_are_named(tmp_path):
     m = fan(round_of(24), 0, 1)
     in_gmsh(tmp_path / "m.msh", replace(m, labels=np.where(np.arange(24) < 5, 2, 3)), 4.1, False, named=True)
     with pytest.raises(BadInput, match=r"none of its physical curves \(rest, Symmetry\) has the name 'contact', or without a name the number 1"):
-        mesh.load(tmp_path / "m.msh")
+        gmsh_file.load(tmp_path / "m.msh")
 
 
 def in_gmsh(path: Path, m: mesh.Mesh, version: float, binary: bool, named: bool = False) -> None:
@@ -437,7 +437,7 @@ def the_same(a: mesh.Mesh, b: mesh.Mesh) -> bool:
 
 def load(path: Path) -> mesh.Mesh:
     made = path.with_suffix(".freefem")
-    made.write_bytes(mesh.load(path))
+    made.write_bytes(gmsh_file.load(path))
     return mesh.read(made)
 
 
@@ -526,7 +526,7 @@ def test_bad_gmsh_file_is_one_line(fake, tmp_path, text, words):
 
 
 def _converted(folder: Path) -> str:
-    (folder / "freefem.msh").write_bytes(mesh.load(folder / "m.msh"))
+    (folder / "freefem.msh").write_bytes(gmsh_file.load(folder / "m.msh"))
     return str(folder / "freefem.msh")
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from orchestrate import scene
-from orchestrate.scenes.multibody import read
+from orchestrate.scene import read
 from orchestrate.run import run
 
 ANSWERS = ("impulse", "contact_time", "thresholded_contact_time", "peak_force", "friction_work", "vibration_energy", "max_pressure", "max_von_mises", "dofs", "steps")

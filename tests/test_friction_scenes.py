@@ -8,11 +8,11 @@ import pytest
 from orchestrate import run, scene
 from orchestrate.input import parameters
 from orchestrate.output import results, vtu
-from orchestrate.scenes import multibody
 from orchestrate.__main__ import main
 from orchestrate.failure import BadInput
-from orchestrate.report import compare, figures, report
+from orchestrate.report import compare, drawing, figures, report
 from orchestrate.sweeps import study
+from orchestrate.scenes.scene import RUN
 
 COARSE = {"degree": 1, "mesh_size": 0.0125, "contact_mesh_size": 0.0125, "fields": 3}
 FRICTIONLESS = {"contact", "energies", "force", "shapes", "velocity"}
@@ -31,7 +31,7 @@ def test_built_in_scenes_load(name):
     """Every built-in scene has a title, a script of its own kind and every parameter."""
     loaded = scene.load(name)
     known = parameters.names(loaded.script)
-    wanted = set(multibody.RUN) & set(known) if isinstance(loaded, multibody.Multibody) else known
+    wanted = set(RUN) & set(known) if loaded.bodies else known
     assert loaded.title != name and set(loaded.values) == set(wanted)
 
 
@@ -82,7 +82,7 @@ def test_whole_body_without_friction(tmp_path):
 def test_figures_of_unusual_runs(tmp_path, values):
     """Falls from rest, spins, runs that end inside the contact or keep one or no snapshot are drawn without an error."""
     result = run.run(scene.load("disc-oblique"), COARSE | values, tmp_path / "run")
-    names = {path.stem for path in figures.draw(result.folder, [])}
+    names = {path.stem for path in drawing.draw(result.folder, [])}
     assert FRICTIONLESS - {"shapes", "contact"} <= names and ("flight" in names) == (result.scene["fields"] > 2)
 
 

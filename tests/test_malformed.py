@@ -11,7 +11,7 @@ import pytest
 
 from orchestrate.freefem import freefem
 from orchestrate.input import parameters
-from orchestrate.scenes import multibody
+from orchestrate.scenes.entries import set_entry, toml_value
 from orchestrate.__main__ import main
 from orchestrate.input.tables import to_toml
 
@@ -173,7 +173,7 @@ def test_a_message_repeats_two_hundred_characters_of_a_value(capsys, entry):
     for text in VALUES_TOO_LONG:
         if entry == "title" and text.startswith('"'):
             continue
-        in_a_scene(capsys, r"scene\.toml: ", to_toml(multibody.set_entry(scene, entry, text)))
+        in_a_scene(capsys, r"scene\.toml: ", to_toml(set_entry(scene, entry, toml_value(text))))
         Path("scene.toml").write_text(to_toml(scene))
         by_python(capsys, "", "run", "scene.toml", "--set", f"{entry}={text}", "--out", "a/out")
 

@@ -6,7 +6,7 @@ import pytest
 
 from orchestrate import run, scene
 from orchestrate.output import results
-from orchestrate.studies import bench, costs, skipping, stress_map
+from orchestrate.studies import bench, costs, skipping
 from orchestrate.sweeps import study
 
 
@@ -127,37 +127,3 @@ def test_growth_fits_a_power_law(tmp_path, monkeypatch):
     monkeypatch.setattr(study, "study", measured)
     table, laws = costs.growth(tmp_path, quick=True)
     assert laws["ms a step"][0] == pytest.approx(1.2) and laws["memory, MB"][0] == pytest.approx(1.0) and len(table) == 3
-
-
-def test_stress_map_is_always_the_same_and_covers_all():
-    """The same seed gives the same sets; fewer of them are the first of them; every range is covered to its ends."""
-    points = stress_map.sample(300)
-    assert points == stress_map.sample(300) and points[:7] == stress_map.sample(7)
-    frame = pd.DataFrame(points)
-    assert set(frame.law) == {"svk", "neohookean"} and {0.0, 0.499} <= set(frame.nu) and set(frame.degree) == {1, 2}
-    assert frame.speed.min() < 0.6 and frame.speed.max() > 17 and frame.penalty.min() < 2e8 and frame.penalty.max() > 5e12
-    assert (frame.dt == 0).mean() > 0.4 and frame.slip_velocity.min() < 0.02 and 0.4 < frame.friction_static.notna().mean() < 0.6
-    assert (frame.friction_static.fillna(0) >= frame.friction_dynamic.fillna(0)).all()
-    assert all(scene.load("disc-normal").override(point) for point in points), "every set is accepted"
-
-
-@pytest.mark.parametrize("change, holds", [
-    ({}, True), ({"energy_drift": 1e-6}, False), ({"contact_intervals": 50}, False),
-    ({"exit": 11, "contact_intervals": 50, "message": "chatter: ..."}, True), ({"exit": 1, "message": "killed"}, False),
-    ({"exit": study.TOO_LONG, "message": "no end"}, False), ({"exit": 12, "message": "det F"}, True), ({"exit": 12, "message": ""}, False),
-    ({"exit": 11, "message": "the step"}, True)])
-def test_stress_map_requirement(change, holds):
-    """No open balance, chatter, crash or hang among the finished; a failure has a message; exit 11 is rare."""
-    row = {"law": "svk", "nu": 0.3, "speed": 4.0, "penalty": 1e10, "exit": 0, "message": "", "energy_drift": 1e-11, "contact_intervals": 1,
-           "ellipticity_lost_time": 1e-4, "max_penetration": 1e-4, "wall_seconds": 1.0, "newton_iterations": 10, "steps": 2}
-    rows = pd.DataFrame([row] * 99 + [row | change])
-    rows["outcome"] = [stress_map.judge(each) for _, each in rows.iterrows()]
-    assert stress_map.holds(rows) == holds and f"the requirement {'holds' if holds else 'FAILS'}" in stress_map.report(rows)[-1]
-
-
-def test_stress_map_reports(fake, tmp_path, capsys):
-    """CSV, figure and page; failing regions in words."""
-    fake("material")
-    assert stress_map.main(["--sets", "6", "--out", str(tmp_path)]) == 0
-    assert "material broke down (12)" in capsys.readouterr().out
-    assert {path.name for path in tmp_path.iterdir()} >= {"stress-map.csv", "stress-map.png", "stress-map.md", "runs"}

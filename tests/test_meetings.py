@@ -6,8 +6,9 @@ from pathlib import Path
 import pytest
 
 from orchestrate import run
-from orchestrate.scenes import approach, assembly, multibody
+from orchestrate.scenes import approach, assembly
 from orchestrate.freefem.describe import describe
+from orchestrate.scene import Scene, read as read_scene
 
 DISC = {"name": "disc", "shape": "disc", "radius": 0.05, "position": [0, 0.0651], "velocity": [0, -3]}
 RUBBER = {"law": "neohookean", "young": 7e6, "nu": 0.3, "density": 1722, "accuracy": 0.1}
@@ -21,9 +22,9 @@ def peg(radius: float, kind: str = "circle", axes: int = 2) -> dict:
     return {"name": "peg", "kind": kind, "centre": [0, 0.015 - radius, 0][:axes], "radius": radius}
 
 
-def scene(body, obstacle, **more) -> multibody.Multibody:
+def scene(body, obstacle, **more) -> Scene:
     tables = RUBBER | more | {"body": body if isinstance(body, list) else [body], "obstacle": obstacle if isinstance(obstacle, list) else [obstacle]}
-    return multibody.read(tables, Path(), "meeting")
+    return read_scene(tables, Path(), "meeting")
 
 
 def go(tmp_path, *tables, **more) -> run.RunResult:

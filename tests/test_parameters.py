@@ -6,7 +6,6 @@ import pytest
 
 from orchestrate import scene
 from orchestrate.input import parameters
-from orchestrate.scenes import multibody
 from orchestrate.freefem.describe import describe
 from orchestrate.failure import BadInput
 
@@ -81,7 +80,7 @@ def test_built_in_scenes_load(name):
     """Every scene that comes with the program has a title, and a value for every parameter."""
     loaded = scene.load(name)
     assert loaded.title and set(loaded.values) <= set(parameters.names(loaded.script))
-    if not isinstance(loaded, multibody.Multibody):
+    if not loaded.bodies:
         assert list(loaded.values) == parameters.names(loaded.script)
 
 

@@ -268,9 +268,9 @@ def test_killed_between_two_renames(tmp_path):
 
 
 def test_what_decides_a_result_is_derived():
-    """A run is reused only by the same code: every module that scene.py reaches by imports decides, but those that are named as harmless, and so does a new one."""
+    """A run is reused only by the same code: every module that assembly.py reaches by imports decides, but those that are named as harmless, and so does a new one."""
     decisive = run.imported(run.ENTRANCE) - run.HARMLESS
-    assert run.HARMLESS < run.imported(run.ENTRANCE) and {"scene", "scenes/multibody", "scenes/assembly", "input/parameters", "mesh/mesh", "mesh/solid_mesh", "input/tables", "geometry/tumbling"} <= decisive
+    assert run.HARMLESS < run.imported(run.ENTRANCE) and {"scenes/scene", "scenes/entries", "scenes/assembly", "input/parameters", "mesh/mesh", "mesh/solid_mesh", "input/tables", "geometry/tumbling"} <= decisive
     assert not decisive & {"run", "output/folder", "report/report", "studies/verify", "running/told"}
 
 
@@ -293,5 +293,5 @@ def test_a_changed_module_is_other_code(tmp_path, monkeypatch):
     assert run.code_hash() == before
     (tmp_path / "failure.py").write_text("")
     assert run.code_hash() == before
-    (tmp_path / "scene.py").write_text("")
+    (tmp_path / "scenes/scene.py").write_text("")
     assert run.code_hash() != before

@@ -15,11 +15,12 @@ from orchestrate.freefem import freefem
 from orchestrate.input import parameters
 from orchestrate.mesh import mesh
 from orchestrate.output import vtu
-from orchestrate.scenes import assembly, multibody
+from orchestrate.scenes import assembly
 from orchestrate.freefem.describe import describe
 from orchestrate.failure import BadInput, Failure
-from orchestrate.report import bodies, figures, impacts, report
+from orchestrate.report import bodies, drawing, figures, impacts, report
 from orchestrate.sweeps import sweep
+from orchestrate.scene import read as read_scene
 
 MINE = """
 title = "A disc meets a soft one and a moving post"
@@ -110,7 +111,7 @@ def test_the_folder_of_a_scene_of_ones_own(mine, tmp_path):
     s = found.summary
     assert {"mesh.msh", "scene.dat", "scene.toml", "history.csv", "summary.json", "fields.pvd"} <= {each.name for each in found.folder.iterdir()}
     assert s["provenance"]["mesh"] == run._sha256(found.folder / "mesh.msh") and s["provenance"]["gmsh"]
-    scene.load(str(found.folder / "scene.toml")).prepare(tmp_path)
+    assembly.prepare(scene.load(str(found.folder / "scene.toml")), tmp_path)
     assert (tmp_path / "scene.dat").read_text() == (found.folder / "scene.dat").read_text()
     assert run.run(scene.load(str(path)), {}, found.folder).reused
     assert not run.reusable(scene.load(str(path)).override({"body.2.young": 5e6}), found.folder)
@@ -189,7 +190,7 @@ def test_figures_of_several_bodies(which, request):
     assert drawn - {"bounces.png"} == {"contact.png", "energies.png", "force.png", "shapes.png", "velocity.png"}
     assert ("bounces.png" in drawn) == (len(impacts.several(impacts.read(found.folder))) > 0)
     assert all(path.stat().st_size > 5000 for path in (found.folder / "figures").iterdir())
-    assert ("target: neo-Hookean, E = 4 MPa" if which == "mine" else "disc on block: St. Venant") in figures.title(found.scene)
+    assert ("target: neo-Hookean, E = 4 MPa" if which == "mine" else "disc on block: St. Venant") in drawing.title(found.scene)
     assert "rebound velocity, " + ("x, target" if which == "mine" else "y, block") in report.report(found)
 
 
@@ -242,7 +243,7 @@ def test_one_body_and_nothing_else(inputs, tmp_path):
     """A body with nothing to touch is refused: by Python before a run, by the script where a data file has no more."""
     alone = dict(law="svk", young=7e6, nu=0.4, density=1000, body=[dict(shape="disc", radius=0.1, position=[0, 0], velocity=[0, -1])])
     with pytest.raises(BadInput, match="^obstacle: is missing, and a second body too"):
-        multibody.read(alone, tmp_path, "alone").prepare(tmp_path)
+        assembly.prepare(read_scene(alone, tmp_path, "alone"), tmp_path)
     lines = (inputs / "scene.dat").read_text().split("\n")
     kept = [*lines[:2], "bodies 1", lines[3], "circles 0", "files 0", "obstacles 0", "pairs 0", ""]
     (tmp_path / "scene.dat").write_text("\n".join(kept))
@@ -262,7 +263,7 @@ def test_a_shaft_of_a_file_has_its_flats(tmp_path):
     points = np.vstack([radius * np.column_stack([np.cos(angles), np.sin(angles)]), [0, 0]])
     mesh.write(mesh.Mesh(points, spokes, spokes[:, 1:], np.ones(16, dtype=int)), tmp_path / "shaft.msh")
     body = {"name": "shaft", "shape": "mesh", "file": "shaft.msh", "position": [0, 0.0101], "velocity": [0, -2], "angle": 60}
-    found = run.run(multibody.read(FALLING | {"body": [body], "end_time": 3e-3}, tmp_path, "shaft"), {}, tmp_path / "run")
+    found = run.run(read_scene(FALLING | {"body": [body], "end_time": 3e-3}, tmp_path, "shaft"), {}, tmp_path / "run")
     assert found.summary["estimated_error_excludes"][-1] == "mesh" and any("those of the step" in one or "not estimated" in one for one in found.summary["warnings"])
     area = radius**2 * (math.pi - 2 * flat + math.sin(2 * flat))
     assert found.summary["energy_initial"] == pytest.approx(area * 1722 * 2, rel=1e-4) and abs(found.summary["rebound_spin"]) > 50
@@ -276,7 +277,7 @@ def test_bodies_turn_about_their_stated_centre(tmp_path):
     found = []
     for axes, angle in (([0.06, 0.03], 0), ([0.03, 0.06], 90)):
         body = {"shape": "ellipse", "semi_axes": axes, "angle": angle, "position": [0, 0.031], "velocity": [0, -1], "mesh_size": 0.015}
-        found.append(run.run(multibody.read(FALLING | {"body": [body], "end_time": 1.1e-3}, tmp_path, "ellipse"), {}, tmp_path / str(angle), estimate=False))
+        found.append(run.run(read_scene(FALLING | {"body": [body], "end_time": 1.1e-3}, tmp_path, "ellipse"), {}, tmp_path / str(angle), estimate=False))
     first, second = found
     assert first.summary["contact_start"] == pytest.approx(second.summary["contact_start"], rel=1e-9)
     assert second.history["y"] == pytest.approx(first.history["y"], abs=1e-12) and abs(second.history["x"]).max() < 1e-12
@@ -288,7 +289,7 @@ def test_a_body_that_passes_through_itself_is_warned_about(tmp_path):
     pin = {"shape": "polygon", "vertices": [[0, 0], [0.1, 0], [0.1, 0.01], [0.01, 0.01], [0.01, 0.02], [0.1, 0.02], [0.1, 0.03], [0, 0.03]],
            "position": [0, 0.0151], "velocity": [0, -6], "mesh_size": 0.009, "contact_mesh_size": 0.009}
     for end, words in ((4e-3, "overlap: the body passes through itself from t = "), (8e-4, "")):
-        found = run.run(multibody.read(FALLING | {"body": [pin], "end_time": end}, tmp_path, "pin"), {}, tmp_path / "pin", estimate=False)
+        found = run.run(read_scene(FALLING | {"body": [pin], "end_time": end}, tmp_path, "pin"), {}, tmp_path / "pin", estimate=False)
         warned = [one for one in found.summary["warnings"] if "overlap" in one]
         assert len(warned) == (words != "")
         for sentence in warned:
@@ -304,7 +305,7 @@ def test_bodies_that_never_meet(tmp_path, dimension, shape, zeros):
         def body(name: str, y: float, v: float) -> dict:
             return dict(name=name, shape=shape, radius=0.02, position=[0, y] + zeros * [0], velocity=[0, v] + zeros * [0])
         given = dict(dimension=dimension, law="neohookean", young=1e6, nu=0.3, density=1000, accuracy=0.4, body=[body("above", 0.05, up), body("below", 0, 0)])
-        multibody.read(given | more, tmp_path, "two").prepare(tmp_path)
+        assembly.prepare(read_scene(given | more, tmp_path, "two"), tmp_path)
 
     with pytest.raises(BadInput, match="^velocity: 0 of every body"):
         prepare(0)
@@ -400,7 +401,7 @@ def test_flags_of_another_script_are_refused(script, flags, said):
 def test_scripts_describe_themselves():
     """The scripts that there are, and of two bodies the columns of each."""
     assert describe()["scripts"] == "disc-plane|disc-block|ball-axisymmetric|ball-plane|bodies|bodies-axisymmetric|bodies-3d" and describe(script="disc-block")["bodies"] == 2
-    assert set(multibody.built_in()) == {"two-discs", "three-in-a-row", "disc-bowl", "disc-corner", "disc-step", "two-balls", "ball-cylinder", "ball-block", "balls-3d"} < set(scene.built_in())
+    assert {name for name in scene.built_in() if scene.load(name).bodies} == {"two-discs", "three-in-a-row", "disc-bowl", "disc-corner", "disc-step", "two-balls", "ball-cylinder", "ball-block", "balls-3d"} < set(scene.built_in())
 
 
 # ---- what is set is what runs
@@ -440,7 +441,7 @@ def test_what_a_scene_of_bodies_fixed_follows():
     larger = bowl.override({"body.1.radius": 0.04})
     assert larger.bodies[0].mesh_size == larger.bodies[0].contact_mesh_size == 0 and len(larger.released) == 2
     assert bowl.override({"body.1.radius": 0.04, "body.1.mesh_size": 0.01, "body.1.contact_mesh_size": 0.01}).released == ()
-    own = multibody.read(bowl.given | {"obstacle": [bowl.given["obstacle"][0] | {"friction_static": 0.2}]}, bowl.folder, "bowl")
+    own = read_scene(bowl.given | {"obstacle": [bowl.given["obstacle"][0] | {"friction_static": 0.2}]}, bowl.folder, "bowl")
     assert assembly.assemble(own).used["contact"]["pair"][0]["friction_dynamic"] == 0.2
 
 

@@ -4,7 +4,7 @@ import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 
-from orchestrate.report.report import REFERENCE
+from orchestrate.report.literature import REFERENCE
 
 from .bars import bouncing, two
 from .blocks import blocks

@@ -14,9 +14,10 @@ import numpy as np
 from orchestrate.freefem import freefem
 from orchestrate.input import dimension, parameters
 from orchestrate.output import results
-from orchestrate.scenes import assembly, multibody
+from orchestrate.scenes import assembly
 from orchestrate.failure import Failure
 from orchestrate.input.parameters import ROOT, Value
+from orchestrate.scene import read as read_scene
 
 from . import solids
 
@@ -50,7 +51,7 @@ def outcome(folder: Path) -> Outcome:
 
 
 def bodies(folder: Path, tables: dict, **given: Value | Path) -> Outcome:
-    """The script of bodies for the scene in these tables (orchestrate.scenes.multibody), with more flags, run into `folder`/run."""
+    """The script of bodies for the scene in these tables (orchestrate.scene), with more flags, run into `folder`/run."""
     out = folder / "run"
     _start(f"edp/{dimension.of(tables).script}.edp", (*_flags(prepared(folder, tables) | given), "-out", str(out)), ROOT)
     return outcome(out)
@@ -65,7 +66,7 @@ def solid_bodies(folder: Path, scene: solids.Scene, **given: Value | Path) -> Ou
 
 def prepared(folder: Path, tables: dict) -> dict[str, Value | Path]:
     """The flags of a scene of bodies in these tables; its mesh and bodies are written into `folder`."""
-    scene = multibody.read(tables, ROOT, "scene")
+    scene = read_scene(tables, ROOT, "scene")
     made = assembly.assemble(scene)
     folder.mkdir(parents=True, exist_ok=True)
     made.write(folder)

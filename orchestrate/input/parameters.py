@@ -112,12 +112,6 @@ def check(given: dict[str, Value], script: str = "") -> dict[str, Value]:
     return {name: table()[name].check(value) for name, value in given.items()}
 
 
-def released(values: dict[str, Value], given: Iterable[str]) -> dict[str, Value]:
-    """Those of a scene's values that are open again where `given` are set, at their defaults."""
-    return {name: table()[name].default for name, causes in FOLLOWS.items()
-            if name in values and name not in given and set(causes) & set(given) and values[name] != table()[name].default}
-
-
 def release(name: str, value: Value, causes: Iterable[str]) -> str:
     """What is said of an entry that is open again."""
     fixed = f"{value:g}" if isinstance(value, float) else brief(value)

@@ -9,7 +9,8 @@ import math
 
 import numpy as np
 
-from .solid_mesh import Curved, pieces
+from .mesh import pieces
+from .solid_mesh import Curved
 
 WIDEST = math.radians(30)    # what two faces that meet, an edge, a normal may differ by; what a surface bends by at least
 ON = 1e-9                    # of the radius

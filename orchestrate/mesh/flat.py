@@ -105,7 +105,7 @@ def mesh_file(table: Table, folder: Path, script: str) -> mesh.Mesh:
     if "\0" in name or not _may_be_read(folder / name):
         raise BadInput(f"{table.path}.file: {brief(repr(name))} is no file (accepted: FreeFEM's or gmsh's .msh)")
     try:
-        text = mesh.load(folder / name)
+        text = gmsh_file.load(folder / name)
         with tempfile.NamedTemporaryFile(suffix=".msh") as file:
             file.write(text)
             file.flush()
@@ -131,7 +131,7 @@ def _may_be_read(path: Path) -> bool:
 def mesh_outline(found: mesh.Mesh) -> Outline:
     """The boundary of a mesh as loops, that of the largest area first; edges on circles are arcs, and a loop on one circle is that circle."""
     hub = {tuple(sorted(edge)): at for edge, at in zip(found.edges.tolist(), found.hubs)}
-    following = dict(gmsh_file.boundary(found.triangles).tolist())
+    following = dict(mesh.boundary(found.triangles).tolist())
     loops = []
     while following:
         first, v = (chain := list(following.popitem()))

@@ -4,8 +4,6 @@ gmsh reads the file in a process of its own (`python -m orchestrate.mesh.gmsh_fi
 """
 
 import shutil
-import signal
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -14,7 +12,6 @@ import numpy as np
 
 from . import mesh
 from ..failure import BadInput
-from ..places import ROOT
 
 TRIANGLES = {2: 3, 9: 6}        # gmsh's types of element that are read: their nodes, of which the first three are the corners
 LINES = {1: 2, 8: 3}            # likewise, the first two are the ends
@@ -22,19 +19,28 @@ OTHER = 3                       # the label of what is neither contact nor axis
 LABELS = {"contact": mesh.FREE, "symmetry": mesh.AXIS}
 
 
+def load(path: Path) -> bytes:
+    """The mesh in a file as FreeFEM's .msh: one of gmsh is converted, one of FreeFEM is taken as it is (what is in it is checked
+    by edp/core/input/mesh-file.idp). BadInput where it cannot be read or is neither."""
+    try:
+        text = path.read_bytes()
+    except OSError as error:
+        raise BadInput(f"mesh: {path} cannot be read: {error.strerror}") from None
+    if text.startswith(b"$"):
+        return convert(path)
+    return text
+
+
 def convert(path: Path) -> bytes:
     """FreeFEM's .msh of the gmsh file `path`; BadInput where gmsh or we cannot use it."""
     with tempfile.TemporaryDirectory() as folder:
         copy, made = Path(folder) / "mesh.msh", Path(folder) / "freefem.msh"   # gmsh goes by the ending of the name
         shutil.copyfile(path, copy)
-        child = subprocess.run([sys.executable, "-m", __name__, str(copy), str(made)], cwd=ROOT, stdin=subprocess.DEVNULL,
-                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace")
-        if child.returncode == 0:
-            return made.read_bytes()
-        if child.returncode == BadInput("").code:
-            raise BadInput(f"mesh: {path}: {child.stderr.strip().replace(str(copy), path.name)}")
-        how = signal.Signals(-child.returncode).name if child.returncode < 0 else f"exit code {child.returncode}"
-        raise BadInput(f"mesh: {path}: gmsh broke down over it ({how})")
+        try:
+            mesh.own_process(__name__, copy, made)
+        except BadInput as error:
+            raise BadInput(f"mesh: {path}: {str(error).replace(copy.name, path.name)}") from None
+        return made.read_bytes()
 
 
 def read(path: Path) -> mesh.Mesh:
@@ -68,9 +74,9 @@ def taken(model) -> mesh.Mesh:
     if np.ptp(points[:, 2]) > 1e-9 * np.ptp(points[:, :2], axis=0).max():
         raise BadInput(f"it is not flat: z from {points[:, 2].min():g} to {points[:, 2].max():g} m (accepted: one z)")
     points, triangles = points[:, :2], mesh.counter_clockwise(points[:, :2], triangles.reshape(-1, 3))
-    edges = boundary(triangles)
+    edges = mesh.boundary(triangles)
     if curves is None:
-        labels = np.where(_is_outer(points, edges), mesh.FREE, OTHER)
+        labels = np.where(mesh.is_outer(points, edges), mesh.FREE, OTHER)
     else:
         number = {int(tag): k for k, tag in enumerate(used)}
         labelled = {frozenset((number.get(a, -1), number.get(b, -1))): label for a, b, label in curves}
@@ -99,29 +105,6 @@ def _physical_curves(model) -> list[tuple[int, int, int]] | None:
 
 def _names(model) -> str:
     return ", ".join(model.getPhysicalName(1, number) or str(number) for _, number in model.getPhysicalGroups(1))
-
-
-def boundary(triangles: np.ndarray) -> np.ndarray:
-    """The sides (e, 2) that belong to one triangle, in its direction."""
-    sides = triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
-    _, first, count = np.unique(np.sort(sides, axis=1), axis=0, return_index=True, return_counts=True)
-    return sides[np.sort(first[count == 1])]
-
-
-def _is_outer(points: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    """Which boundary edges (body to their left) belong to a loop around the body rather than around a hole."""
-    leaving = {a: k for k, a in enumerate(edges[:, 0].tolist())}
-    outer, seen = np.zeros(len(edges), dtype=bool), np.zeros(len(edges), dtype=bool)
-    for first in range(len(edges)):
-        loop = []
-        k = first
-        while k is not None and not seen[k]:
-            seen[k] = True
-            loop.append(k)
-            k = leaving.get(int(edges[k, 1]))
-        (ax, ay), (bx, by) = points[edges[loop, 0]].T, points[edges[loop, 1]].T
-        outer[loop] = (ax * by - ay * bx).sum() > 0
-    return outer
 
 
 if __name__ == "__main__":

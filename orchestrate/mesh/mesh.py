@@ -7,8 +7,10 @@ the FreeFEM side curves the boundary. The lowest point of the disc touches the p
 import atexit
 import math
 import signal
+import subprocess
+import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cache
@@ -19,9 +21,10 @@ from types import ModuleType
 import numpy as np
 
 from ..failure import BadInput, NotInstalled
-from ..places import INSTALLED
+from ..places import INSTALLED, ROOT
 
 FREE, AXIS = 1, 2          # boundary labels
+SIDES = {3: np.array([[0, 1], [1, 2], [2, 0]]), 4: np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])}   # of a triangle; of a tetrahedron, seen from outside
 LIBRARIES = "apt-get install libglu1-mesa libxcursor1 libxft2 libxinerama1 libgomp1"   # that gmsh's wheel needs, with what they need
 GROWTH = 0.3               # element size gained per length of distance from the contact arc
 DIGITS = 10                # decimals of what gmsh is given, in sizes of the body: round-off settles ties, and the mesh would depend on the unit of length
@@ -89,7 +92,8 @@ def disc(radius: float, mesh_size: float, contact_mesh_size: float, half: bool, 
         gmsh.model.geo.addPlaneSurface([gmsh.model.geo.addCurveLoop(arcs + axis)])
         gmsh.model.geo.synchronize()
         contact_arcs = arcs[:1] if half else [arcs[0], arcs[-1]]
-        _grade(gmsh.model.mesh.field, contact_arcs, bulk, contact, arc)
+        field = gmsh.model.mesh.field
+        field.setAsBackgroundMesh(graded(field, "CurvesList", contact_arcs, (contact, bulk), math.ceil(2 * arc / contact)))
         gmsh.model.mesh.generate(2)
         tags, coordinates, _ = gmsh.model.mesh.getNodes()
         _, triangle_tags = gmsh.model.mesh.getElementsByType(2)
@@ -130,6 +134,18 @@ def start_gmsh() -> ModuleType:
     return gmsh
 
 
+def own_process(module: str, path: Path, *words: Path) -> None:
+    """Runs `python -m module path words`, which lets gmsh read a file: some broken files kill it. BadInput with what it said, or how it ended."""
+    child = subprocess.run([sys.executable, "-m", module, str(path), *map(str, words)], cwd=ROOT, stdin=subprocess.DEVNULL,
+                           stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace")
+    if child.returncode == 0 and words[0].exists():     # a script in a geometry may end gmsh
+        return
+    if child.returncode == BadInput("").code:
+        raise BadInput(child.stderr.strip().splitlines()[-1].replace(str(path), path.name))
+    how = signal.Signals(-child.returncode).name if child.returncode < 0 else f"exit code {child.returncode}"
+    raise BadInput(f"gmsh broke down over it ({how})")
+
+
 @contextmanager
 def gmsh_session() -> Iterator[ModuleType]:
     """The module gmsh as it is at its start, silent."""
@@ -156,15 +172,17 @@ def _outline(geo, half: bool, contact_arc: float) -> tuple[list[int], list[int]]
     return arcs, [geo.addLine(top, bottom)] if half else []
 
 
-def _grade(field, contact_arcs: list[int], bulk: float, contact: float, contact_arc: float) -> None:
-    """Element size `contact` on the arcs, growing linearly with the distance from them up to `bulk`."""
+def graded(field, kind: str, sources: Sequence[int], sizes: tuple[float, float], sampling: int = 0, flat: float = 0.0) -> int:
+    """A field of gmsh: the first of the sizes up to the distance `flat` from the sources (of a kind: PointsList, CurvesList), growing linearly with it to
+    the other. `sampling`: points on a curve."""
     distance, size = field.add("Distance"), field.add("Threshold")
-    field.setNumbers(distance, "CurvesList", contact_arcs)
-    field.setNumber(distance, "Sampling", math.ceil(2 * contact_arc / contact))
-    for name, value in dict(InField=distance, SizeMin=contact, SizeMax=bulk, DistMin=0,
-                            DistMax=max(bulk - contact, 1e-9) / GROWTH).items():
+    field.setNumbers(distance, kind, sources)
+    if sampling:
+        field.setNumber(distance, "Sampling", sampling)
+    least, most = sizes
+    for name, value in dict(InField=distance, SizeMin=least, SizeMax=most, DistMin=flat, DistMax=flat + max(most - least, 1e-9 * most) / GROWTH).items():
         field.setNumber(size, name, value)
-    field.setAsBackgroundMesh(size)
+    return size
 
 
 def counter_clockwise(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
@@ -174,29 +192,42 @@ def counter_clockwise(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     return np.where(clockwise[:, None], triangles[:, [0, 2, 1]], triangles)
 
 
-def write(mesh: Mesh, path: Path) -> None:
-    """Writes FreeFEM's 2D .msh: counts; x y label; v1 v2 v3 region; v1 v2 label; vertices count from 1."""
+def boundary(cells: np.ndarray) -> np.ndarray:
+    """The sides (e, 2) of triangles or faces (f, 3) of tetrahedra that belong to one cell, which is to their left, or seen counter-clockwise from outside."""
+    sides = cells[:, SIDES[cells.shape[1]]].reshape(-1, cells.shape[1] - 1)
+    _, first, count = np.unique(np.sort(sides, axis=1), axis=0, return_index=True, return_counts=True)
+    return sides[np.sort(first[count == 1])]
+
+
+def pieces(points: int, elements: np.ndarray) -> np.ndarray:
+    """The piece (points,) that each point belongs to, by the lowest number of a point in it: elements (n, corners) hang together by common points."""
+    piece = np.arange(points)
+    while True:
+        least = piece[elements].min(axis=1)
+        before = piece.copy()
+        np.minimum.at(piece, elements.ravel(), np.repeat(least, elements.shape[1]))
+        piece = piece[piece]
+        if (piece == before).all():
+            return piece
+
+
+def is_outer(points: np.ndarray, sides: np.ndarray) -> np.ndarray:
+    """Which of the sides (f, axes) of a boundary are around a body rather than around a hole: pieces that hang together, with an area or volume above 0."""
+    piece = pieces(len(points), sides)[sides[:, 0]]
+    return np.bincount(piece, weights=np.linalg.det(points[sides] - points.mean(axis=0)), minlength=len(points))[piece] > 0
+
+
+def write(mesh: Mesh, path: Path, regions: np.ndarray | None = None) -> None:
+    """Writes FreeFEM's 2D .msh: counts; x y label; v1 v2 v3 region; v1 v2 label; vertices count from 1. `regions` (t,): where they are several."""
     point_labels = np.zeros(len(mesh.points), dtype=int)
-    for label in (AXIS, FREE):   # the ends of the axis belong to the free boundary too
+    for label in np.unique(mesh.labels)[::-1]:     # where two meet, the contact's
         point_labels[mesh.edges[mesh.labels == label]] = label
+    regions = np.full(len(mesh.triangles), mesh.region) if regions is None else regions
     with open(path, "w") as file:
         file.write(f"{len(mesh.points)} {len(mesh.triangles)} {len(mesh.edges)}\n")
         file.writelines(f"{x:.17g} {y:.17g} {label}\n" for (x, y), label in zip(mesh.points, point_labels))
-        file.writelines(f"{a} {b} {c} {mesh.region}\n" for a, b, c in mesh.triangles + 1)
+        file.writelines(f"{a} {b} {c} {region}\n" for (a, b, c), region in zip(mesh.triangles + 1, regions))
         file.writelines(f"{a} {b} {label}\n" for (a, b), label in zip(mesh.edges + 1, mesh.labels))
-
-
-def load(path: Path) -> bytes:
-    """The mesh in a file as FreeFEM's .msh: one of gmsh is converted, one of FreeFEM is taken as it is (what is in it is checked
-    by edp/core/input/mesh-file.idp). BadInput where it cannot be read or is neither."""
-    try:
-        text = path.read_bytes()
-    except OSError as error:
-        raise BadInput(f"mesh: {path} cannot be read: {error.strerror}") from None
-    if text.startswith(b"$"):
-        from . import gmsh_file
-        return gmsh_file.convert(path)
-    return text
 
 
 def read(path: Path) -> Mesh:

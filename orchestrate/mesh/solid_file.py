@@ -4,8 +4,6 @@ Faces of a physical surface named `contact` may touch, others never; without phy
 gmsh reads the file in a process of its own (`python -m orchestrate.mesh.solid_file FILE OUT [SIZES]`): some broken files kill it.
 """
 
-import signal
-import subprocess
 import sys
 import tempfile
 from functools import cache
@@ -15,9 +13,8 @@ import numpy as np
 
 from . import mesh
 from ..failure import BadInput
-from .mesh import FREE, Sizes
-from ..places import ROOT
-from .solid_mesh import NEVER, TURN, SolidMesh, boundary, cell_volumes, cells_of, generate, pieces
+from .mesh import FREE, Sizes, boundary, is_outer, own_process, pieces
+from .solid_mesh import NEVER, TURN, SolidMesh, cell_volumes, cells_of, generate
 
 MESHES, GEOMETRIES = (".msh", ".mesh"), (".geo", ".step", ".stp")
 CONTACT = "contact"
@@ -59,15 +56,12 @@ def _child(path: Path, sizes: Sizes | None) -> SolidMesh:
         out, wanted = Path(folder) / "mesh.npz", Path(folder) / "sizes.npz"
         if sizes:
             np.savez(wanted, bulk=sizes.bulk, contact=sizes.contact, near=sizes.near, slack=sizes.slack)
-        child = subprocess.run([sys.executable, "-m", __name__, str(path), str(out), *([str(wanted)] if sizes else [])], cwd=ROOT,
-                               stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace")
-        if child.returncode == 0 and out.exists():     # a script in a geometry may end gmsh
-            with np.load(out) as found:
-                return SolidMesh(found["points"], found["cells"], found["faces"], found["labels"])
-        if child.returncode == BadInput("").code:
-            raise BadInput(f"'{path.name}': {child.stderr.strip().splitlines()[-1].replace(str(path), path.name)}")
-        how = signal.Signals(-child.returncode).name if child.returncode < 0 else f"exit code {child.returncode}"
-        raise BadInput(f"'{path.name}': gmsh broke down over it ({how})")
+        try:
+            own_process(__name__, path, out, *([wanted] if sizes else []))
+        except BadInput as error:
+            raise BadInput(f"'{path.name}': {error}") from None
+        with np.load(out) as found:
+            return SolidMesh(found["points"], found["cells"], found["faces"], found["labels"])
 
 
 # ---- in the process of its own
@@ -120,7 +114,7 @@ def _labelled(model, points: np.ndarray, cells: np.ndarray) -> SolidMesh:
     _check_surface(points, faces)
     named = _contact_triangles(model)
     if named is None:
-        return SolidMesh(points, cells, faces, np.where(_is_outer(points, faces), FREE, NEVER))
+        return SolidMesh(points, cells, faces, np.where(is_outer(points, faces), FREE, NEVER))
     scale = np.ptp(points, axis=0).max()
     def keys(corners: np.ndarray) -> list[tuple]:
         """Triangles by their corners, to a billionth of the size."""
@@ -163,14 +157,6 @@ def _contact_triangles(model) -> np.ndarray | None:
     corners = [row[np.reshape(nodes, (-1, TRIANGLES[kind]))[:, :3]] for number, name in names.items() if name == CONTACT
                for surface in model.getEntitiesForPhysicalGroup(2, number) for kind, _, nodes in zip(*model.mesh.getElements(2, surface)) if kind in TRIANGLES]
     return coordinates.reshape(-1, 3)[np.vstack(corners or [np.empty((0, 3), dtype=int)])]
-
-
-def _is_outer(points: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    """Which boundary faces (f,) are around a body rather than around a cavity: pieces of surface that hang together, with a volume above 0."""
-    piece = pieces(len(points), faces)
-    a, b, c = points[faces].transpose(1, 0, 2) - points.mean(axis=0)
-    volume = np.bincount(piece[faces[:, 0]], weights=(a * np.cross(b, c)).sum(axis=1), minlength=len(points))
-    return volume[piece[faces[:, 0]]] > 0
 
 
 if __name__ == "__main__":

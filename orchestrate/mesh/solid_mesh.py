@@ -17,7 +17,6 @@ DEPTH, NEVER = 3, 4
 PLANES = {0: AXIS, 2: DEPTH}       # of symmetry: the axis across it, and its label
 TURN = 20                          # elements on a full turn of a curved surface at least
 LARGEST = 0.52                     # element of a ball over its radius: twelve on a full turn
-FACES = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])     # of a tetrahedron, counter-clockwise seen from outside
 MOST_SOURCES = 2000                # points that sizes are measured from
 FILL = 0.118                       # volume of a regular tetrahedron over the cube of its side
 MOST_CELLS = 400_000               # that gmsh is asked for
@@ -74,28 +73,9 @@ def cell_volumes(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
     return ((b - a) * np.cross(c - a, d - a)).sum(axis=1) / 6
 
 
-def boundary(cells: np.ndarray) -> np.ndarray:
-    """The faces (f, 3) that belong to one tetrahedron, seen counter-clockwise from outside."""
-    faces = cells[:, FACES].reshape(-1, 3)
-    _, first, count = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
-    return faces[np.sort(first[count == 1])]
-
-
 def right_handed(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
     """The tetrahedra (t, 4), those that are inside out turned over."""
     return np.where(cell_volumes(points, cells)[:, None] < 0, cells[:, [0, 1, 3, 2]], cells)
-
-
-def pieces(points: int, elements: np.ndarray) -> np.ndarray:
-    """The piece (points,) that each point belongs to, by the lowest number of a point in it: elements (n, corners) hang together by common points."""
-    piece = np.arange(points)
-    while True:
-        least = piece[elements].min(axis=1)
-        before = piece.copy()
-        np.minimum.at(piece, elements.ravel(), np.repeat(least, elements.shape[1]))
-        piece = piece[piece]
-        if (piece == before).all():
-            return piece
 
 
 def unknowns(cells: np.ndarray, degree: int) -> int:
@@ -135,7 +115,7 @@ def mesh_shape(kind: str, lengths: np.ndarray, rotation: np.ndarray, folded: tup
 
     points, cells = generate(build, inside, TURN if kind == "cylinder" else 0)
     points = points * scale
-    faces = boundary(cells)
+    faces = mesh.boundary(cells)
     labels = np.full(len(faces), FREE)
     for axis in folded:
         on = (abs(points[faces][:, :, axis]) < 1e-7 * scale).all(axis=1)
@@ -177,12 +157,7 @@ def _grade(gmsh, sizes: Sizes) -> None:
     sources = [gmsh.model.geo.addPoint(*point, tag=free + k) for k, point in enumerate(sizes.near[::-(-len(sizes.near) // MOST_SOURCES)])]
     gmsh.model.geo.synchronize()
     field = gmsh.model.mesh.field
-    distance, size = field.add("Distance"), field.add("Threshold")
-    field.setNumbers(distance, "PointsList", sources)
-    for name, value in dict(InField=distance, SizeMin=sizes.contact, SizeMax=sizes.bulk, DistMin=sizes.slack,
-                            DistMax=sizes.slack + (sizes.bulk - sizes.contact) / GROWTH).items():
-        field.setNumber(size, name, value)
-    field.setAsBackgroundMesh(size)
+    field.setAsBackgroundMesh(mesh.graded(field, "PointsList", sources, (sizes.contact, sizes.bulk), flat=sizes.slack))
 
 
 def cells_of(model) -> tuple[np.ndarray, np.ndarray]:

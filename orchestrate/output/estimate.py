@@ -62,11 +62,7 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
     answers = read(stage)
     summary, used = answers.summary, answers.used
     asked, seconds, refinements, estimated, before, sentences = values["accuracy"], 0.0, 0, None, math.inf, []
-    try:
-        solve(scaled(values, used, COARSER, own_mesh), coarser)
-    except Failure as failure:
-        if failure.code not in NO_ANSWER:
-            raise
+    if failure := _ended(solve, scaled(values, used, COARSER, own_mesh), coarser):
         sentences = [f"the error is not estimated: the run with {COARSER:.1f} times larger elements and steps ended with: {failure}"]
     while not sentences:
         before_it = read(coarser)
@@ -83,11 +79,7 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
         fixed = not own_mesh or any(values[name] for name in SIZES)
         if not above or scatters or fixed or refinements == MOST or summary.get("ellipticity_lost_time") is not None:
             break
-        try:
-            solve(scaled(values, used, 1 / COARSER, own_mesh) | {"fields": values["fields"]}, finer)
-        except Failure as failure:
-            if failure.code not in NO_ANSWER:
-                raise
+        if failure := _ended(solve, scaled(values, used, 1 / COARSER, own_mesh) | {"fields": values["fields"]}, finer):
             sentences.append(f"a run with {COARSER:.1f} times smaller elements and steps ended with: {failure}")
             break
         _swap(stage, coarser, finer)
@@ -101,6 +93,16 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
     for folder in (coarser, finer):
         shutil.rmtree(folder, ignore_errors=True)
     return {"estimated_error": estimated, "estimated_error_excludes": excludes, "estimate_cpu_seconds": seconds, "refinements": refinements, "warnings": sentences}
+
+
+def _ended(solve: Solve, values: dict[str, Value], where: Path) -> Failure | None:
+    """With what a run has ended that the step or the material brought to its end; None where it has an answer."""
+    try:
+        return solve(values, where)
+    except Failure as failure:
+        if failure.code not in NO_ANSWER:
+            raise
+        return failure
 
 
 def _swap(stage: Path, coarser: Path, finer: Path) -> None:

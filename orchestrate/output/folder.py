@@ -19,13 +19,13 @@ from ..failure import Busy, Unreadable
 from ..places import shown
 from .results import read_summary, why
 
-# what the program writes into a folder
-OWN = ("scene.toml", "history.csv", "contacts.csv", "modes.csv", "summary.json", "failure.json", "log.txt", "mesh.msh", "mesh.mesh", "scene.dat", "fields.pvd", "fields/[0-9][0-9][0-9][0-9].vtu", "fields/contact.csv",
-       "fields/contact.pvd", "fields/contact-[0-9][0-9][0-9][0-9].vtp",
-       "figures/energies.png", "figures/velocity.png", "figures/force.png", "figures/rolling.png", "figures/shapes.png", "figures/flight.png", "figures/contact.png", "figures/bounces.png", "figures/vibration.png",
-       "checkpoint", "checkpoint.json", "checkpoint.part", "checkpoint.state", "parting", "scene.part", "history.part", "history.cut", "summary.part", "contacts.part", "modes.part",
-       "summary.json.part", "fields.pvd.part", "fields.part/[0-9][0-9][0-9][0-9].vtu", "fields.part/contact.csv",
-       "fields.part/contact.pvd", "fields.part/contact-[0-9][0-9][0-9][0-9].vtp")
+# what the program writes into a folder: what a run leaves, what it needs on its way, and its pictures
+RECORDS = ("scene.toml", "history.csv", "contacts.csv", "modes.csv", "summary.json")
+FIELDS = [f"fields{on_its_way}/{name}" for on_its_way in ("", ".part")
+          for name in ("[0-9][0-9][0-9][0-9].vtu", "contact.csv", "contact.pvd", "contact-[0-9][0-9][0-9][0-9].vtp")]
+FIGURES = ("energies", "velocity", "force", "rolling", "shapes", "flight", "contact", "bounces", "vibration", "solid")
+OWN = (*RECORDS, *(f"{Path(name).stem}.part" for name in RECORDS), "failure.json", "log.txt", "mesh.msh", "mesh.mesh", "scene.dat", "history.cut", "summary.json.part",
+       "checkpoint", "checkpoint.json", "checkpoint.part", "checkpoint.state", "parting", "fields.pvd", "fields.pvd.part", *FIELDS, *(f"figures/{name}.png" for name in FIGURES))
 OURS = {"scene.toml", "failure.json", "scene.part", "history.part", "checkpoint.json"}   # a folder with one of these is the program's
 
 

@@ -1,4 +1,4 @@
-"""Figures of a finished run: energies, contact force, velocity of the centre of mass, deformed shapes; with friction also
+"""What figures have in common, and those of a body on the plane: energies, contact force, velocity of the centre of mass, deformed shapes; with friction also
 the friction force, what slides and sticks, and the flight, as figures 4 to 6 of the paper."""
 
 from dataclasses import dataclass
@@ -20,11 +20,9 @@ from matplotlib.tri import LinearTriInterpolator, Triangulation
 from PIL import Image
 
 from ..input import dimension
-from ..output import vtu
-from ..failure import Unreadable
 from ..input.parameters import Value
-from ..places import COMMAND
-from ..output.results import Contents, check_files, read_history, read_json, read_scene
+from ..output import vtu
+from . import literature
 
 LAWS = {"svk": "St. Venant–Kirchhoff", "neohookean": "neo-Hookean", "mooney-rivlin": "Mooney–Rivlin"}
 BLUE, ORANGE, GREEN, PURPLE, BLACK, GREY = "#0072b2", "#d55e00", "#009e73", "#aa4499", "#222222", "#999999"
@@ -43,47 +41,7 @@ DASHED = (0, (4, 2))
 filterwarnings("ignore", "Glyph .* missing from", UserWarning)    # a letter that the font lacks is an empty box in the title
 
 
-def draw(folder: Path, warnings: list[str]) -> list[Path]:
-    """Draws all figures of the run in `folder` into folder/figures, with its warnings below; the files. Unreadable where the
-    folder is broken. energies.png is the last: where it is, all are."""
-    from . import bodies, contact as contacts, impacts, solid, vibration
-    check_files(folder)
-    history, scene = read_history(folder), read_scene(folder)
-    scene["touched"] = touched(read_json(folder / "summary.json"))
-    if scene["script"] in dimension.SCRIPTS and "body" not in scene:
-        raise Unreadable(f"{folder}: of a run without Python, which keeps neither names of bodies nor obstacles (accepted: a folder of {COMMAND} run)")
-    snapshots = vtu.series(folder / "fields.pvd")
-    target = folder / "figures"
-    target.mkdir(exist_ok=True)
-    touches = history["normal_force"] > 0
-    contact = Contents({name: column[max(0, int(np.argmax(touches)) - 1):] for name, column in history.items()}, history.path)   # without the flight
-    with plt.rc_context(STYLE):
-        if bodies.are_several(scene):
-            drawn = bodies.draw(contact, scene, snapshots)
-        else:
-            drawn = _on_a_plane(history, contact, scene, snapshots)
-        if (folder / "fields/contact.csv").exists():
-            table = contacts.read(folder, beside=True)
-            along = contacts.draw(table, bodies.names(scene) if bodies.are_several(scene) else ["body"], is_half(scene), history["t"][~touches],
-                                  scene if scene.get("script") in BODY and is_half(scene) else None, scene.get("symmetry", "full"), history)
-            drawn |= {"contact": along} if along else {}
-            inside = solid.draw(snapshots, table[table.pressure > 0], scene) if snapshots and "Z" in table else None
-            drawn |= {"solid": inside} if inside else {}
-        if (folder / "contacts.csv").exists():
-            bounces = impacts.draw(impacts.read(folder), bodies.names(scene) if bodies.are_several(scene) else ["body"],
-                                   [as_written(one["name"]) for one in scene.get("obstacle", [])] or ["plane"])
-            drawn |= {"bounces": bounces} if bounces else {}
-        if (folder / "modes.csv").exists():
-            rings = vibration.draw(vibration.read(folder), history, per_metre(scene))
-            drawn |= {"vibration": rings} if rings else {}
-        for name, figure in reversed(drawn.items()):
-            figure.suptitle(title(scene))
-            footer(figure, warnings)
-            save(figure, target / f"{name}.png")
-    return [target / f"{name}.png" for name in drawn]
-
-
-def _on_a_plane(history: dict[str, np.ndarray], contact: dict[str, np.ndarray], scene: dict[str, Value],
+def on_a_plane(history: dict[str, np.ndarray], contact: dict[str, np.ndarray], scene: dict[str, Value],
                 snapshots: list[tuple[float, Path]]) -> dict[str, plt.Figure]:
     """The figures by name of one body on the plane y = 0; `contact` is the history from the first touch on."""
     drawn = {"energies": _energies(contact, scene), "velocity": _velocity(contact, scene)}
@@ -114,22 +72,6 @@ def footer(figure: plt.Figure, warnings: list[str]) -> None:
     if lines:
         figure.set_size_inches(width, height + 0.14 * len(lines) + 0.05)
         figure.supxlabel("\n".join(lines), fontsize=SMALL, color=ORANGE, x=0.01, ha="left")
-
-
-def title(scene: dict[str, Value]) -> str:
-    """Which body, law, nu, speed, the angle where the impact is oblique, linear elements, and the friction law where there is one; of several bodies each one's."""
-    from . import bodies
-    if bodies.are_several(scene):
-        return bodies.title(scene)
-    angle = "" if scene.get("angle", 90) == 90 else f" at {scene['angle']:g}°"
-    body = BODY.get(scene.get("script"), "")
-    text = f"{body}{material(scene)}, {scene['speed']:g} m/s{angle}"
-    if scene.get("degree") == 1:
-        text += ", linear elements"
-    if scene.get("friction_static", 0) > 0:
-        text += (f"\nfriction {scene['friction_static']:g} static, {scene['friction_dynamic']:g} dynamic, "
-                 f"{scene['regularization']}, ε = {scene['slip_velocity']:g} m/s")
-    return text
 
 
 def material(one: dict[str, Value]) -> str:
@@ -177,9 +119,8 @@ def published(axes: plt.Axes, scene: dict[str, Value]) -> None:
 def numbers_of_the_paper(scene: dict[str, Value], key: str, over: str = "") -> list[tuple[Value | None, float, str]]:
     """(value of the parameter `over` there, number, words) of every number `key` (summary.json, SI) that the paper prints of this scene, or of it with
     another value of `over`, or with another law, which the words then say. None of a body of the user's own mesh."""
-    from .report import published
     found = []
-    for run in published() if not scene.get("mesh") else []:
+    for run in literature.published() if not scene.get("mesh") else []:
         when = run["when"]
         if (run["source"].startswith("paper") and key in run["numbers"] and run["script"] == scene.get("script")
                 and all(scene.get(name) == value for name, value in when.items() if name not in ("law", over))):

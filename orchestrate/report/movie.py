@@ -23,7 +23,8 @@ from ..places import COMMAND, RESULTS, shown
 from ..output.results import RunResult, suffixes
 from ..run import run
 from . import bodies, contact, solid
-from .figures import BLACK, BLUE, GREY, ORANGE, STRESS, STYLE, Body, deformed, diameter, draw_body, draw_ground, is_half, limits, per_metre, title
+from .drawing import title
+from .figures import BLACK, BLUE, GREY, ORANGE, STRESS, STYLE, Body, deformed, diameter, draw_body, draw_ground, is_half, limits, per_metre
 
 SECONDS = 8.0     # of the film
 MOST = 400        # frames, 50 a second: players show a faster GIF slower

@@ -2,16 +2,14 @@
 
 import re
 import sys
-import tomllib
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 from ..input import dimension
 from ..input.parameters import Value
 from ..places import shown
 from ..output.results import RunResult, suffixes
+from . import literature
 
-REFERENCE = Path(__file__).resolve().parent / "reference"
 
 LEFT_OUT_AT_ZERO = ("friction_work", "creep_work", "rotation_energy", "impulse_ratio", "rebound_vx", "rebound_vz", "rebound_spin_x", "rebound_spin_y", "rebound_spin", "sliding_time", "sticking_time", "reverse_slip_time", "unsolved_jumps")
 
@@ -84,28 +82,13 @@ def rows(per_metre: bool) -> list[Quantity]:
     ]
 
 
-def references(script: str, scene: dict[str, Value]) -> dict[str, list[dict]]:
-    """Published numbers whose conditions this scene meets: by key of summary.json, each {value, [error], source, [note]}."""
-    found: dict[str, list[dict]] = {}
-    for run in published():
-        if run["script"] == script and all(scene.get(name) == value for name, value in run["when"].items()):
-            for key, number in run["numbers"].items():
-                found.setdefault(key, []).append(number | {k: run[k] for k in ("source", "note") if k in run})
-    return found
-
-
-def published() -> list[dict]:
-    """All runs with published numbers: script, when (its parameters), numbers by key of summary.json, source, [note]."""
-    return [run for path in sorted(REFERENCE.glob("*.toml")) for run in tomllib.loads(path.read_text()).get("run", [])]
-
-
 def draw(result: RunResult) -> None:
     """The figures of the run into its folder, unless they are there; a picture is no reason to lose a run: what hinders it is a line on stderr."""
     if result.reused and (result.folder / "figures/energies.png").exists():
         return
     try:
-        from . import figures   # matplotlib: only where something is drawn
-        figures.draw(result.folder, result.summary["warnings"])
+        from . import drawing   # matplotlib: only where something is drawn
+        drawing.draw(result.folder, result.summary["warnings"])
     except Exception as error:
         print(f"ffimpact: the figures could not be drawn: {error!r}", file=sys.stderr)
 
@@ -136,7 +119,7 @@ def report(result: RunResult) -> str:
     summary, scene = result.summary, result.scene
     script = summary["provenance"]["script"]
     provenance = summary["provenance"]
-    known = references(script, scene) if provenance.get("gmsh") or not provenance.get("mesh") else {}   # a mesh of the user's is another body
+    known = literature.references(script, scene) if provenance.get("gmsh") or not provenance.get("mesh") else {}   # a mesh of the user's is another body
     place = shown(result.folder)
     lines = [f"{place}: " + ("finished earlier, same scene and code" if result.reused else "finished"), *_scene(scene)]
     quantities = [one for row in rows(dimension.per_metre(script)) for one in _of_bodies(row, scene, summary)]

@@ -17,7 +17,9 @@ from ..output import vtu
 from ..scenes.obstacles import Obstacle
 from ..input.parameters import Value
 from ..places import shown
+from .bodies import obstacles_of
 from .contact import PRESSURE
+from .figures import STRESS
 
 INSTALL = f"{shown(Path(sys.executable))} -m pip install pyvista vtk"
 PROBE = "import pyvista; p = pyvista.Plotter(off_screen=True, window_size=(8, 8)); p.add_mesh(pyvista.Sphere()); p.screenshot(None, return_img=True)"
@@ -169,7 +171,6 @@ class Views:
         points, tetrahedra = solids[0].points, solids[0].tetrahedra
         self.cut, self.outside = skin(points, tetrahedra[~in_front(solids[0], axes)]), skin(points, tetrahedra)
         self.times = np.array([t for t, _ in series])
-        from .bodies import obstacles_of
         self.rigid = [PLANE] if scene.get("script") == "ball-plane" else obstacles_of(scene)
         pressure = Pressure(table, axes, self.outside.at(points))
         self.sights = [self._sight(t, solid, pressure.at(t)) for t, solid in zip(self.times, solids)]
@@ -240,6 +241,5 @@ def draw(series: list[tuple[float, Path]], table: pd.DataFrame, scene: dict[str,
 
 def bars(views: Views) -> list[tuple[ScalarMappable, str]]:
     """Colours and label of the stress and of the pressure."""
-    from .figures import STRESS
     return [(ScalarMappable(plt.Normalize(0, largest), COLOURS[name]), label)
             for name, largest, label in (("stress", views.stress, STRESS), ("pressure", views.pressure, PRESSURE))]

@@ -12,11 +12,11 @@ import numpy as np
 from ..freefem import freefem
 from ..output import estimate
 from ..failure import Failure, Unreadable
-from ..scenes.multibody import Multibody
 from ..input.parameters import Value
 from ..progress import Line
 from ..output.results import read_history, read_json, read_summary, write_json
 from ..scene import Scene
+from ..scenes.assembly import prepare
 from .told import Told
 
 FAILURES = {10: "bad input", 11: "step failed", 12: "material broke down", 13: "not installed", 14: "unreadable"}
@@ -26,7 +26,7 @@ class Solver:
     """Runs the scene with some values in a folder, one run after the other, but the coarser one beside the main one where `pair` says that it will be
     wanted and a core is free: a study has a run on every core already."""
 
-    def __init__(self, program: freefem.FreeFem, scene: Scene | Multibody, mesh_file: Path | None, foreign: bytes | None, stage: Path, lock: int,
+    def __init__(self, program: freefem.FreeFem, scene: Scene, mesh_file: Path | None, foreign: bytes | None, stage: Path, lock: int,
                  line: Line, pair: bool):
         self.program, self.scene, self.mesh_file, self.foreign, self.stage, self.lock, self.line = program, scene, mesh_file, foreign, stage, lock, line
         self.pair = pair and freefem.CORES > 1 and not multiprocessing.parent_process()
@@ -69,10 +69,10 @@ class Solver:
                 write_json(where / "checkpoint.json", scene.asked)
         if told:
             told.at("mesh")
-        flags, used, scene_toml = scene.prepare(where, self.foreign)
+        flags, used, scene_toml = prepare(scene, where, self.foreign)
         if told:
             told.at("set-up")
-        flags |= {"out": where} | ({"restart": where / "checkpoint"} if goes_on else {})
+        flags = flags | {"out": where} | ({"restart": where / "checkpoint"} if goes_on else {})
         words = [text for name, value in flags.items() for text in (f"-{name}", str(value))]
         process = leaving.enter_context(freefem.start(self.program, scene.script, words, where / "log.txt", self.lock))
         if where == self.stage and self.pair:

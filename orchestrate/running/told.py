@@ -6,7 +6,6 @@ from pathlib import Path
 
 from ..output.estimate import COARSER
 from ..freefem.freefem import At
-from ..scenes.multibody import Multibody
 from ..progress import Line
 from ..scene import Scene
 
@@ -25,7 +24,7 @@ def runs(estimate: bool) -> dict[str, float]:
 class Told:
     """One run, the `number`th of those in the line."""
 
-    def __init__(self, line: Line, scene: Scene | Multibody, mesh_file: Path | None, kind: str, number: int):
+    def __init__(self, line: Line, scene: Scene, mesh_file: Path | None, kind: str, number: int):
         self.line, self.scene, self.mesh_file, self.number = line, scene, mesh_file, number
         self.words = f"{kind} {number} of {max(number, len(line.costs))}"
         self.part = kind if kind in line.costs else self.words
@@ -51,7 +50,7 @@ class Told:
         self.judged = whole > LONG or seconds > LAST
 
 
-def entry(scene: Scene | Multibody, at: At, mesh_file: Path | None) -> str:
+def entry(scene: Scene, at: At, mesh_file: Path | None) -> str:
     """The entry of the scene that makes it long."""
     given = scene.values | scene.sizes
     if at.apart > APART:

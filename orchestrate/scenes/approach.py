@@ -14,7 +14,7 @@ from ..geometry import polyline
 from .bodies import Body
 from ..input.dimension import PLANE_STRAIN
 from ..failure import BadInput
-from .multibody import Multibody, gap_between
+from .scene import Scene, gap_between
 from .obstacles import Obstacle
 from ..geometry.outlines import Outline
 from ..mesh.solids import Solid
@@ -52,21 +52,21 @@ class Meeting:
         return self.outlines[1 if body == self.first else 0].gap(points)
 
 
-def meetings(scene: Multibody) -> list[Meeting]:
+def meetings(scene: Scene) -> list[Meeting]:
     """One for each two bodies and each body with each obstacle, and those that follow as a hit turns them."""
     bodies = len(scene.bodies)
     pairs = [(i, j) for i in range(bodies) for j in [*range(i + 1, bodies), *(-1 - k for k in range(len(scene.obstacles)))]]
     return [one for pair in pairs for one in _in_turn(scene, _meeting(scene, *pair))]
 
 
-def _fall(scene: Multibody) -> np.ndarray:
+def _fall(scene: Scene) -> np.ndarray:
     """The acceleration of free bodies [m/s2]."""
     fall = np.zeros(scene.dimension.axes)
     fall[:2] = scene.values.get("body_force_x", 0.0), scene.values["body_force_y"] - scene.values["gravity"]
     return fall
 
 
-def _in_turn(scene: Multibody, one: Meeting) -> list[Meeting]:
+def _in_turn(scene: Scene, one: Meeting) -> list[Meeting]:
     """A meeting, and in the plane those of the same two that follow, where rigid bodies without friction are turned by it: other corners strike."""
     found = [one]
     while scene.dimension is PLANE_STRAIN and len(found) <= MORE and math.isfinite(one.time):
@@ -78,7 +78,7 @@ def _in_turn(scene: Multibody, one: Meeting) -> list[Meeting]:
     return found
 
 
-def _rebound(scene: Multibody, one: Meeting) -> Multibody | None:
+def _rebound(scene: Scene, one: Meeting) -> Scene | None:
     """The bodies of a meeting a little later, when they have parted and nothing pulls them on. None where the hit does not turn
     them."""
     n = one.normal
@@ -118,7 +118,7 @@ def _middle(one: Meeting) -> np.ndarray:
     return (on.min(axis=0) + on.max(axis=0)) / 2
 
 
-def _meeting(scene: Multibody, first: int, second: int) -> Meeting:
+def _meeting(scene: Scene, first: int, second: int) -> Meeting:
     body = scene.bodies[first]
     other = scene.bodies[second] if second >= 0 else scene.obstacles[-1 - second]
     pull = _fall(scene) if second < 0 else np.zeros(scene.dimension.axes)    # two bodies fall alike
@@ -135,7 +135,7 @@ def _meeting(scene: Multibody, first: int, second: int) -> Meeting:
     return Meeting(first, second, outlines, *_parts(velocity, normal), *_parts(pull, normal), float(radius), t, normal)
 
 
-def turned(scene: Multibody) -> Multibody:
+def turned(scene: Scene) -> Scene:
     """The scene with its discs turned so that what touches first is their lowest point when they are not turned: where a disc is meshed finely
     does not depend on the frame in which the scene is written."""
     if scene.dimension is not PLANE_STRAIN:
@@ -153,7 +153,7 @@ def turned(scene: Multibody) -> Multibody:
     return replace(scene, bodies=found)
 
 
-def refuse_nothing(scene: Multibody, met: list[Meeting]) -> None:
+def refuse_nothing(scene: Scene, met: list[Meeting]) -> None:
     """BadInput where nothing can ever move, or nothing touch before an end that is left open."""
     moving = [*(one.velocity for one in [*scene.bodies, *scene.obstacles]), *(np.atleast_1d(body.spin) for body in scene.bodies)]
     forces = [scene.values.get(name, 0.0) for name in ("gravity", "body_force_x", "body_force_y")]

@@ -6,6 +6,7 @@ revolution it is the half x >= 0 of their sections, the axis with the label 2, o
 """
 
 import math
+import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
@@ -14,20 +15,21 @@ from pathlib import Path
 import numpy as np
 
 from ..mesh import mesh, revolution, solid_mesh, solids
-from .approach import Meeting, meetings
+from .approach import Meeting, meetings, refuse_nothing, turned
 from .bodies import MATERIAL, Body
 from ..freefem.describe import describe
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID
 from ..failure import BadInput
-from ..mesh.mesh import AXIS, FREE, GROWTH, Sizes, nearest
+from ..mesh.mesh import AXIS, FREE, Sizes, nearest
+from ..mesh.outline_mesh import Curve, mesh_body
 from .mirror import COPIES, FOLDED, copies
-from .multibody import OWN, Multibody, Pair
+from .scene import OWN, Pair, Scene
 from ..geometry.outlines import Loop
 from ..input.parameters import Value
+from ..input.tables import to_toml
 
 NEVER = 3                    # the label of what nothing reaches
 ROUND = 0.5                  # largest element size on a circle or ellipse, over its smaller semi-axis
-SAMPLED = 0.25               # a step between points at which an element size is asked for, over that size
 LIKE = ("radius", "young", "nu", "density", "speed", "angle", "spin")
 NARROW = 0.6                 # of the contact of a disc on a plane: where less of an outline is near, elements are smaller; of two equal discs it is 0.71
 POINTED = 0.5                # largest half-width of a contact over the radius of the obstacle, as over that of a disc on a plane (sizes.idp)
@@ -36,7 +38,6 @@ SMALLEST = 1e-3              # element in a contact over the pair's radius, howe
 BETWEEN = 0.2                # from body to body in the reference configuration, over the largest extent
 
 Rule = Callable[[dict[str, Value]], dict]    # describe: what the scripts make of a disc or a ball on a plane
-Curve = Callable[[np.ndarray], np.ndarray]   # points (n, 2) [m] at parameters (n,) in [0, 1]
 
 
 @dataclass(frozen=True)
@@ -57,11 +58,37 @@ class Assembly:
         if isinstance(self.mesh, solid_mesh.SolidMesh):
             solid_mesh.write(self.mesh, self.regions, folder / "mesh.mesh")
         else:
-            write_mesh(self.mesh, self.regions, folder / "mesh.msh")
+            mesh.write(self.mesh, folder / "mesh.msh", self.regions)
         (folder / "scene.dat").write_text(self.data)
 
 
-def assemble(scene: Multibody, rule: Rule | None = None, met: list[Meeting] | None = None) -> Assembly:
+def prepare(scene: Scene, where: Path, foreign: bytes | None = None) -> tuple[dict[str, Value | Path], dict, str]:
+    """The flags of a run in the folder `where`, the scene as it will be used, and the text of its scene.toml, "" where the script writes it. Puts into the
+    folder what the flags name: the mesh of all bodies and what the script reads of them; of one of the paper's scenes the mesh, `foreign` or our own, of the
+    sizes and the part of the body that its description says."""
+    file = where / scene.mesh_name
+    if scene.bodies:
+        if len(scene.bodies) == 1 and not scene.obstacles:
+            raise BadInput("obstacle: is missing, and a second body too (accepted: one table [[obstacle]] or more, or several [[body]])")
+        scene = turned(scene)
+        met = meetings(scene)
+        refuse_nothing(scene, met)
+        built = assemble(scene, met=met)
+        built.write(where)
+        text = to_toml(built.used)
+        return built.values | {"mesh": file, "bodies": where / "scene.dat"}, tomllib.loads(text), text
+    said = scene.description(foreign)
+    if not scene.meshed:
+        return scene.values, said["used"], ""
+    if foreign is not None:
+        file.write_bytes(foreign)
+    else:
+        sizes = (said["used"][name] for name in ("radius", "mesh_size", "contact_mesh_size"))
+        mesh.write(mesh.disc(*sizes, said["half"], said["touch_arc"]), file)
+    return scene.values | {"mesh": file}, said["used"], ""
+
+
+def assemble(scene: Scene, rule: Rule | None = None, met: list[Meeting] | None = None) -> Assembly:
     """Meshes the bodies of a scene and writes down the rest. What the scene leaves open is settled by `rule` (left out: describe), which is
     asked for a disc, or a ball, of the pair's radius that hits a plane. `met`: the scene's meetings, where they are known already."""
     ask = Asker(scene, meetings(scene) if met is None else met, rule or partial(describe, script=scene.dimension.like))
@@ -74,7 +101,7 @@ def assemble(scene: Multibody, rule: Rule | None = None, met: list[Meeting] | No
     return Assembly(together, regions, centres, data_file(scene, disc, centres, rounds, pairs), values, used_tables(scene, sizes, values, pairs))
 
 
-def _sections(scene: Multibody, sizes: list[Sizes | None]) -> tuple[mesh.Mesh, np.ndarray, np.ndarray, list[tuple]]:
+def _sections(scene: Scene, sizes: list[Sizes | None]) -> tuple[mesh.Mesh, np.ndarray, np.ndarray, list[tuple]]:
     """The mesh of bodies in the plane, the body of each triangle, the centres in it, the lines of circles in scene.dat (of sections those that are not
     another's mirror image)."""
     meshes = [body.mesh or mesh_body(_boundary(scene, k), sizes[k], body.outline.half_thickness) for k, body in enumerate(scene.bodies)]
@@ -84,7 +111,7 @@ def _sections(scene: Multibody, sizes: list[Sizes | None]) -> tuple[mesh.Mesh, n
     return *stack(meshes, centres), centres, [("circles", len(circles)), *circles]
 
 
-def _solids(scene: Multibody, sizes: list[Sizes | None]) -> tuple[solid_mesh.SolidMesh, np.ndarray, np.ndarray, list[tuple]]:
+def _solids(scene: Scene, sizes: list[Sizes | None]) -> tuple[solid_mesh.SolidMesh, np.ndarray, np.ndarray, list[tuple]]:
     """The same in three dimensions: bodies turned as they are at the start, one above the other; half or a quarter of them where that is enough."""
     folded = FOLDED[copies(scene)]
     meshes = [solids.mesh_of(body, one, folded) for body, one in zip(scene.bodies, sizes)]
@@ -104,7 +131,7 @@ class Asker:
     """Asks the rule for discs (balls) that hit a plane as the scene's bodies hit each other: with its largest speeds and forces, along and
     across the normal."""
 
-    scene: Multibody
+    scene: Scene
     met: list[Meeting]
     rule: Rule
 
@@ -164,7 +191,7 @@ def pair_values(pair: Pair, ask: Asker, values: dict[str, Value]) -> dict[str, V
     return {name: own[name] for name in OWN}
 
 
-def _with_small_obstacles(scene: Multibody, ask: "Asker") -> list[Pair]:
+def _with_small_obstacles(scene: Scene, ask: "Asker") -> list[Pair]:
     """The scene's pairs, and those that an open penalty makes differ: a body and an obstacle that is smaller than its contact on a plane would be."""
     said = {(pair.first, pair.second) for pair in scene.pairs}
     small = [(one.first, one.second) for one in ask.met if 0 < ask.small(one.first, one.second) < math.inf] if scene.contact["penalty"] == "auto" else []
@@ -172,7 +199,7 @@ def _with_small_obstacles(scene: Multibody, ask: "Asker") -> list[Pair]:
     return sorted(pairs, key=lambda pair: (pair.first, pair.second))
 
 
-def used_tables(scene: Multibody, sizes: list[Sizes | None], values: dict[str, Value], pairs: list[dict[str, Value]]) -> dict:
+def used_tables(scene: Scene, sizes: list[Sizes | None], values: dict[str, Value], pairs: list[dict[str, Value]]) -> dict:
     """The tables of a scene with everything as used; what obstacles say of contact stands in [[contact.pair]]."""
     def names(pair: Pair) -> list[str]:
         return [(scene.bodies[k] if k >= 0 else scene.obstacles[-1 - k]).name for k in (pair.first, pair.second)]
@@ -189,7 +216,7 @@ def used_tables(scene: Multibody, sizes: list[Sizes | None], values: dict[str, V
     return top | {"body": bodies, "obstacle": obstacles, "contact": contact}
 
 
-def _symmetry(scene: Multibody) -> dict[str, str]:
+def _symmetry(scene: Scene) -> dict[str, str]:
     return {"symmetry": next(word for word, count in COPIES.items() if count == copies(scene))} if scene.dimension is SOLID else {}
 
 
@@ -235,7 +262,7 @@ def _near(body: Body, k: int, one: Meeting, depth: float, points: np.ndarray) ->
     return points[gaps <= gaps.min() + depth]
 
 
-def _boundary(scene: Multibody, k: int) -> list[list[tuple[Curve, float, int]]]:
+def _boundary(scene: Scene, k: int) -> list[list[tuple[Curve, float, int]]]:
     """The closed curves that bound the mesh of body k, the outer first, counter-clockwise: each piece with the largest element size on it and its label.
     Nothing reaches a hole that holds no other body and no obstacle."""
     outer, *holes = scene.bodies[k].outline.loops
@@ -251,7 +278,7 @@ def _largest(loop: Loop) -> float:
     return np.inf if loop.semi_axes is None else ROUND * loop.semi_axes.min()
 
 
-def _holds(scene: Multibody, k: int, hole: Loop) -> bool:
+def _holds(scene: Scene, k: int, hole: Loop) -> bool:
     centre = hole.area_centre
     farthest = np.linalg.norm(hole.polygon - centre, axis=1).max()
     bodies = any(hole.gap(other.placed.points[:1])[0] < 0 for j, other in enumerate(scene.bodies) if j != k)
@@ -259,78 +286,6 @@ def _holds(scene: Multibody, k: int, hole: Loop) -> bool:
 
 
 # ---- meshes
-
-def mesh_body(boundary: list[list[tuple[Curve, float, int]]], sizes: Sizes, scale: float) -> mesh.Mesh:
-    """The mesh inside closed curves, of a body about as large as `scale` [m]: the ends of their pieces are vertices, and all vertices of the boundary lie
-    on them to rounding; boundary edges have the body to their left, and the label of their piece."""
-    pieces = [[nodes_on(curve, largest, sizes) for curve, largest, _ in loop] for loop in boundary]
-    labels = [np.repeat([label for *_, label in loop], [len(nodes) for nodes in each]) for loop, each in zip(boundary, pieces)]
-    loops = [np.vstack(each) for each in pieces]
-    loops = [nodes if k == 0 else nodes[::-1] for k, nodes in enumerate(loops)]     # a hole has one label
-    bulk, inside = round(sizes.bulk / scale, mesh.DIGITS), [np.round(nodes / scale, mesh.DIGITS) for nodes in loops]    # gmsh's tolerances are absolute
-    with mesh.gmsh_session() as gmsh:
-        gmsh.option.setNumber("Mesh.Algorithm", 6)
-        for source in ("FromPoints", "FromCurvature", "ExtendFromBoundary"):
-            gmsh.option.setNumber(f"Mesh.MeshSize{source}", 0)
-        tags, curves = zip(*(_loop(gmsh.model, nodes) for nodes in inside))
-        gmsh.model.geo.addPlaneSurface([gmsh.model.geo.addCurveLoop(list(lines)) for lines in curves])
-        gmsh.model.geo.synchronize()
-        _grade(gmsh.model.mesh.field, inside, curves, bulk)
-        gmsh.model.mesh.generate(2)
-        node_tags, coordinates, _ = gmsh.model.mesh.getNodes()
-        _, triangle_tags = gmsh.model.mesh.getElementsByType(2)
-        corner_tags = [gmsh.model.mesh.getNodes(0, tag)[0][0] for tag in np.concatenate(tags)]
-    row = np.empty(int(node_tags.max()) + 1, dtype=int)
-    row[node_tags] = np.arange(len(node_tags))
-    points, corners = coordinates.reshape(-1, 3)[:, :2] * scale, row[np.array(corner_tags, dtype=int)]
-    points[corners] = np.vstack(loops)
-    triangles = mesh.counter_clockwise(points, row[triangle_tags].reshape(-1, 3))
-    ends = np.split(corners, np.cumsum([len(nodes) for nodes in loops])[:-1])
-    edges = np.vstack([np.column_stack([each, np.roll(each, -1)]) for each in ends])
-    return mesh.Mesh(points, triangles, edges, np.concatenate(labels))
-
-
-def nodes_on(curve: Curve, largest: float, sizes: Sizes) -> np.ndarray:
-    """Vertices (n, 2) on a curve from its first end on, without its last, in steps ds with the integral of ds / size constant."""
-    s, size = np.array([0.0, 1.0]), np.array([])
-    while len(size) < len(s):                    # halved until the size, which is Lipschitz, is known between points too
-        size = np.minimum(sizes.at(curve(s)), largest)
-        step = np.linalg.norm(np.diff(curve(s), axis=0), axis=1)
-        coarse = step > SAMPLED * np.minimum(size[1:], size[:-1])
-        s = np.sort(np.concatenate([s, (s[1:] + s[:-1])[coarse] / 2]))
-    passed = np.concatenate([[0.0], np.cumsum(step * (1 / size[1:] + 1 / size[:-1]) / 2)])
-    count = max(1, round(passed[-1]))
-    return curve(np.interp(passed[-1] * np.arange(count) / count, passed, s))
-
-
-def _loop(model, nodes: np.ndarray) -> tuple[list[int], list[int]]:
-    """Points and lines of gmsh along a loop, one element a line."""
-    points = [model.geo.addPoint(x, y, 0) for x, y in nodes]
-    lines = [model.geo.addLine(a, b) for a, b in zip(points, [*points[1:], points[0]])]
-    for line in lines:
-        model.geo.mesh.setTransfiniteCurve(line, 2)
-    return points, lines
-
-
-def _grade(field, loops: list[np.ndarray], curves: tuple[list[int], ...], bulk: float) -> None:
-    """Element sizes inside: those of the edges on the outline, growing linearly with the distance from them up to the bulk's. Edges
-    of about one length are one source."""
-    length = np.concatenate([np.linalg.norm(np.roll(nodes, -1, axis=0) - nodes, axis=1) for nodes in loops])
-    fineness = np.ceil(2 * np.log2(np.maximum(bulk / length, 1)) - 1e-9).astype(int)     # from bulk down in steps of sqrt(1/2)
-    lines, sources = np.concatenate(curves), []
-    for level in np.unique(fineness):
-        size = bulk * np.sqrt(0.5)**level
-        distance, source = field.add("Distance"), field.add("Threshold")
-        field.setNumbers(distance, "CurvesList", lines[fineness == level])
-        field.setNumber(distance, "Sampling", 5)   # points on a line; of 2 gmsh makes none
-        for name, value in dict(InField=distance, SizeMin=size, SizeMax=bulk, DistMin=0,
-                                DistMax=max(bulk - size, 1e-9 * bulk) / GROWTH).items():
-            field.setNumber(source, name, value)
-        sources.append(source)
-    least = field.add("Min")
-    field.setNumbers(least, "FieldsList", sources)
-    field.setAsBackgroundMesh(least)
-
 
 def side_by_side(meshes: list[mesh.Mesh | solid_mesh.SolidMesh], along: int) -> np.ndarray:
     """Centres (bodies, axes) on an axis (0: x, 1: y), from 0 on, that keep meshes about them apart by a part of the largest."""
@@ -351,21 +306,9 @@ def stack(meshes: list[mesh.Mesh], centres: np.ndarray) -> tuple[mesh.Mesh, np.n
     return together, np.repeat(np.arange(len(meshes)), [len(one.triangles) for one in meshes])
 
 
-def write_mesh(together: mesh.Mesh, regions: np.ndarray, path: Path) -> None:
-    """FreeFEM's 2D .msh: counts; x y label; v1 v2 v3 region; v1 v2 label; vertices count from 1."""
-    point_labels = np.zeros(len(together.points), dtype=int)
-    for label in np.unique(together.labels)[::-1]:     # where two meet, the contact's
-        point_labels[together.edges[together.labels == label]] = label
-    with open(path, "w") as file:
-        file.write(f"{len(together.points)} {len(together.triangles)} {len(together.edges)}\n")
-        file.writelines(f"{x:.17g} {y:.17g} {label}\n" for (x, y), label in zip(together.points, point_labels))
-        file.writelines(f"{a} {b} {c} {region}\n" for (a, b, c), region in zip(together.triangles + 1, regions))
-        file.writelines(f"{a} {b} {label}\n" for (a, b), label in zip(together.edges + 1, together.labels))
-
-
 # ---- scene.dat
 
-def data_file(scene: Multibody, disc: dict[str, Value], centres: np.ndarray, rounds: list[tuple], pairs: list[dict[str, Value]]) -> str:
+def data_file(scene: Scene, disc: dict[str, Value], centres: np.ndarray, rounds: list[tuple], pairs: list[dict[str, Value]]) -> str:
     """The text of scene.dat, words and numbers (SI, radians):
         ffimpact-bodies 1
         disc radius young nu density speed angle spin                                                   that the rules stand for

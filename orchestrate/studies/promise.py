@@ -12,7 +12,6 @@ from .. import run, scene
 from ..output import estimate
 from ..failure import Failure, TooLong
 from ..output.folder import result_folder
-from ..scenes.multibody import Multibody
 from ..input.parameters import Value, whole
 from ..places import COMMAND, RESULTS, shown
 from ..output.results import read_answers
@@ -70,19 +69,19 @@ def _row(out: Path, name: str, point: study.Point) -> dict:
         return {"message": str(failure)}
 
 
-def _scene(name: str, point: study.Point) -> scene.Scene | Multibody:
+def _scene(name: str, point: study.Point) -> scene.Scene:
     """With the penalty left open, which built-in scenes state."""
     open_one = scene.load(name)
-    penalty = "contact.penalty" if isinstance(open_one, Multibody) else "penalty"
+    penalty = "contact.penalty" if open_one.bodies else "penalty"
     return open_one.override({"fields": 0, penalty: "auto"} | point)
 
 
-def _compared(wanted: scene.Scene | Multibody, folder: Path) -> dict:
+def _compared(wanted: scene.Scene, folder: Path) -> dict:
     asked = wanted.values["accuracy"]
     paid = [0.0]
 
     def solve(given: dict[str, Value], where: Path) -> None:
-        told = ",".join(f"{key}={value}" for key, value in given.items() if isinstance(wanted, Multibody) or wanted.values[key] != value)
+        told = ",".join(f"{key}={value}" for key, value in given.items() if wanted.bodies or wanted.values[key] != value)
         kept = run.run(wanted, given, study.place(folder, {"run": told}), estimate=False)
         paid[0] += kept.summary["cpu_seconds"]
         shutil.copytree(kept.folder, where, dirs_exist_ok=True)

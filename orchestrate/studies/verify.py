@@ -26,7 +26,7 @@ from ..failure import BadInput, Failure
 from ..output.folder import result_folder
 from ..places import COMMAND, RESULTS, ROOT, shown
 from ..report.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE
-from ..report.report import REFERENCE
+from ..report.literature import REFERENCE
 from ..output.results import read_frame
 from ..sweeps import study
 

@@ -34,7 +34,6 @@ import pandas as pd
 from .. import scene
 from ..input import parameters
 from ..failure import BadInput, Busy, Failure, Unreadable, brief
-from ..scenes.multibody import Multibody
 from ..input.parameters import Value
 from ..output.folder import result_folder
 from ..places import COMMAND, RESULTS, shown
@@ -66,7 +65,7 @@ class Sweep:
     collect: list[str]
     limit: float
     figure: dict
-    sample: scene.Scene | Multibody      # a point's scene
+    sample: scene.Scene      # a point's scene
     text: str                   # the file
 
     @property
@@ -199,7 +198,7 @@ def _sweep(path: Path, given: dict, text: str) -> Sweep:
     return Sweep(path.stem, str(given.get("title", path.stem)), name, base, points, refine, wanted, float(limit), figure, sample, text)
 
 
-def _sample(of: scene.Scene | Multibody, base: study.Point, points: list[study.Point]) -> scene.Scene | Multibody:
+def _sample(of: scene.Scene, base: study.Point, points: list[study.Point]) -> scene.Scene:
     """The scene of the first point that is accepted; BadInput, as of the first point, where none is. One that is refused keeps no other from its run."""
     refused = None
     for point in points:
@@ -235,7 +234,7 @@ def _flat(table: dict, path: str = "") -> dict:
     return found
 
 
-def _values(name: str, given: list | dict, of: scene.Scene | Multibody) -> list[Value]:
+def _values(name: str, given: list | dict, of: scene.Scene) -> list[Value]:
     """The checked values of an axis of a sweep of the scene `of`, from a list or a range."""
     if isinstance(given, dict):
         if not set(RANGE[:3]) <= set(given) <= set(RANGE):
@@ -258,14 +257,14 @@ def _values(name: str, given: list | dict, of: scene.Scene | Multibody) -> list[
     return values
 
 
-def _single(name: str, value, of: scene.Scene | Multibody) -> Value:
+def _single(name: str, value, of: scene.Scene) -> Value:
     """A checked value of an axis: a number or a word."""
     if isinstance(value, list | dict):
         raise BadInput(f"{brief(name)}: {brief(value)} (accepted: single numbers and words, as body.1.velocity.2 for one of two)")
     return of.check({name: value})[name]
 
 
-def _together(group: dict, of: scene.Scene | Multibody) -> list[study.Point]:
+def _together(group: dict, of: scene.Scene) -> list[study.Point]:
     """A [[zip]]: its parameters go through their values together."""
     columns = {name: [_single(name, value, of) for value in _is(values, list, name, "a list of values")]
                for name, values in group.items()}

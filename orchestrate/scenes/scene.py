@@ -1,4 +1,5 @@
-"""A scene of one's own, bodies and obstacles in one TOML file: read, checked, and its entries set by dotted names.
+"""A scene: bodies and obstacles in the tables of one TOML file, read, checked, and its entries set by dotted names; or one of the paper's, whose script
+makes the bodies of its parameters, all at the top of the file.
 
     title = "..."
     dimension = "plane-strain"   # or axisymmetric (dimension.py)
@@ -13,38 +14,32 @@
     friction_static = 0.3
 """
 
-import copy
 import hashlib
 import itertools
-import re
-import tomllib
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+import tempfile
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
-from .. import scene
+from ..failure import BadInput, brief
+from ..freefem.describe import describe
+from ..geometry.outlines import Outline, normal_of
 from ..input import dimension, parameters
+from ..input.dimension import SOLID, Dimension
+from ..input.parameters import Value
+from ..input.tables import Table, listed
+from ..mesh.solids import Solid
+from ..output import estimate
 from . import bodies, mirror, obstacles
 from .bodies import MATERIAL, SIZES, Body
-from ..freefem.describe import describe
-from ..input.dimension import SOLID, Dimension
-from ..failure import BadInput, brief
+from .entries import release, set_entry, toml_value
 from .obstacles import Obstacle
-from ..output.estimate import LARGEST
-from ..input.parameters import Value
-from ..mesh.solids import Solid
-from ..geometry.outlines import Outline, normal_of
-from ..input.tables import Table, listed, to_toml
 
-SCENES = scene.SCENES
 RUN = ("gravity", "body_force_x", "body_force_y", "degree", "integrator", "dt", "accuracy", "accuracy_of", "tolerance", "breakdown",
        "chatter", "end_time", "fields", "modes", "checkpoint_every", "without")
 OWN = ("penalty", "friction_static", "friction_dynamic")                                  # a pair may have its own
 CONTACT = (*OWN, "exponent", "slip_velocity", "regularization", "friction_transition", "pairing", "pairing_range")
-SHAPE = ("shape", "semi_axes", "width", "height", "depth", "inner_radius", "vertices", "file")     # sizes of a body, beside radius
-EVERYWHERE = ("penalty", "dt")
 TOUCHING = 1e-9              # of a body's thickness: an overlap up to it is round-off
 
 
@@ -59,59 +54,64 @@ class Pair:
 
 
 @dataclass(frozen=True)
-class Multibody:
-    """`given` are the tables of the file, `contact` is every parameter of contact, `values` every parameter of a run, both with what is
-    left open (auto, 0) as it is."""
+class Scene:
+    """`given` are the tables of the file, `values` every parameter of a run, `contact` those of [contact], both with what is left open (auto, 0) as it is.
+    Without `bodies` it is one of the paper's: `values`, and `given` with them, hold EVERY parameter that edp/<script>.edp takes, in SI units."""
 
     name: str
     title: str
-    dimension: Dimension
+    script: str
     given: dict
     folder: Path
-    bodies: list[Body]
-    obstacles: list[Obstacle]
-    contact: dict[str, Value]
-    pairs: list[Pair]
     values: dict[str, Value]
+    dimension: Dimension | None = None
+    bodies: list[Body] = field(default_factory=list)
+    obstacles: list[Obstacle] = field(default_factory=list)
+    contact: dict[str, Value] = field(default_factory=dict)
+    pairs: list[Pair] = field(default_factory=list)
     released: tuple[str, ...] = ()      # sentences: what was fixed for others that are set now
 
-    @property
-    def script(self) -> str:
-        """A file edp/<script>.edp."""
-        return self.dimension.script
-
-    def override(self, given: dict[str, Value]) -> "Multibody":
-        """The same scene with some entries set by their dotted names, open again what it had fixed for them (release), and read again."""
+    def override(self, given: dict[str, Value]) -> "Scene":
+        """The same scene with some entries set by their dotted names (text or values), open again what it had fixed for them (release), and read again."""
         if not given:
             return self
         changed = self.given
-        for name, value in given.items():
+        for name, value in self.check(given).items():
             changed = set_entry(changed, name, value)
         said = release(changed, list(given))
         return replace(read(changed, self.folder, self.name), released=self.released + said)
 
     def check(self, given: dict[str, Value]) -> dict[str, Value]:
-        """The given entries of such a scene, by dotted names, text as TOML reads it; BadInput where there is no such place."""
-        for name, value in given.items():
+        """The given entries of such a scene, by dotted names, converted; BadInput where there is no such place."""
+        if not self.bodies:
+            return parameters.check(given, self.script)
+        found = {name: toml_value(value) for name, value in given.items()}
+        for name, value in found.items():
             set_entry(self.given, name, value)
-        return {name: toml_value(value) for name, value in given.items()}
+        return found
 
     @property
     def asked(self) -> dict:
-        """What decides the answer: two scenes that agree in it are one run."""
-        files = [str(given["file"]) for given in self.given["body"] if "file" in given]
+        """What decides the answer beside the script: two scenes that agree in it are one run."""
+        files = [str(given["file"]) for given in self.given.get("body", []) if "file" in given]
         meshes = {name: hashlib.sha256((self.folder / name).read_bytes()).hexdigest() for name in files}
-        return parameters.decisive({name: value for name, value in self.given.items() if name != "title"}) | {"files": meshes}
+        return parameters.decisive({name: value for name, value in self.given.items() if name not in ("title", "script")}) | {"files": meshes}
 
     @property
     def numbers(self) -> list[str]:
         """The numbers of summary.json."""
-        return scene.of_bodies("summary", describe(script=self.script), len(self.bodies))
+        return self._named("summary")
 
     @property
     def columns(self) -> list[str]:
         """The columns of history.csv."""
-        return scene.of_bodies("columns", describe(script=self.script), len(self.bodies))
+        return self._named("columns")
+
+    def _named(self, what: str) -> list[str]:
+        """Columns or numbers; those of each of several bodies have the suffixes _1, _2 ..."""
+        said = describe(script=self.script)
+        bodies = len(self.bodies) or said["bodies"]
+        return said[what] + [f"{name}_{b}" for b in range(1, bodies + 1) for name in said[f"body_{what}"] if bodies > 1]
 
     @property
     def of_files(self) -> bool:
@@ -120,8 +120,8 @@ class Multibody:
 
     @property
     def meshed(self) -> bool:
-        """Whether Python makes the mesh, with gmsh."""
-        return True
+        """Whether Python makes the mesh, with gmsh; else the script does."""
+        return self.script in parameters.table()["mesh"].scripts
 
     @property
     def mesh_name(self) -> str:
@@ -130,32 +130,29 @@ class Multibody:
 
     @property
     def sizes(self) -> dict[str, float]:
-        """The largest mesh sizes that bodies give, 0 where none does."""
-        return {name: max(getattr(body, name) for body in self.bodies) for name in SIZES}
+        """The largest mesh sizes that bodies give, 0 where none does, beside `values`."""
+        return {name: max(getattr(body, name) for body in self.bodies) for name in SIZES} if self.bodies else {}
 
     def description(self, foreign: bytes | None = None) -> dict:
-        """Nothing more than was read; BadInput where a mesh file is given beside the scene."""
-        if foreign is not None:
-            raise BadInput("mesh: is of one body (accepted: in a table [[body]], shape = \"mesh\" with file)")
-        return {}
-
-    def prepare(self, where: Path, foreign: bytes | None = None) -> tuple[dict[str, Value | Path], dict, str]:
-        """The flags of a run in the folder `where`, the scene as it will be used, and the text of its scene.toml. Puts into the folder what the flags
-        name: the mesh of all bodies, and what bodies.edp reads of them."""
-        from . import approach, assembly
-        if len(self.bodies) == 1 and not self.obstacles:
-            raise BadInput("obstacle: is missing, and a second body too (accepted: one table [[obstacle]] or more, or several [[body]])")
-        scene = approach.turned(self)
-        met = approach.meetings(scene)
-        approach.refuse_nothing(scene, met)
-        built = assembly.assemble(scene, met=met)
-        built.write(where)
-        text = to_toml(built.used)
-        return built.values | {"mesh": where / self.mesh_name, "bodies": where / "scene.dat"}, tomllib.loads(text), text
+        """What the script says of one of the paper's scenes, on the mesh `foreign` (FreeFEM's .msh) where there is one; BadInput where it refuses it. Of
+        others nothing more than was read."""
+        if self.bodies:
+            if foreign is not None:
+                raise BadInput("mesh: is of one body (accepted: in a table [[body]], shape = \"mesh\" with file)")
+            return {}
+        if foreign is None:
+            return describe(self.values, self.script)
+        parameters.taken("mesh", self.script)
+        with tempfile.NamedTemporaryFile(suffix=".msh") as file:
+            file.write(foreign)
+            file.flush()
+            return describe(self.values | {"mesh": file.name}, self.script)
 
     def scaled(self, values: dict, used: dict, factor: float, own_mesh: bool = True) -> dict[str, Value | list]:
         """What the scene, run as the tables `used`, is overridden by for `factor` times the elements and steps; the contact's own
         parameters stay as they were. Meshes of files stay too."""
+        if not self.bodies:
+            return estimate.other(values, used, factor, own_mesh)
         found = {f"contact.{name}": used["contact"][name] for name in ("penalty", "slip_velocity", "friction_dynamic")}
         if used["contact"].get("pair"):
             found["contact.pair"] = used["contact"]["pair"]
@@ -165,16 +162,28 @@ class Multibody:
                 found |= {f"body.{k}.mesh_size": bulk, f"body.{k}.contact_mesh_size": min(bulk, factor * given["contact_mesh_size"])}
         if used["dt"] > 0:
             found["dt"] = factor * used["dt"]
-        return found | {"accuracy": min(LARGEST, factor**2 * used["accuracy"]), "fields": 0, "modes": 0}
+        return found | {"accuracy": min(estimate.LARGEST, factor**2 * used["accuracy"]), "fields": 0, "modes": 0}
 
 
-def built_in() -> list[str]:
-    """Names of the scenes of bodies that come with the program."""
-    return [name for name in scene.built_in() if "body" in scene.read_toml(SCENES / f"{name}.toml", name)[1]]
-
-
-def read(given: dict, folder: Path, name: str) -> Multibody:
+def read(given: dict, folder: Path, name: str) -> Scene:
     """The scene in a file's tables; mesh files are sought from `folder` on. BadInput for whatever is wrong in it."""
+    if {"body", "obstacle", "contact", "dimension"} & set(given):
+        return _of_tables(given, folder, name)
+    if not given:
+        raise BadInput("says nothing (accepted: a scene, as the built-in ones in orchestrate/scenes)")
+    script, title = given.get("script", "disc-plane"), given.get("title", name)
+    if script in dimension.SCRIPTS:
+        raise BadInput(f"body: is missing, which script = '{brief(script)}' needs (accepted: one table [[body]] or more)")
+    scripts = [word for word in describe()["scripts"].split("|") if word not in dimension.SCRIPTS]
+    if script not in scripts:
+        raise BadInput(f"script: '{brief(script)}' is not known (accepted: {'|'.join(scripts)})")
+    set_here = {key: value for key, value in given.items() if key not in ("script", "title")}
+    values = parameters.defaults(script) | parameters.check(set_here, script)
+    return Scene(name, title, script, {"title": title, "script": script} | values, folder, values)
+
+
+def _of_tables(given: dict, folder: Path, name: str) -> Scene:
+    """That of bodies in tables."""
     of = dimension.of(given)
     own = ("symmetry",) if of is SOLID else ()
     table = Table("", given, ("title", "script", "dimension", *own, "body", "obstacle", "contact", *MATERIAL, *SIZES, *RUN))
@@ -198,8 +207,7 @@ def read(given: dict, folder: Path, name: str) -> Multibody:
     for both, pair in _exceptions(contact_table, index).items():
         pairs[both] = replace(pair, values=pairs[both].values | pair.values) if both in pairs else pair
     values = _parameters(table, RUN, of)
-    found = Multibody(name, table.text("title", name), of, given, folder, all_bodies, all_obstacles, contact,
-                      [pairs[both] for both in sorted(pairs)], values)
+    found = Scene(name, table.text("title", name), script, given, folder, values, of, all_bodies, all_obstacles, contact, [pairs[both] for both in sorted(pairs)])
     _apart(found)
     mirror.copies(found)
     return found
@@ -273,7 +281,7 @@ def _partners(path: str, given, index: dict[str, int]) -> tuple[int, int]:
 
 # ---- places
 
-def _apart(found: Multibody) -> None:
+def _apart(found: Scene) -> None:
     """BadInput where a body overlaps another one or an obstacle at the start."""
     for (i, body), (j, other) in itertools.combinations(enumerate(found.bodies, 1), 2):
         _refuse_overlap(f"body.{i}", body, f"body.{j}", other.name, gap_between(body.placed, other.placed))
@@ -298,77 +306,3 @@ def gap_to_obstacle(outline: Outline | Solid, obstacle: Obstacle) -> float:
     nearest = centre - obstacle.gap(centre[None]) * normal_of(obstacle, centre)
     is_of_it = obstacle.gap(nearest[None])[0] < 1e-4 * outline.half_thickness    # not where the distance has no gradient
     return float(min(least, outline.gap(nearest[None])[0]) if is_of_it else least)    # the former: an obstacle inside the body
-
-
-# ---- entries by name
-
-def set_entry(given: dict, name: str, value: Value | list) -> dict:
-    """The tables of a file with one entry set: "body.2.young", "contact.pair.1.penalty", "body.1.velocity.2"; tables and
-    components of a list are counted from 1. `value` may be text as on a command line. BadInput where there is no such place."""
-    changed = copy.deepcopy(given)
-    place, path = changed, ""
-    *way, last = name.split(".")
-    for step, following in zip(way, [*way[1:], last]):
-        path = f"{path}.{step}" if path else step
-        if isinstance(place, dict) and step not in place and path == "contact":
-            place[step] = {}
-        key = _key(place, step, path, name)
-        if key not in place if isinstance(place, dict) else False:
-            raise BadInput(f"{brief(name)}: there is no {brief(path)} in the scene (accepted: {', '.join(place)})")
-        place = place[key]
-        if not isinstance(place, dict | list):
-            raise BadInput(f"{brief(name)}: {path} is '{brief(place)}' and has no entry {brief(following)}")
-    place[_key(place, last, name, name)] = toml_value(value)
-    return changed
-
-
-def release(given: dict, names: list[str]) -> tuple[str, ...]:
-    """Takes out of the tables of a file what FOLLOWS says that the entries `names`, which were set, leave open; the sentences about it. What is of one table
-    (coefficients of friction, sizes of a body) follows what is set there, penalty and step whatever body it is of."""
-    places = [_table_of(name) for name in names]
-    said = []
-    for path, table in list(_tables(given)):
-        for key in [key for key in parameters.FOLLOWS if key in table and (path, key) not in places]:
-            causes = parameters.FOLLOWS[key] + (SHAPE if "radius" in parameters.FOLLOWS[key] else ())
-            found = [name for name, (where, entry) in zip(names, places) if entry in causes and (where == path or key in EVERYWHERE)]
-            if found and table[key] not in ("auto", 0):
-                said.append(parameters.release(f"{path}.{key}".lstrip("."), table.pop(key), found))
-    return tuple(said)
-
-
-def _tables(value, path: str = "") -> Iterator[tuple[str, dict]]:
-    """All tables in a table or a list, with their dotted names."""
-    if isinstance(value, dict):
-        yield path, value
-    for key, one in value.items() if isinstance(value, dict) else enumerate(value, 1) if isinstance(value, list) else ():
-        yield from _tables(one, f"{path}.{key}".lstrip("."))
-
-
-def _table_of(name: str) -> tuple[str, str]:
-    """Of a dotted name that of its table, and the entry in it."""
-    parts = name.split(".")
-    depth = 3 if parts[:2] == ["contact", "pair"] else {"body": 2, "obstacle": 2, "contact": 1}.get(parts[0], 0)
-    return ".".join(parts[:depth]), ".".join(parts[depth:depth + 1])
-
-
-def _key(place: dict | list, step: str, path: str, name: str) -> str | int:
-    """The key of one step, from 0 in lists."""
-    if not step:
-        raise BadInput(f"{brief(name)}: has an empty part (accepted: names and numbers with single dots between them)")
-    if isinstance(place, dict):
-        return step
-    if not re.fullmatch("[0-9]{1,6}", step) or not 1 <= int(step) <= len(place):
-        before = path.removesuffix(f".{step}")
-        numbers = f"{before}.1 to {before}.{len(place)}" if len(place) > 1 else f"{before}.1"
-        raise BadInput(f"{brief(name)}: there is no {brief(path)} in the scene (accepted: {numbers})")
-    return int(step) - 1
-
-
-def toml_value(value):
-    """Text as TOML reads it, where it does; numbers and arrays of numpy as plain ones."""
-    if not isinstance(value, str):
-        return value.tolist() if isinstance(value, np.generic | np.ndarray) else value
-    try:
-        return tomllib.loads(f"value = {value}")["value"] if "\n" not in value else value
-    except tomllib.TOMLDecodeError:
-        return value

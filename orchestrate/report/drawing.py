@@ -1,0 +1,68 @@
+"""All figures of a finished run, each with its title and the run's warnings."""
+
+from pathlib import Path
+
+import numpy as np
+
+from ..failure import Unreadable
+from ..input import dimension
+from ..input.parameters import Value
+from ..output import vtu
+from ..output.results import Contents, check_files, read_history, read_json, read_scene
+from ..places import COMMAND
+from . import bodies, contact as contacts, impacts, solid, vibration
+from .figures import BODY, STYLE, as_written, footer, is_half, material, on_a_plane, per_metre, plt, save, touched
+
+
+def draw(folder: Path, warnings: list[str]) -> list[Path]:
+    """Draws all figures of the run in `folder` into folder/figures, with its warnings below; the files. Unreadable where the
+    folder is broken. energies.png is the last: where it is, all are."""
+    check_files(folder)
+    history, scene = read_history(folder), read_scene(folder)
+    scene["touched"] = touched(read_json(folder / "summary.json"))
+    if scene["script"] in dimension.SCRIPTS and "body" not in scene:
+        raise Unreadable(f"{folder}: of a run without Python, which keeps neither names of bodies nor obstacles (accepted: a folder of {COMMAND} run)")
+    snapshots = vtu.series(folder / "fields.pvd")
+    target = folder / "figures"
+    target.mkdir(exist_ok=True)
+    touches = history["normal_force"] > 0
+    contact = Contents({name: column[max(0, int(np.argmax(touches)) - 1):] for name, column in history.items()}, history.path)   # without the flight
+    with plt.rc_context(STYLE):
+        if bodies.are_several(scene):
+            drawn = bodies.draw(contact, scene, snapshots)
+        else:
+            drawn = on_a_plane(history, contact, scene, snapshots)
+        if (folder / "fields/contact.csv").exists():
+            table = contacts.read(folder, beside=True)
+            along = contacts.draw(table, bodies.names(scene) if bodies.are_several(scene) else ["body"], is_half(scene), history["t"][~touches],
+                                  scene if scene.get("script") in BODY and is_half(scene) else None, scene.get("symmetry", "full"), history)
+            drawn |= {"contact": along} if along else {}
+            inside = solid.draw(snapshots, table[table.pressure > 0], scene) if snapshots and "Z" in table else None
+            drawn |= {"solid": inside} if inside else {}
+        if (folder / "contacts.csv").exists():
+            bounces = impacts.draw(impacts.read(folder), bodies.names(scene) if bodies.are_several(scene) else ["body"],
+                                   [as_written(one["name"]) for one in scene.get("obstacle", [])] or ["plane"])
+            drawn |= {"bounces": bounces} if bounces else {}
+        if (folder / "modes.csv").exists():
+            rings = vibration.draw(vibration.read(folder), history, per_metre(scene))
+            drawn |= {"vibration": rings} if rings else {}
+        for name, figure in reversed(drawn.items()):
+            figure.suptitle(title(scene))
+            footer(figure, warnings)
+            save(figure, target / f"{name}.png")
+    return [target / f"{name}.png" for name in drawn]
+
+
+def title(scene: dict[str, Value]) -> str:
+    """Which body, law, nu, speed, the angle where the impact is oblique, linear elements, and the friction law where there is one; of several bodies each one's."""
+    if bodies.are_several(scene):
+        return bodies.title(scene)
+    angle = "" if scene.get("angle", 90) == 90 else f" at {scene['angle']:g}°"
+    body = BODY.get(scene.get("script"), "")
+    text = f"{body}{material(scene)}, {scene['speed']:g} m/s{angle}"
+    if scene.get("degree") == 1:
+        text += ", linear elements"
+    if scene.get("friction_static", 0) > 0:
+        text += (f"\nfriction {scene['friction_static']:g} static, {scene['friction_dynamic']:g} dynamic, "
+                 f"{scene['regularization']}, ε = {scene['slip_velocity']:g} m/s")
+    return text

@@ -1,0 +1,48 @@
+"""The rooms of the Python side: which may import which, and how long a function may be."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+from orchestrate.places import ROOT
+
+PACKAGE = ROOT / "orchestrate"
+# a room imports those before it, and the modules beside the rooms that stand in the same line; what is in no line imports nothing but itself
+ORDER = (("failure", "places", "progress", "stopping"), ("freefem",), ("input",), ("output",), ("geometry",), ("mesh",), ("scenes",), ("scene",), ("running",),
+         ("run",), ("report",), ("sweeps",), ("studies",), ("__init__", "__main__"), ("paper",))
+MODULES = {path.relative_to(PACKAGE).with_suffix("").parts: path for path in sorted(PACKAGE.rglob("*.py"))}
+
+
+def imported(module: tuple[str, ...]) -> set[tuple[str, ...]]:
+    """The modules of the package that one imports, wherever in it."""
+    found = set()
+    for node in ast.walk(ast.parse(MODULES[module].read_text())):
+        if isinstance(node, ast.ImportFrom) and node.level:
+            place = module[:len(module) - node.level] + tuple((node.module or "").split(".") if node.module else ())
+            found |= {place + (name.name,) for name in node.names if place + (name.name,) in MODULES} or ({place} & set(MODULES)) or {place + ("__init__",)}
+    return found
+
+
+def test_no_import_circle():
+    """No module imports itself by way of others, at the top or inside functions."""
+    open_ones = {module: imported(module) for module in MODULES}
+    while free := [module for module, needs in open_ones.items() if not needs & set(open_ones)]:
+        for module in free:
+            del open_ones[module]
+    assert not open_ones
+
+
+@pytest.mark.parametrize("module", MODULES, ids="/".join)
+def test_a_room_imports_those_before_it(module):
+    """So that each can be read without those that come after it; the version, in __init__, is everybody's."""
+    height = {name: k for k, line in enumerate(ORDER) for name in line}
+    later = {"/".join(other) for other in imported(module) if height[other[0]] > height[module[0]] and other != ("__init__",)}
+    assert not later
+
+
+@pytest.mark.parametrize("path", MODULES.values(), ids=lambda path: str(path.relative_to(PACKAGE)))
+def test_a_function_fits_a_screen(path: Path):
+    """At most 50 lines."""
+    functions = [node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.FunctionDef)]
+    assert not [f"{one.name}: {one.end_lineno - one.lineno + 1}" for one in functions if one.end_lineno - one.lineno >= 50]
