@@ -2,14 +2,17 @@
 
 Of the two runs of a pair the finer is the answer. What an answer differs by between them is about its error: elements and steps of
 the coarser are COARSER times as large, so that an error quadratic in them doubles. But one difference can be small by chance, and impulse,
-rebound and energy of an impact without friction are one number, small together. What cannot be small by chance is the largest difference
-of the two runs on their way: of the running impulse, the velocities, the elastic energy, the friction work. So the error that is stated of an answer is
-    BOUND D^(1/3) d^(2/3),   d: the largest difference of its course over its scale; D: the mean of the promised answers' differences over their usual ones,
-and no less than their difference: an error that 95 of 100 runs keep (docs/promise.md; BOUND is calibrated on other scenes), and so some three
-times the usual one. It is that of mesh and steps: penalty and slip velocity are the same in all runs. Where that of a promised answer is
-more than WORTH times what is asked finer runs follow. Where the contact time alone is off and a finer run has not halved its estimate it scatters
-with the vibration at the last touch (by 0.8 % rms in hard impacts, on any mesh and at any step that was tried): no finer run follows, and the
-estimate says by how much.
+rebound and energy of an impact without friction are one number, small together. So the error that is stated of an answer is made from the
+geometric mean of three measures that mislead for different reasons,
+    BOUND (D d A)^(1/3),   D: the mean of the promised answers' differences, over their usual ones;
+                           d: the largest difference of its course over its scale: running impulse, velocities, elastic energy (course());
+                           A = 1/n^2, n: the steps in which the force is above half its peak: what second-order steps are good for,
+and no less than the difference. Three answers differ (MEASURES): the steps of an impact say little of spin and peak force (d for A), the other
+answers little of friction work (d for D). A touch ends between two steps, so that times converge more slowly: the fourth root.
+BOUND is what 97 of 100 runs keep on scenes other than those of docs/promise.md, some three times the usual error. It is that of mesh
+and steps: penalty and slip velocity are the same in all runs. Where that of a promised answer is more than WORTH times what is asked
+finer runs follow. Where the contact time alone is off and a finer run has not halved its estimate it scatters with the vibration at the last
+touch (by 0.8 % rms in hard impacts, on any mesh and at any step that was tried): no finer run follows, and the estimate says by how much.
 """
 
 import math
@@ -37,11 +40,14 @@ NO_ANSWER = (11, 12)        # exit codes of a run that the step or the material 
 # scenes than those of docs/promise.md.
 USUAL = {"impulse": 0.06, "rebound": 0.12, "rebound_spin": 0.08, "energy": 0.16, "friction_work": 0.04, "thresholded_contact_time": 0.4,
          "contact_time": 0.8, "peak_force": 1.2}
-BOUND = {"impulse": 0.41, "rebound": 0.49, "rebound_spin": 0.94, "energy": 0.70, "friction_work": 1.20, "thresholded_contact_time": 3.6,
-         "contact_time": 6.0, "peak_force": 6.2}
+BOUND = {"impulse": 0.43, "rebound": 0.71, "rebound_spin": 0.80, "energy": 0.86, "friction_work": 4.4, "thresholded_contact_time": 0.87,
+         "contact_time": 1.33, "peak_force": 4.9}
+MEASURES = {"rebound_spin": "Ddd", "friction_work": "Add", "peak_force": "Ddd"}     # of the others: DdA
+ROOT = {"thresholded_contact_time": 4, "contact_time": 4}                           # of the others: 3
 PROMISED = tuple(USUAL)[:6]
 COURSE = {"thresholded_contact_time": "impulse", "contact_time": "impulse", "peak_force": "impulse"}   # whose course stands for theirs
-THROUGH = 2                 # friction that goes another way changes speed and spin, too: its share in them
+THROUGH = 2                 # friction that goes another way changes speed, spin and energy, too: its share in them
+SHARES = np.linspace(0, 1, 201)   # of the impulse
 NONE = 1e-12                # a difference that is round-off
 SCATTERS = "thresholded_contact_time"
 OF_ITSELF = "friction_work of itself"   # accuracy_of = friction_work
@@ -71,7 +77,7 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
         if all(coarse.get(name) == summary.get(name) is not None for name in ("dofs", "steps")):
             sentences = ["the error is not estimated: steps 1.4 times larger are too large for this scene, a second run took the same ones: ask for a smaller accuracy"]
             break
-        estimated = errors(difference(summary, coarse, answers.speed, used.get("radius")), course(answers, before_it))
+        estimated = errors(difference(summary, coarse, answers.speed, used.get("radius")), course(answers, before_it), resolved(answers))
         above = [name for name in wanted(values["accuracy_of"]) if estimated[name] > WORTH * asked]
         scatters, before = above == [SCATTERS] and estimated[SCATTERS] > before / 2, estimated[SCATTERS]
         sentences = excess(estimated, asked, values["accuracy_of"])
@@ -150,8 +156,9 @@ def difference(fine: Mapping, coarse: Mapping, speed: float, radius: float | Non
 
 
 def course(fine: Answers, coarse: Answers) -> dict[str, float]:
-    """How far two runs are apart on their way, by answer and over its scale as in difference(): impulse, velocities, spins, elastic energy
-    (with the contact's) and friction work at the time when they are farthest from each other."""
+    """How far two runs are apart on their way, by answer and over its scale as in difference(): impulse, velocities, spins and elastic energy
+    (with the contact's) at the time when they are farthest from each other, and what friction changes in them (in the spin of what turns at all);
+    friction work, by Coulomb's law of impulse and path, at equal shares of the impulse, root mean square: a touch that is a little later is no error."""
     summary, history = fine.summary, (fine.history, coarse.history)
     ends = [one["t"] for one in history]
     t = np.union1d(*ends)
@@ -169,18 +176,35 @@ def course(fine: Answers, coarse: Answers) -> dict[str, float]:
     found = {"impulse": apart(lambda one: [np.cumsum(one["normal_force"] * one["dt"])], summary["impulse"]),
              "rebound": max(apart(vector(*(f"v{axis}{of}" for axis in "xyz")), fine.speed) for of in bodies),
              "rebound_spin": max(apart(vector(*(f"spin{about}{of}" for about in ("", "_x", "_y"))), fine.speed / reach[of]) for of in bodies),
-             "energy": apart(lambda one: [one["elastic"] + one["contact"]], energy), "friction_work": apart(vector("friction_work"), energy)}
-    for name in ("rebound", "rebound_spin"):
-        found[name] += THROUGH * found["friction_work"]
+             "energy": apart(lambda one: [one["elastic"] + one["contact"]], energy)}
+    for name in ("rebound", "energy", *(["rebound_spin"] if found["rebound_spin"] > NONE else [])):
+        found[name] += THROUGH * apart(vector("friction_work"), energy)
+    found["friction_work"] = float(np.sqrt(np.mean((_over_impulse(fine.history) - _over_impulse(coarse.history))**2)) / energy) if work else 0.0
     found |= {name: found[stands] for name, stands in COURSE.items()}
     return found | {OF_ITSELF: found["friction_work"] * energy / work if work else 0.0}
 
 
-def errors(apart: Mapping[str, float], way: Mapping[str, float]) -> dict[str, float]:
-    """The error that is stated of every answer, from the differences of a pair at the end and on its way (course()), in the same units."""
+def _over_impulse(history: Mapping) -> np.ndarray:
+    """Friction work [J/m] at equal SHARES of the impulse."""
+    impulse = np.cumsum(history["normal_force"] * history["dt"])
+    return np.interp(SHARES * impulse[-1], impulse, history["friction_work"])
+
+
+def resolved(run: Answers) -> float:
+    """A = 1/n^2: what second-order steps are good for, n of them with more than half the peak force (without a contact: all)."""
+    force = run.history["normal_force"]
+    return 1 / np.count_nonzero(force >= force.max() / 2)**2
+
+
+def errors(apart: Mapping[str, float], way: Mapping[str, float], steps: float) -> dict[str, float]:
+    """The error that is stated of every answer, from the differences of a pair at the end and on its way (course()), in the same units, and from resolved()."""
     shares = [apart[name] / USUAL[name] for name in PROMISED if apart[name] > NONE]
-    whole = sum(shares) / len(shares) if shares else 0.0
-    found = {name: max(apart[name], bound * math.cbrt(whole * way[name]**2)) for name, bound in BOUND.items()}
+    measures = {"D": sum(shares) / len(shares) if shares else 0.0, "A": steps}
+
+    def mean(name: str) -> float:
+        return math.prod((measures | {"d": way[name]})[each] for each in MEASURES.get(name, "DdA")) ** (1 / ROOT.get(name, 3))
+
+    found = {name: max(apart[name], bound * mean(name)) for name, bound in BOUND.items()}
     return found | {OF_ITSELF: found["friction_work"] * way[OF_ITSELF] / way["friction_work"] if way["friction_work"] else 0.0}
 
 
