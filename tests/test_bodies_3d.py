@@ -222,7 +222,7 @@ def files(tmp_path_factory):
 def test_meshes_of_files(files, name):
     """The same ball in every format, of second order by its corners: found to be one, about its centre, all of its surface may touch."""
     body, = read({"shape": "mesh", "file": name, "position": [0, 0.3, 0]}, folder=files).bodies
-    assert body.outline.radius == pytest.approx(0.05, rel=1e-8) if name != "ball.mesh" else body.outline.reach == pytest.approx(0.05, rel=1e-3)
+    assert body.outline.disc[1] == pytest.approx(0.05, rel=1e-8) if name != "ball.mesh" else body.outline.reach == pytest.approx(0.05, rel=1e-3)
     assert body.mesh.volumes.sum() == pytest.approx(4 / 3 * math.pi * 0.05**3, rel=0.05) and body.mesh.volumes.min() > 0
     assert abs(body.mesh.centre).max() < 1e-4 and set(body.mesh.labels) == {1}
 
@@ -298,7 +298,7 @@ def test_surfaces_are_round_by_the_angles_of_their_faces(tmp_path):
     assert [one[:2] for one in found_in(tmp_path / "shaft.geo")] == [(True, 0.02)] * 2
     assert [one[:2] for one in found_in(tmp_path / "dome.geo")] == [(False, 0.05)]
     one, = read({"shape": "mesh", "file": "dome.geo", "position": [0, 0.3, 0]}, folder=tmp_path).bodies
-    assert one.outline.radius is None and one.outline.extent[1] == pytest.approx(0.07, rel=5e-3)
+    assert one.outline.disc is None and one.outline.extent[1] == pytest.approx(0.07, rel=5e-3)
 
 
 @pytest.mark.parametrize("corners, section, outline, warned", [

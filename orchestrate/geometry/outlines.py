@@ -137,8 +137,30 @@ def ellipse_loop(a: float, b: float) -> Loop:
     return Loop(np.array([[a, 0.0], [0.0, b], [-a, 0.0], [0.0, -b]]), np.array([a, b]))
 
 
+class Shape:
+    """What an outline in the plane and a solid have in common: `points` on them, signed distances `gap` from them, and, of a disc or ball, `disc`."""
+
+    points: np.ndarray
+    disc: tuple[np.ndarray, float] | None
+    gap: Callable[[np.ndarray], np.ndarray]
+
+    def least(self, gap: Callable[[np.ndarray], np.ndarray]) -> float:
+        """The least value of a distance on it: of a disc or ball exactly, else at its points."""
+        return float(gap(self.disc[0][None])[0] - self.disc[1] if self.disc else gap(self.points).min())
+
+    def normal_from(self, other) -> np.ndarray:
+        """The outward normal of another body or an obstacle where this one is nearest to it."""
+        if not getattr(other, "is_exact", True):
+            return other.nearest(self)[1]
+        if self.disc:
+            return normal_of(other, self.disc[0])
+        if getattr(other, "disc", None):
+            return -normal_of(self, other.disc[0])
+        return normal_of(other, self.points[other.gap(self.points).argmin()])
+
+
 @dataclass(frozen=True)
-class Outline:
+class Outline(Shape):
     """What bounds a body: the loop around it first, then those of its holes."""
 
     loops: tuple[Loop, ...]
@@ -218,20 +240,6 @@ class Outline:
         """Centre and radius of a disc, None for anything else."""
         whole = len(self.loops) == 1 and self.loops[0].radius
         return (self.loops[0].centre, whole) if whole else None
-
-    def least(self, gap: Callable[[np.ndarray], np.ndarray]) -> float:
-        """The least value of a distance on the outline."""
-        return float(gap(self.disc[0][None])[0] - self.disc[1] if self.disc else gap(self.points).min())
-
-    def normal_from(self, other) -> np.ndarray:
-        """The outward normal of another body or an obstacle where this one is nearest to it."""
-        if not getattr(other, "is_exact", True):
-            return other.nearest(self)[1]
-        if self.disc:
-            return normal_of(other, self.disc[0])
-        if getattr(other, "disc", None):
-            return -normal_of(self, other.disc[0])
-        return normal_of(other, self.points[other.gap(self.points).argmin()])
 
     def gap(self, points: np.ndarray) -> np.ndarray:
         """Signed distances (n,) of points from the body, negative in its material, positive outside and in its holes."""

@@ -12,7 +12,6 @@
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -20,10 +19,9 @@ from typing import Protocol
 
 import numpy as np
 
-from ..geometry import tumbling
+from ..geometry import outlines, tumbling
 from . import curved, solid_file
 from ..failure import BadInput, brief
-from ..geometry.outlines import normal_of
 from .solid_mesh import MOST_CELLS, Sizes, SolidMesh, expected_cells, mesh_shape
 from ..input.tables import LONGEST, SHORTEST, Table
 from ..geometry.tumbling import rotation
@@ -263,7 +261,7 @@ def distance_to_triangles(points: np.ndarray, triangles: np.ndarray) -> np.ndarr
 
 
 @dataclass(frozen=True)
-class Solid:
+class Solid(outlines.Shape):
     """A shape with its centre of volume at `centre`, turned by the matrix `rotation`; where gmsh is to mesh a file, that `geometry` and where in it
     the centre is."""
 
@@ -289,9 +287,9 @@ class Solid:
         return self.shape.reach
 
     @property
-    def radius(self) -> float | None:
-        """That of a ball, None for anything else."""
-        return self.shape.radius if isinstance(self.shape, Ball) else None
+    def disc(self) -> tuple[np.ndarray, float] | None:
+        """Centre and radius of a ball, None for anything else."""
+        return (self.centre, self.shape.radius) if isinstance(self.shape, Ball) else None
 
     @property
     def half_thickness(self) -> float:
@@ -334,20 +332,6 @@ class Solid:
         """Signed distances (n,) of points (n, 3), negative inside."""
         return self.shape.gap((points - self.centre) @ self.rotation)
 
-    def least(self, gap: Callable[[np.ndarray], np.ndarray]) -> float:
-        """The least value of a distance on the surface: of a ball exactly, else at its points."""
-        return float(gap(self.centre[None])[0] - self.radius if self.radius else gap(self.points).min())
-
-    def normal_from(self, other) -> np.ndarray:
-        """The outward normal of another body or an obstacle where this one is nearest to it."""
-        if not getattr(other, "is_exact", True):
-            return other.nearest(self)[1]
-        if self.radius:
-            return normal_of(other, self.centre)
-        if getattr(other, "radius", None):
-            return -normal_of(self, other.centre)
-        return normal_of(other, self.points[other.gap(self.points).argmin()])
-
 
 # ---- meshes
 
@@ -363,7 +347,7 @@ def mesh_of(body, sizes: Sizes | None, folded: tuple[int, ...]) -> SolidMesh:
     if solid.geometry:
         path, centre = solid.geometry
         made = solid_file.meshed(path, replace(sizes, near=sizes.near + centre))
-        return _with_curves(replace(made, points=(made.points - (centre if solid.radius else made.centre)) @ solid.rotation.T))
+        return _with_curves(replace(made, points=(made.points - (centre if solid.disc else made.centre)) @ solid.rotation.T))
     shape = solid.shape
     lengths = shape.extent if isinstance(shape, Box) else np.array([shape.radius] if isinstance(shape, Ball) else [shape.radius, shape.height])
     return mesh_shape(type(shape).__name__.lower(), lengths, solid.rotation, folded, replace(sizes, near=sizes.near @ solid.rotation.T), solid.half_thickness)

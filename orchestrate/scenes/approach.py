@@ -16,10 +16,8 @@ from ..input.dimension import PLANE_STRAIN
 from ..failure import BadInput
 from .scene import Scene, gap_between
 from .obstacles import Obstacle
-from ..geometry.outlines import Outline
-from ..mesh.solids import Solid
+from ..geometry.outlines import Outline, Shape
 
-Shape = Outline | Solid
 STEPS = 2000                 # of bodies within reach of each other: what has not met by then is not known to
 FAR = 1e9                    # of the smaller thickness: a gap from an obstacle without parts to be within reach of, that is followed no further
 RESTITUTION = 0.5            # of a hit that turns bodies: much of it goes to vibration, and they turn while it lasts

@@ -69,9 +69,8 @@ class Obstacle:
     def nearest(self, shape) -> tuple[float, np.ndarray]:
         """Of an implicit one: the least gap of a body, and the outward normal there; of its points, or of a disc or ball all around."""
         gaps, (_, limit, *code) = self.gap(shape.points), self.numbers
-        disc = getattr(shape, "disc", None) or (getattr(shape, "radius", None) and (shape.centre, shape.radius))
         with np.errstate(all="ignore"):
-            return implicit.nearest(shape.points[gaps.argmin()], gaps.min(), code, limit, disc)
+            return implicit.nearest(shape.points[gaps.argmin()], gaps.min(), code, limit, shape.disc)
 
     def radius_at(self, point: np.ndarray, within: float) -> float:
         """The radius [m] of its surface where that is nearest to a point (axes,), 0 if a sharp corner is `within` [m] as near, infinite where it is flat or

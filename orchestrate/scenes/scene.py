@@ -24,12 +24,11 @@ import numpy as np
 
 from ..failure import BadInput, brief
 from ..freefem.describe import describe
-from ..geometry.outlines import Outline, normal_of
+from ..geometry.outlines import Shape, normal_of
 from ..input import dimension, parameters
 from ..input.dimension import SOLID, Dimension
 from ..input.parameters import Value
 from ..input.tables import Table, listed
-from ..mesh.solids import Solid
 from ..output import estimate
 from . import bodies, mirror, obstacles
 from .bodies import MATERIAL, SIZES, Body
@@ -295,12 +294,12 @@ def _refuse_overlap(path: str, body: Body, other_path: str, other: str, gap: flo
                        f"(accepted: apart or touching)")
 
 
-def gap_between(first: Outline | Solid, second: Outline | Solid) -> float:
+def gap_between(first: Shape, second: Shape) -> float:
     """The distance of two bodies, negative where they overlap: by how far a point of one is inside the other."""
     return min(second.least(first.gap), first.least(second.gap))
 
 
-def gap_to_obstacle(outline: Outline | Solid, obstacle: Obstacle) -> float:
+def gap_to_obstacle(outline: Shape, obstacle: Obstacle) -> float:
     """The distance of a body from an obstacle, negative where they overlap."""
     centre, least = outline.area_centre, obstacle.gap_from(outline)
     nearest = centre - obstacle.gap(centre[None]) * normal_of(obstacle, centre)

@@ -1,7 +1,6 @@
 """Run time against error: many settings of a case on one core, the errors of their answers against our finest runs, and which
 setting is cheapest for 5 %, 1 % and 0.1 %. Other programs on the same problem, where they are installed (peers.py)."""
 
-import argparse
 import itertools
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -14,8 +13,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from .. import scene
 from ..mesh import mesh
-from ..output.folder import result_folder
-from ..places import COMMAND, RESULTS, shown
+from ..places import shown
 from ..progress import in_turn
 from ..report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE
 from ..output.results import read_history
@@ -82,15 +80,14 @@ CASES = {
 
 def main(argv: list[str]) -> int:
     """Runs all settings one after the other, writes bench.csv, a figure a case and bench.md; 0 if the references are sound."""
-    parser = argparse.ArgumentParser(prog=f"{COMMAND} bench", description=__doc__)
+    parser = study.command("bench", __doc__)
     parser.add_argument("cases", metavar="CASE", nargs="*", default=list(CASES), help=f"(default: {' '.join(CASES)})")
     parser.add_argument("--quick", action="store_true", help="the first case, coarse settings only, a coarser reference; under three minutes")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "bench", help="the result folder")
     options = parser.parse_args(argv)
     for name in options.cases:
         if name not in CASES:
             parser.error(f"'{name}' is not known (accepted: {', '.join(CASES)})")
-    out, tables, pages = result_folder(options.out), [], []
+    out, tables, pages = options.out, [], []
     cases = options.cases[:1] if options.quick else options.cases
     for name in in_turn("bench", cases):
         rows, bars = measure(name, out, options.quick)

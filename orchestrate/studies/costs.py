@@ -4,7 +4,6 @@ The floor of a step is what no arrangement of the same method saves: the operato
 memory for each residual that the run evaluated, and its back-substitutions.
 """
 
-import argparse
 import time
 from pathlib import Path
 
@@ -15,8 +14,7 @@ import pandas as pd
 from .. import run, scene
 from ..output import results
 from ..failure import Failure
-from ..output.folder import result_folder
-from ..places import COMMAND, RESULTS, shown
+from ..places import shown
 from ..progress import in_turn
 from ..report.figures import BLUE, GREY, ORANGE, STYLE
 from ..sweeps import study
@@ -35,11 +33,10 @@ CASES = {                                       # of the profile: scene and what
 
 def main(argv: list[str]) -> int:
     """Prints both tables, writes profile.csv, growth.csv and growth.png."""
-    parser = argparse.ArgumentParser(prog=f"{COMMAND} costs", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = study.command("costs", __doc__)
     parser.add_argument("--quick", action="store_true", help="small meshes only")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "costs", help="the result folder")
     options = parser.parse_args(argv)
-    out = result_folder(options.out)
+    out = options.out
     rate = bandwidth()
     profiles = profile(out, rate, options.quick)
     study.save(profiles, out / "profile.csv")

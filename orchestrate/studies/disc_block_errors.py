@@ -1,6 +1,5 @@
 """The disc on the free block (paper, section 3.2) with error bars: velocities, energies and contact times over law, nu, stiffness and mesh."""
 
-import argparse
 import itertools
 from collections.abc import Mapping
 from pathlib import Path
@@ -8,9 +7,8 @@ from pathlib import Path
 import pandas as pd
 
 from ..output import estimate
-from ..output.folder import result_folder
 from ..input.parameters import Value, whole
-from ..places import COMMAND, RESULTS, shown
+from ..places import shown
 from ..progress import in_turn
 from ..output.results import read_scene
 from . import peers
@@ -39,13 +37,11 @@ REFINEMENTS = (0.35, 0.7)
 
 def main(argv: list[str]) -> int:
     """Prints answers, errors and checks, writes disc-block-errors.csv and disc-block-peers.csv; 0 if every run fulfils every check."""
-    parser = argparse.ArgumentParser(prog=f"{COMMAND} disc-block-errors", description=__doc__)
+    parser = study.command("disc-block-errors", __doc__, page=True)
     parser.add_argument("--cases", metavar="N", type=whole, default=len(CASES), help="the first N of them")
     parser.add_argument("--accuracy", metavar="A", type=float, nargs="+", default=ACCURACIES, help="of the runs, the most accurate last (default: 0.02 0.005)")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "disc-block-errors", help="the result folder")
-    parser.add_argument("--page", metavar="FILE", type=Path, help="also write what is printed as a page")
     options = parser.parse_args(argv)
-    cases, out = CASES[:max(1, options.cases)], result_folder(options.out)
+    cases, out = CASES[:max(1, options.cases)], options.out
     table = compare(cases, tuple(options.accuracy), out)
     study.save(table, out / "disc-block-errors.csv")
     others, reason = ask_peer([case for case in PEER_CASES if case in cases])

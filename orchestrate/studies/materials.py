@@ -1,13 +1,11 @@
 """Twelve materials at three speeds, all else left to the program, against a penalty ten times larger and a mesh twice as fine."""
 
-import argparse
 from pathlib import Path
 
 import pandas as pd
 
 from ..output import estimate
-from ..output.folder import result_folder
-from ..places import COMMAND, RESULTS, shown
+from ..places import shown
 from ..output.results import read_scene
 from . import draws
 from ..sweeps import study
@@ -20,15 +18,13 @@ ANSWERS = ("thresholded_contact_time", "restitution", "peak_force")
 
 def main(argv: list[str]) -> int:
     """Prints the differences, writes materials.csv; 0 if each is below LIMIT, or the run has a warning."""
-    parser = argparse.ArgumentParser(prog=f"{COMMAND} materials", description=__doc__)
+    parser = study.command("materials", __doc__, page=True)
     parser.add_argument("--materials", metavar="N", type=int, default=len(draws.MATERIALS), help="the first N of them")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "materials", help="the result folder")
-    parser.add_argument("--page", metavar="FILE", type=Path, help="also write what is printed as a page")
     options = parser.parse_args(argv)
-    table = compare(list(draws.MATERIALS)[:max(1, options.materials)], result_folder(options.out))
+    table = compare(list(draws.MATERIALS)[:max(1, options.materials)], options.out)
     study.save(table, options.out / "materials.csv")
     text = report(table)
-    print(f"{text}\n{shown(result_folder(options.out))}/materials.csv")
+    print(f"{text}\n{shown(options.out)}/materials.csv")
     study.page(options.page, "Twelve materials at three speeds", ["materials", *argv], text)
     return 0 if table.holds.all() else 1
 

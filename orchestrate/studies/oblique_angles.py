@@ -5,7 +5,6 @@ psi_1 = 2 (1 - nu) v_s/(mu (2 - nu) v_n), v_s the velocity along the plane of th
 same with v_s after it. Error bars: what elements and steps 1.4 times larger change.
 """
 
-import argparse
 import itertools
 import math
 from pathlib import Path
@@ -21,8 +20,7 @@ from verification.rigid_disc import STIFF
 
 from ..output import estimate
 from ..failure import BadInput
-from ..output.folder import result_folder
-from ..places import COMMAND, RESULTS, shown
+from ..places import shown
 from ..progress import in_turn
 from ..report.figures import BLACK, BLUE, DASHED, GREEN, ORANGE, STYLE
 from ..output.results import read_scene
@@ -50,20 +48,18 @@ FORMATS = {"body": "", "kind": "", "angle": "g", "psi_1": ".3f", "e": ".4f", "al
 
 def main(argv: list[str]) -> int:
     """Runs what is not there yet, prints the table, writes oblique-angles.csv and .png; 0 if all that theory holds for agrees with it."""
-    parser = argparse.ArgumentParser(prog=f"{COMMAND} oblique-angles", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = study.command("oblique-angles", __doc__, page=True)
     usual = ",".join(f"{angle:g}" for angle in ANGLES)
     parser.add_argument("--angles", metavar="A,B,...", default=usual, help="of incidence, degrees from the plane (default: %(default)s)")
     parser.add_argument("--friction", metavar="MU", default=f"{FRICTION:g}", help="static and dynamic coefficient (default: %(default)s)")
     parser.add_argument("--bodies", metavar="BODY,...", default=",".join(INERTIA), help="of %(default)s")
     parser.add_argument("--kinds", metavar="KIND,...", default=",".join(KINDS), help="of %(default)s")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "oblique-angles", help="the result folder")
-    parser.add_argument("--page", metavar="FILE", type=Path, help="also write what is printed as a page")
     options = parser.parse_args(argv)
     angles, friction = numbers("--angles", options.angles, LEAST, MOST), numbers("--friction", options.friction, 0.01, 10)
     if len(friction) > 1:
         raise BadInput(f"--friction: {options.friction} (accepted: one number, as static and dynamic coefficient are the same here)")
     bodies, kinds = words("--bodies", options.bodies, list(INERTIA)), words("--kinds", options.kinds, list(KINDS))
-    out = result_folder(options.out)
+    out = options.out
     cases = in_turn("oblique-angles", itertools.product(bodies, kinds))
     table = judge(pd.concat([impacts(body, kind, friction[0], angles, out) for body, kind in cases], ignore_index=True))
     study.save(table, out / "oblique-angles.csv")

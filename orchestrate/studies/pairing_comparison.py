@@ -1,6 +1,5 @@
 """The disc on the block by closest points (9) and pairwise (14), (15), over epsilon and k: answers, conservation and cost."""
 
-import argparse
 import shutil
 import tempfile
 from collections.abc import Iterator
@@ -11,8 +10,7 @@ import pandas as pd
 from .. import run
 from ..freefem import freefem
 from ..failure import Failure
-from ..output.folder import result_folder
-from ..places import COMMAND, RESULTS, shown
+from ..places import shown
 from ..output.results import read_history, read_json, read_scene, write_json
 from ..sweeps import study
 
@@ -29,15 +27,13 @@ FORMATS = {"law": "", "pairing": "", "mesh": "", "epsilon/h": ".3g", "k/k0": ".3
 
 def main(argv: list[str]) -> int:
     """Prints the table, writes pairing.csv; 0 if pairwise conserves and agrees with closest points where epsilon is an element."""
-    parser = argparse.ArgumentParser(prog=f"{COMMAND} pairing-comparison", description=__doc__)
+    parser = study.command("pairing-comparison", __doc__, page=True, folder="pairing")
     parser.add_argument("--laws", metavar="LAW", nargs="+", default=LAWS, choices=LAWS, help="of the bodies (default: all)")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "pairing", help="the result folder")
-    parser.add_argument("--page", metavar="FILE", type=Path, help="also write what is printed as a page")
     options = parser.parse_args(argv)
-    table = compare(options.laws, result_folder(options.out))
+    table = compare(options.laws, options.out)
     study.save(table, options.out / "pairing.csv")
     text = report(table)
-    print(f"{text}\n{shown(result_folder(options.out))}/pairing.csv")
+    print(f"{text}\n{shown(options.out)}/pairing.csv")
     study.page(options.page, "Closest points and pairs of points", ["pairing-comparison", *argv], text)
     return 0 if holds(table) else 1
 

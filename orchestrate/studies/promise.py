@@ -1,6 +1,5 @@
 """Whether `accuracy` and the stated errors mean what they say: scenes drawn at random, runs as they are by default against finer ones."""
 
-import argparse
 import shutil
 import tempfile
 from functools import partial
@@ -11,9 +10,8 @@ import pandas as pd
 from .. import run, scene
 from ..output import estimate
 from ..failure import Failure, TooLong
-from ..output.folder import result_folder
 from ..input.parameters import Value, whole
-from ..places import COMMAND, RESULTS, shown
+from ..places import shown
 from ..output.results import read_answers
 from . import draws
 from ..sweeps import study
@@ -30,21 +28,19 @@ Drawn = tuple[str, study.Point]   # a built-in scene and what it is overridden b
 
 def main(argv: list[str]) -> int:
     """Prints the errors, scene by scene, writes promise.csv; 0 if the promise is kept in enough scenes, and not at too high a price."""
-    parser = argparse.ArgumentParser(prog=f"{COMMAND} promise", description=__doc__)
+    parser = study.command("promise", __doc__, page=True)
     parser.add_argument("--scenes", metavar="N", type=whole, default=COUNT, help=f"how many (default: {COUNT})")
     parser.add_argument("--seed", metavar="N", type=whole, default=SEED, help=f"other scenes (default: {SEED})")
     parser.add_argument("--hard", action="store_true", help="also gravity, other integrators, linear elements ...: nothing above what was asked without a warning")
     parser.add_argument("--of", metavar="SCENE", choices=draws.SCENES, help=f"of one kind only: {', '.join(draws.SCENES)}")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "promise", help="the result folder")
-    parser.add_argument("--page", metavar="FILE", type=Path, help="also write what is printed as a page")
     options = parser.parse_args(argv)
     count, of = max(1, options.scenes), options.of or "disc-normal"
     drawn = [(of, point) for point in draws.draw(options.seed, count, options.hard, of)] if options.hard or options.of else draws.mixture(options.seed, count)
-    table = compare(drawn, result_folder(options.out))
+    table = compare(drawn, options.out)
     study.save(table, options.out / "promise.csv")
     good = silent(table) == 0 if options.hard else kept(table) and covered(table)
     text = report(table) + f"; {'the requirement' if options.hard else 'the promise'} {'is kept' if good else 'IS NOT KEPT'}"
-    print(f"{text}\n{shown(result_folder(options.out))}/promise.csv")
+    print(f"{text}\n{shown(options.out)}/promise.csv")
     title = ("Hard scenes" if options.hard else "Whether accuracy means what it says") + (f" of {options.of}" if options.of else "")
     study.page(options.page, title, ["promise", *argv], text)
     return 0 if good else 1

@@ -1,14 +1,12 @@
 """V19: one impact in many units and materials, given by its physical parameters alone, has one dimensionless answer."""
 
-import argparse
 from pathlib import Path
 
 import pandas as pd
 
 from ..output import estimate
-from ..output.folder import result_folder
 from ..input.parameters import defaults
-from ..places import COMMAND, RESULTS, shown
+from ..places import shown
 from ..progress import in_turn
 from ..output.results import read_scene
 from . import draws
@@ -28,15 +26,13 @@ ANSWERS = ("impulse", "rebound", "rebound_spin", "energy", "friction_work", "thr
 
 def main(argv: list[str]) -> int:
     """Prints how far the dimensionless answers of each world are from the paper's disc; 0 if all are equal, or within the scatter."""
-    parser = argparse.ArgumentParser(prog=f"{COMMAND} scaling", description=__doc__)
+    parser = study.command("scaling", __doc__, page=True)
     parser.add_argument("--accuracy", type=float, default=defaults()["accuracy"], help="of the runs (default: %(default)g)")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "scaling", help="the result folder")
-    parser.add_argument("--page", metavar="FILE", type=Path, help="also write what is printed as a page")
     options = parser.parse_args(argv)
-    table = compare(result_folder(options.out), options.accuracy)
+    table = compare(options.out, options.accuracy)
     study.save(table, options.out / "scaling.csv")
     text = report(table)
-    print(f"{text}\n{shown(result_folder(options.out))}/scaling.csv")
+    print(f"{text}\n{shown(options.out)}/scaling.csv")
     study.page(options.page, "One impact in many units and materials", ["scaling", *argv], text)
     return 0 if table.holds.all() else 1
 

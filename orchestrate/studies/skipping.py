@@ -1,13 +1,11 @@
 """What each saving saves: a scene with one saving after the other left out, its time and how far its answers move."""
 
-import argparse
 from pathlib import Path
 
 import pandas as pd
 
 from ..failure import Failure
-from ..output.folder import result_folder
-from ..places import COMMAND, RESULTS, shown
+from ..places import shown
 from ..progress import in_turn
 from ..output.results import read_history
 from ..sweeps import study
@@ -30,11 +28,10 @@ SAVINGS = {                            # what is left out, and what the run does
 
 def main(argv: list[str]) -> int:
     """Prints the table and writes skipping.csv; 1 where an answer moves by more than the error of the run itself."""
-    parser = argparse.ArgumentParser(prog=f"{COMMAND} skipping", description=__doc__)
+    parser = study.command("skipping", __doc__)
     parser.add_argument("--accuracy", metavar="A", type=float, default=1e-3, help="of all runs (default: 1e-3)")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "skipping", help="the result folder")
     options = parser.parse_args(argv)
-    out = result_folder(options.out)
+    out = options.out
     rows = measure(out, options.accuracy)
     study.save(rows, out / "skipping.csv")
     print(f"disc-normal from {100 * BASE['height']:g} cm above the plane, accuracy {options.accuracy:g}; processor time, the fastest of {RUNS}, "

@@ -2,7 +2,6 @@
 third of the contact with its energy constant, and stay 4.5 ms, as the paper tells (section 3.1)? It states none of the
 three. Its angle pi/3 is 60 degrees from the plane, as it calls normal incidence pi/2; 30 degrees, pi/3 from the normal, is searched as well."""
 
-import argparse
 import itertools
 from pathlib import Path
 
@@ -13,8 +12,7 @@ from matplotlib.image import AxesImage
 from matplotlib.patches import Rectangle
 
 from ..failure import Unreadable
-from ..output.folder import result_folder
-from ..places import COMMAND, RESULTS, shown
+from ..places import shown
 from ..report.figures import LAWS, SMALL, STYLE
 from ..output.results import read_history
 from ..sweeps import study
@@ -31,11 +29,10 @@ THIRDS = ("first", "second", "last")
 
 def main(argv: list[str]) -> int:
     """Runs the grid, prints the share of sliding in each third of the contact, draws the map; 0 whatever is found."""
-    parser = argparse.ArgumentParser(prog=f"{COMMAND} stick-slip", description=__doc__)
+    parser = study.command("stick-slip", __doc__)
     parser.add_argument("--quick", action="store_true", help="a corner of the grid")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "stick-slip", help="the result folder")
     options = parser.parse_args(argv)
-    out = result_folder(options.out)
+    out = options.out
     axes = {name: values[-2:] for name, values in AXES.items()} if options.quick else AXES
     points = grid(axes)
     rows = study.study(points, out, BASE, LIMIT, SCENE)

@@ -1,6 +1,5 @@
 """Hard parameter sets on a coarse mesh: each must end with its energy balance closed, or say why it cannot."""
 
-import argparse
 import itertools
 import random
 from pathlib import Path
@@ -11,9 +10,8 @@ import pandas as pd
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm
 
-from ..output.folder import result_folder
 from ..input.parameters import whole
-from ..places import COMMAND, RESULTS, shown
+from ..places import shown
 from ..report.figures import LAWS, STYLE
 from ..sweeps import study
 
@@ -30,20 +28,19 @@ LETTERS = {"open": ("o", "balance open"), "no step": ("s", "no convergence, or c
 
 def main(argv: list[str]) -> int:
     """Runs the sets, prints the outcomes; 0 if every set does what is required of it, else 1."""
-    parser = argparse.ArgumentParser(prog=f"{COMMAND} stress", description=__doc__)
+    parser = study.command("stress", __doc__)
     parser.add_argument("--quick", metavar="N", type=whole, help="N of the sets, always the same ones")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "stress", help="the result folder")
     options = parser.parse_args(argv)
     points = [dict(zip(AXES, values)) for values in itertools.product(*AXES.values())]
     if options.quick is not None:
         points = random.Random(0).sample(points, min(max(options.quick, 1), len(points)))
-    rows = study.study(points, result_folder(options.out), BASE, LIMIT)
+    rows = study.study(points, options.out, BASE, LIMIT)
     rows = rows.reindex(columns=rows.columns.union(READ, sort=False))   # also where every run crashed
     rows["outcome"] = rows.apply(outcome, axis=1)
     study.save(rows, options.out / "stress.csv")
     draw(rows, options.out / "stress.png")
     print(report(rows))
-    print(f"\n{shown(result_folder(options.out))}/stress.{{csv,png}}")
+    print(f"\n{shown(options.out)}/stress.{{csv,png}}")
     return 0 if holds(rows).all() else 1
 
 

@@ -1,6 +1,5 @@
 """Seconds a step of the program and of the plain textbook script verification/peers/textbook.edp: same mesh, step and answers."""
 
-import argparse
 import statistics
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,9 +10,8 @@ from .. import run, scene
 from ..freefem import freefem
 from ..mesh import mesh
 from ..failure import Failure
-from ..output.folder import result_folder
 from ..input.parameters import whole
-from ..places import COMMAND, RESULTS, shown
+from ..places import shown
 from ..progress import in_turn
 from ..sweeps import study
 
@@ -38,13 +36,12 @@ QUICK = (Case(1.25e-2, 2e-4),)
 
 def main(argv: list[str]) -> int:
     """Times both, one process at a time, and prints them side by side; 0 if every ratio is at least ASKED."""
-    parser = argparse.ArgumentParser(prog=f"{COMMAND} textbook", description=__doc__)
+    parser = study.command("textbook", __doc__)
     parser.add_argument("--runs", metavar="N", type=whole, default=1, help="runs of each, of which the median counts")
     parser.add_argument("--small", action="store_true", help="the smaller mesh only: two minutes instead of twelve")
     parser.add_argument("--quick", action="store_true", help="a tiny case: a look at the table, not at the ratio")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "textbook", help="the result folder")
     options = parser.parse_args(argv)
-    out = result_folder(options.out)
+    out = options.out
     runs = max(1, options.runs)
     rows = pd.DataFrame([compare(case, out, runs) for case in in_turn("textbook", QUICK if options.quick else CASES[:1] if options.small else CASES)])
     study.save(rows, out / "textbook.csv")

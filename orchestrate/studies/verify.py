@@ -2,7 +2,6 @@
 fixed beforehand. results/verify/verify.csv has all numbers, a figure a case beside it. One case a core at a time (the three-dimensional one, V17, takes
 the longest, in parts); what the present code left is taken as it is."""
 
-import argparse
 import hashlib
 import json
 import math
@@ -23,8 +22,7 @@ from verification.cases import CASES
 from .. import run
 from ..freefem import freefem
 from ..failure import BadInput, Failure
-from ..output.folder import result_folder
-from ..places import COMMAND, RESULTS, ROOT, shown
+from ..places import ROOT, shown
 from ..report.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE
 from ..report.literature import REFERENCE
 from ..output.results import read_frame
@@ -37,14 +35,13 @@ SHOWN = 1e-6                # smaller errors are drawn there
 
 def main(argv: list[str]) -> int:
     """Runs the cases, prints the table, writes verify.csv and the figures; 0 only if all pass."""
-    parser = argparse.ArgumentParser(prog=f"{COMMAND} verify", description=__doc__)
-    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "verify", help="the result folder")
+    parser = study.command("verify", __doc__)
     parser.add_argument("--cores", metavar="N", type=int, default=study.CORES, help="this many cases at a time (default: %(default)s)")
     parser.add_argument("--force", action="store_true", help="run again what the same code has left")
     options = parser.parse_args(argv)
     if options.cores < 1:
         raise BadInput(f"--cores: {options.cores} (accepted: from 1)")
-    out = result_folder(options.out)
+    out = options.out
     reused = there(out) and not options.force
     frame = read_frame(out / "verify.csv", COLUMNS, keep_default_na=False, na_values=[""]) if reused else run_all(out, options.cores)
     passed = bool(judged(frame)["pass"].all())

@@ -1,5 +1,6 @@
 """Studies: many runs of one scene, one FreeFem++ a core at most; whatever a run comes to becomes a row of a table."""
 
+import argparse
 import hashlib
 import multiprocessing
 import os
@@ -24,7 +25,8 @@ from ..freefem import freefem
 from ..output import estimate as estimates
 from ..failure import BadInput, Busy, Failure, TooLong, Unreadable
 from ..input.parameters import Value
-from ..places import COMMAND
+from ..output.folder import result_folder
+from ..places import COMMAND, RESULTS
 from ..progress import Line, forward
 from ..output.results import read_json
 
@@ -194,6 +196,15 @@ def _failed_before(wanted: scene.Scene, folder: Path) -> dict | None:
             if record["provenance"].get("asked") == wanted.asked:
                 return record
     return None
+
+
+def command(name: str, doc: str, page: bool = False, folder: str = "") -> argparse.ArgumentParser:
+    """The command line of a study: --out, its result folder, checked; --page where what it prints may become a page of docs/."""
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} {name}", description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", metavar="DIR", type=lambda text: result_folder(Path(text)), default=str(RESULTS / (folder or name)), help="the result folder")
+    if page:
+        parser.add_argument("--page", metavar="FILE", type=Path, help="also write what is printed as a page")
+    return parser
 
 
 def warned(warnings: Iterable[str]) -> str:
