@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..failure import BadInput
+from .outlines import cross
 
 CORNER = math.radians(30)    # what turns by less at a vertex is no corner (edp/core/contact/shapes.idp)
 NEAR = 1e-12                 # of the chain's size: what round-off cannot tell apart
@@ -44,7 +45,7 @@ def check(path: str, vertices: np.ndarray, closed: bool, rounding: float) -> Non
         raise BadInput(f"{path}.vertices.{k + 2}: {_text(vertices[k + 1])} is the vertex before it again (accepted: each vertex once)")
     sides = _sides(vertices, closed)
     after = np.roll(sides.along, -1, axis=0)
-    back = (np.sum(sides.along * after, axis=1) < 0) & (abs(_cross(sides.along, after)) < 1e-9)
+    back = (np.sum(sides.along * after, axis=1) < 0) & (abs(cross(sides.along, after)) < 1e-9)
     for k in np.flatnonzero(back if closed else back[:-1]):
         j = (k + 1) % len(vertices)
         raise BadInput(f"{path}.vertices.{j + 1}: the chain turns back on itself at {_text(vertices[j])} (accepted: corners of less than 180 degrees)")
@@ -86,7 +87,7 @@ def radius_at(point: np.ndarray, within: float, numbers: tuple[float, ...]) -> f
     """The rounding [m] where a convex corner is as near to a point (2,) as any of the chain, or by `within` [m] less; infinite where none is."""
     sides = sides_of(numbers)
     before, after = (np.roll(sides.along, 1, axis=0), sides.along) if sides.closed else (sides.along[:-1], sides.along[1:])
-    turn = np.arctan2(-_cross(before, after), np.sum(before * after, axis=1))       # clockwise: the solid is to the right
+    turn = np.arctan2(-cross(before, after), np.sum(before * after, axis=1))       # clockwise: the solid is to the right
     corners = (sides.start if sides.closed else sides.start[1:])[turn > CORNER]
     near = np.linalg.norm(point - corners, axis=1) <= abs(gap(point[None], numbers)[0] + numbers[1]) + within
     return numbers[1] if near.any() else np.inf
@@ -109,25 +110,21 @@ def _crossing(sides: Sides, size: float) -> tuple[int, int, np.ndarray] | None:
         apart = (i > 0) | (j < m - 1)
         i, j = i[apart], j[apart]
     e, f, r = sides.along[i], sides.along[j], sides.start[j] - sides.start[i]
-    sine = _cross(e, f)
+    sine = cross(e, f)
     parallel = abs(sine) < NEAR
     sine = np.where(parallel, 1, sine)
-    s, u = _cross(r, f) / sine, _cross(r, e) / sine
+    s, u = cross(r, f) / sine, cross(r, e) / sine
     meet = ((s >= sides.low[i] - near) & (s <= sides.high[i] + near) & (u >= sides.low[j] - near) & (u <= sides.high[j] + near))
     # on one line: from where to where j lies along i
     turned, offset = np.where(np.sum(e * f, axis=1) < 0, -1, 1), np.sum(r * e, axis=1)
     from_, to = np.sort([offset + turned * sides.low[j], offset + turned * sides.high[j]], axis=0)
     first, last = np.maximum(from_, sides.low[i]), np.minimum(to, sides.high[i])
-    meet = np.where(parallel, (abs(_cross(r, e)) <= near) & (first <= last + near), meet)
+    meet = np.where(parallel, (abs(cross(r, e)) <= near) & (first <= last + near), meet)
     if not meet.any():
         return None
     k = meet.argmax()
     at = s[k] if not parallel[k] else first[k] if np.isfinite(first[k]) else last[k]
     return i[k], j[k], sides.start[i[k]] + at * e[k]
-
-
-def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
 
 def _text(point: np.ndarray) -> str:

@@ -13,12 +13,13 @@ from .parameters import Parameter
 @dataclass(frozen=True)
 class Dimension:
     """`script` is a file edp/<script>.edp; `axes` the components of a point; `like` the script whose rules of sizes stand for two bodies that
-    meet: those of a disc or of a ball that hits a plane."""
+    meet: those of a disc or of a ball that hits a plane; `cases` the scripts of the paper's bodies."""
 
     name: str
     script: str
     axes: int
     like: str
+    cases: tuple[str, ...]
 
     @property
     def placeholder(self) -> str:
@@ -26,9 +27,9 @@ class Dimension:
         return "[x, y, z]" if self.axes == 3 else "[x, y]"
 
 
-PLANE_STRAIN = Dimension("plane-strain", "bodies", 2, "disc-plane")
-AXISYMMETRIC = Dimension("axisymmetric", "bodies-axisymmetric", 2, "ball-plane")
-SOLID = Dimension("3d", "bodies-3d", 3, "ball-plane")
+PLANE_STRAIN = Dimension("plane-strain", "bodies", 2, "disc-plane", ("disc-plane", "disc-block"))
+AXISYMMETRIC = Dimension("axisymmetric", "bodies-axisymmetric", 2, "ball-plane", ("ball-axisymmetric",))
+SOLID = Dimension("3d", "bodies-3d", 3, "ball-plane", ("ball-plane",))
 DIMENSIONS = {one.name: one for one in (PLANE_STRAIN, AXISYMMETRIC, SOLID)}
 SCRIPTS = tuple(one.script for one in DIMENSIONS.values())
 
@@ -41,4 +42,4 @@ def of(given: dict) -> Dimension:
 
 def per_metre(script: str) -> bool:
     """Whether forces and energies of a script are per metre of thickness: those of plane strain."""
-    return not script.startswith("ball") and script not in [one.script for one in DIMENSIONS.values() if one is not PLANE_STRAIN]
+    return not any(script in (one.script, *one.cases) for one in (AXISYMMETRIC, SOLID))

@@ -192,6 +192,11 @@ def suffixes(columns: Iterable[str]) -> list[str]:
     return [f"_{b}" for b in range(1, 1 + sum(re.fullmatch("(rebound_)?spin_[0-9]+", name) is not None for name in columns))] or [""]
 
 
+def body_names(used: dict) -> list[str]:
+    """The names of several bodies of a scene as used, in the order of the suffixes."""
+    return [body["name"] for body in used["body"]] if "body" in used else ["disc", "block"]
+
+
 def read_summary(folder: Path) -> dict:
     """summary.json of a finished run."""
     path = folder / "summary.json"

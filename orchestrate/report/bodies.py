@@ -13,7 +13,7 @@ from ..output import vtu
 from ..scenes import obstacles
 from ..scenes.obstacles import Obstacle
 from ..input.parameters import Value
-from ..output.results import suffixes
+from ..output.results import body_names, suffixes
 from .figures import (BARE, BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SHAPES, STRESS, Body, as_written, deformed, draw_body, is_half, least, material,
                       most_stress, over_time, per_metre, scale_bar)
 
@@ -30,11 +30,6 @@ ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 1), "handlelength": 1.4,
 def are_several(scene: dict[str, Value]) -> bool:
     """Whether a scene, as used, has several bodies or obstacles of its own; else it is a body on the plane y = 0."""
     return "script" in scene and scene["script"] not in ALONE
-
-
-def names(scene: dict[str, Value]) -> list[str]:
-    """The bodies' names, in the order of the suffixes _1, _2 ..."""
-    return [body["name"] for body in scene["body"]] if "body" in scene else ["disc", "block"]
 
 
 def title(scene: dict[str, Value]) -> str:
@@ -90,7 +85,7 @@ def panels(count: int, height: float = 2.4) -> tuple[plt.Figure, list[plt.Axes]]
 
 def columns_of(history: dict[str, np.ndarray], scene: dict[str, Value]) -> dict[str, str]:
     """What stands behind the names of the columns of each body, by its name."""
-    return dict(zip(names(scene), suffixes(history)))
+    return dict(zip(body_names(scene), suffixes(history)))
 
 
 def energies(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:

@@ -11,10 +11,9 @@ from ..failure import BadInput, Failure
 from ..output.folder import result_folder
 from ..input.parameters import overrides
 from ..places import COMMAND, RESULTS, shown
-from ..output.results import RunResult, suffixes
+from ..output.results import RunResult, body_names, suffixes
 from ..run import run
 from . import report
-from .bodies import names
 from .figures import ABOVE, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE, numbers_of_the_paper, per_metre, touched
 
 
@@ -68,7 +67,7 @@ def draw(results: dict[str, RunResult], path: Path) -> None:
             drag.plot(t, 1e-3 * h["friction_force"] / heavy if rubs else h["max_penetration"] * 1e3, color=colour)
             energy.plot(t, (h["kinetic"] + h["elastic"] + h["contact"]) / start, color=colour, linewidth=2.4, linestyle=(2 * k, (2, 2 * len(results) - 2)))
             energy.plot(t, h["elastic"] / start, color=colour, linewidth=0.9)
-            for of, body in zip(suffixes(h), names(used)):
+            for of, body in zip(suffixes(h), body_names(used)):
                 if of and colour == BLUE:                            # once
                     velocity.annotate(body, (t[-1], h[f"vy{of}"][-1]), xytext=(-4, 4), textcoords="offset points", ha="right")
                 velocity.plot(t, h[f"vy{of}"], color=colour, linestyle="--")

@@ -8,7 +8,7 @@ from ..failure import Unreadable
 from ..input import dimension
 from ..input.parameters import Value
 from ..output import vtu
-from ..output.results import Contents, check_files, read_history, read_json, read_scene
+from ..output.results import Contents, body_names, check_files, read_history, read_json, read_scene
 from ..places import COMMAND
 from . import bodies, contact as contacts, impacts, solid, vibration
 from .figures import BODY, STYLE, as_written, footer, is_half, material, on_a_plane, per_metre, plt, save, touched
@@ -25,22 +25,23 @@ def draw(folder: Path, warnings: list[str]) -> list[Path]:
     snapshots = vtu.series(folder / "fields.pvd")
     target = folder / "figures"
     target.mkdir(exist_ok=True)
-    touches = history["normal_force"] > 0
+    touches, several = history["normal_force"] > 0, bodies.are_several(scene)
+    names = body_names(scene) if several else ["body"]
     contact = Contents({name: column[max(0, int(np.argmax(touches)) - 1):] for name, column in history.items()}, history.path)   # without the flight
     with plt.rc_context(STYLE):
-        if bodies.are_several(scene):
+        if several:
             drawn = bodies.draw(contact, scene, snapshots)
         else:
             drawn = on_a_plane(history, contact, scene, snapshots)
         if (folder / "fields/contact.csv").exists():
             table = contacts.read(folder, beside=True)
-            along = contacts.draw(table, bodies.names(scene) if bodies.are_several(scene) else ["body"], is_half(scene), history["t"][~touches],
+            along = contacts.draw(table, names, is_half(scene), history["t"][~touches],
                                   scene if scene.get("script") in BODY and is_half(scene) else None, scene.get("symmetry", "full"), history)
             drawn |= {"contact": along} if along else {}
             inside = solid.draw(snapshots, table[table.pressure > 0], scene) if snapshots and "Z" in table else None
             drawn |= {"solid": inside} if inside else {}
         if (folder / "contacts.csv").exists():
-            bounces = impacts.draw(impacts.read(folder), bodies.names(scene) if bodies.are_several(scene) else ["body"],
+            bounces = impacts.draw(impacts.read(folder), names,
                                    [as_written(one["name"]) for one in scene.get("obstacle", [])] or ["plane"])
             drawn |= {"bounces": bounces} if bounces else {}
         if (folder / "modes.csv").exists():

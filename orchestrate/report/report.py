@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from ..input import dimension
 from ..input.parameters import Value
 from ..places import shown
-from ..output.results import RunResult, suffixes
+from ..output.results import RunResult, body_names, suffixes
 from . import literature
 
 
@@ -110,8 +110,7 @@ def _of_bodies(quantity: Quantity, scene: dict[str, Value], summary: dict) -> li
     of = suffixes(summary)
     if f"{quantity.key}{of[0]}" not in summary or of == [""]:
         return [quantity]
-    names = [body["name"] for body in scene["body"]] if "body" in scene else ["disc", "block"]
-    return [replace(quantity, key=quantity.key + suffix, label=f"{quantity.label}, {name}") for suffix, name in zip(of, names)]
+    return [replace(quantity, key=quantity.key + suffix, label=f"{quantity.label}, {name}") for suffix, name in zip(of, body_names(scene))]
 
 
 def report(result: RunResult) -> str:
