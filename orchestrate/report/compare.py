@@ -14,7 +14,7 @@ from ..places import COMMAND, RESULTS, shown
 from ..output.results import RunResult, body_names, suffixes
 from ..run import run
 from . import report
-from .figures import ABOVE, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE, numbers_of_the_paper, per_metre, touched
+from .figures import ABOVE, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE, numbers_of_the_paper, per_metre, touched, save
 
 
 def main(argv: list[str]) -> int:
@@ -86,8 +86,7 @@ def draw(results: dict[str, RunResult], path: Path) -> None:
         _key(velocity, {"$v_x$": "-", "$v_y$": "--", r"$-\omega R$": ":"} if rubs else {"$v_y$": "--"})
         force.margins(x=0)
         figure.legend(*force.get_legend_handles_labels(), loc="outside upper center", ncols=1)
-        figure.savefig(path)
-        plt.close(figure)
+        save(figure, path)
 
 
 def _contact(axes: plt.Axes, result: RunResult, colour: str) -> None:

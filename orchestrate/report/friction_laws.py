@@ -12,7 +12,7 @@ from ..input import parameters
 from ..failure import Failure, Unreadable
 from ..output.folder import result_folder
 from ..places import COMMAND, RESULTS, shown
-from .figures import BELOW, BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE
+from .figures import BELOW, BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE, save
 
 VALUES = {"friction_static": 0.7, "friction_dynamic": 0.5, "slip_velocity": 0.1}   # of section 3.1 and figure 3
 LABELS = {"linear": (r"linear, $\phi^3$ with $v_T/\varepsilon$", BLUE, "-"), "sqrt": (r"sqrt, $\phi^1$", GREEN, "-"),
@@ -76,8 +76,7 @@ def draw(laws: pd.DataFrame, values: dict[str, float], path: Path) -> None:
               ylim=(-1.2 * values["friction_static"], 1.2 * values["friction_static"]))
         c.set_yticks([0, *ticks.values()], ["0", *(f"${name} = {value:+g}$".replace("+", "") for name, value in ticks.items())])
         c.legend(**BELOW, handlelength=1.6, ncols=1)
-        figure.savefig(path)
-        plt.close(figure)
+        save(figure, path)
 
 
 def _curve(axes: plt.Axes, points: pd.DataFrame, colour: str, line: str, label: str, width: float) -> None:

@@ -15,7 +15,7 @@ from .. import scene
 from ..mesh import mesh
 from ..places import shown
 from ..progress import in_turn
-from ..report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE
+from ..report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE, save
 from ..output.results import read_history
 from ..sweeps.sweep_figures import distance
 from . import peers, textbook
@@ -324,5 +324,4 @@ def draw(name: str, rows: pd.DataFrame, bars: dict[str, float], path: Path) -> N
         figure.suptitle(f"{CASES[name].scene}, {LAWS[law]}; grey: below the error bar of the reference", fontsize=9)
         figure.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
         with study.complete(path) as part:
-            figure.savefig(part)
-        plt.close(figure)
+            save(figure, part)

@@ -16,7 +16,7 @@ from ..output import results
 from ..failure import Failure
 from ..places import shown
 from ..progress import in_turn
-from ..report.figures import BLUE, GREY, ORANGE, STYLE
+from ..report.figures import BLUE, GREY, ORANGE, STYLE, save
 from ..sweeps import study
 
 PHASES = ("assembly", "factor", "solve", "contact", "search", "output", "audit", "setup", "other")
@@ -111,5 +111,4 @@ def draw(table: pd.DataFrame, laws: dict[str, tuple[float, float]], path: Path) 
             axes.legend()
         figure.suptitle(f"Normal impact, the first {STEPS} steps of {DT:g} s", fontsize=9)
         with study.complete(path) as part:
-            figure.savefig(part)
-        plt.close(figure)
+            save(figure, part)

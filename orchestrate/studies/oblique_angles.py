@@ -22,7 +22,7 @@ from ..output import estimate
 from ..failure import BadInput
 from ..places import shown
 from ..progress import in_turn
-from ..report.figures import BLACK, BLUE, DASHED, GREEN, ORANGE, STYLE
+from ..report.figures import BLACK, BLUE, DASHED, GREEN, ORANGE, STYLE, save
 from ..output.results import read_scene
 from ..sweeps import study
 
@@ -233,8 +233,7 @@ def draw(table: pd.DataFrame, path: Path) -> None:
                 panel.grid(alpha=0.3)
             panels[0].legend(fontsize=7)
         figure.suptitle(f"Oblique impact, μ = {table.friction.iloc[0]:g} (static and dynamic), ν = {NU:g}, neo-Hookean", fontsize=9)
-        figure.savefig(path)
-        plt.close(figure)
+        save(figure, path)
 
 
 def draw_theory(panels: np.ndarray, body: str, group: pd.DataFrame) -> None:

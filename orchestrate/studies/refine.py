@@ -16,7 +16,7 @@ from ..failure import Failure
 from ..output.folder import result_folder
 from ..input.parameters import defaults
 from ..places import COMMAND, RESULTS, shown
-from ..report.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE
+from ..report.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE, save
 from ..sweeps import study
 
 ANSWERS = {                 # by scene; all but the last are promised to ASKED
@@ -174,5 +174,4 @@ def draw(tables: dict[str, pd.DataFrame], wanted: dict[str, Series], answers: tu
             axes.grid(alpha=0.3)
         figure.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=4, handlelength=1.6,
                       columnspacing=1.4)
-        figure.savefig(path)
-        plt.close(figure)
+        save(figure, path)

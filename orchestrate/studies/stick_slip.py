@@ -13,7 +13,7 @@ from matplotlib.patches import Rectangle
 
 from ..failure import Unreadable
 from ..places import shown
-from ..report.figures import LAWS, SMALL, STYLE
+from ..report.figures import LAWS, SMALL, STYLE, save
 from ..output.results import read_history
 from ..sweeps import study
 
@@ -117,8 +117,7 @@ def draw(rows: pd.DataFrame, axes: dict[str, tuple[float, ...]], path: Path) -> 
         bar.ax.axhline(1e3 * PAPER[0], color="#d55e00", linewidth=2)
         figure.suptitle("Share of the normal load that slides [%], a bar each for the first, second and last third of the contact (full height: 100 %);\n"
                         f"framed ({rows['order'].sum()} of {len(rows)}): slides first, sticks last, as in the paper, whose contact time is {1e3 * PAPER[0]:g} ms (line in the bar of colours)")
-        figure.savefig(path)
-        plt.close(figure)
+        save(figure, path)
 
 
 def _cells(panel: plt.Axes, here: pd.DataFrame, axes: dict[str, tuple[float, ...]], low: float, high: float) -> AxesImage:

@@ -12,7 +12,7 @@ from matplotlib.colors import LogNorm
 
 from ..input.parameters import whole
 from ..places import shown
-from ..report.figures import LAWS, STYLE
+from ..report.figures import LAWS, STYLE, save
 from ..sweeps import study
 
 AXES = {"law": ("svk", "neohookean"), "nu": (0.0, 0.3, 0.45, 0.49), "speed": (0.5, 4.0, 10.0), "penalty": (1e9, 1e10, 1e12),
@@ -108,8 +108,7 @@ def draw(rows: pd.DataFrame, path: Path) -> None:
         figure.supxlabel("time step [µs], by speed", fontsize=9)
         figure.supylabel("penalty, by exponent", fontsize=9)
         figure.suptitle("; ".join(f"{letter}: {meaning}" for letter, meaning in LETTERS.values()) + "; empty: not run", fontsize=8)
-        figure.savefig(path)
-        plt.close(figure)
+        save(figure, path)
 
 
 def _map(axes: plt.Axes, panel: pd.DataFrame, norm: LogNorm) -> None:

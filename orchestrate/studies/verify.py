@@ -23,7 +23,7 @@ from .. import run
 from ..freefem import freefem
 from ..failure import BadInput, Failure
 from ..places import ROOT, shown
-from ..report.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE
+from ..report.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE, save
 from ..report.literature import REFERENCE
 from ..output.results import read_frame
 from ..sweeps import study
@@ -190,8 +190,7 @@ def draw(case: Case, rows: list[Row], out: Path) -> None:
         else:
             figure.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside right center")
         figure.suptitle(f"{case.name}: {case.title}")
-        figure.savefig(out / f"{slug(case)}.png")
-        plt.close(figure)
+        save(figure, out / f"{slug(case)}.png")
 
 
 def draw_errors(axes: plt.Axes, case: Case, rows: list[Row]) -> None:

@@ -22,7 +22,7 @@ from matplotlib.ticker import LogLocator, NullLocator
 from ..input import parameters
 from ..failure import BadInput, brief
 from ..report import report
-from ..report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, SMALL, STYLE, as_written, numbers_of_the_paper
+from ..report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, SMALL, STYLE, as_written, numbers_of_the_paper, save
 from ..output.results import read_history
 from . import study
 
@@ -94,8 +94,7 @@ def draw(sweep, rows: pd.DataFrame, out: Path) -> None:
         figure = {"lines": _lines, "map": _map, "histories": _histories}[sweep.figure["kind"]](sweep, rows, out)
         figure.suptitle("\n".join(filter(None, [as_written(sweep.title), _constants(sweep)])))
         with study.complete(out / "sweep.png") as part:
-            figure.savefig(part)
-        plt.close(figure)
+            save(figure, part)
 
 
 def _constants(sweep) -> str:
