@@ -5,8 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from orchestrate import multibody, run, vtu
+from orchestrate import run
+from orchestrate.output import vtu
 from orchestrate.failure import BadInput
+from orchestrate.scene import read as read_scene
+from orchestrate.scenes import assembly
 
 FLOOR = {"name": "floor", "kind": "plane", "point": [0, 0], "normal": [0, 1]}
 SCENE = {"law": "neohookean", "young": 7e6, "nu": 0.3, "density": 1722, "accuracy": 0.1, "obstacle": [FLOOR]}
@@ -16,8 +19,8 @@ RING = {"name": "ring", "shape": "ring", "radius": 0.05, "inner_radius": 0.044, 
 DISC = {"name": "disc", "shape": "disc", "radius": 0.01, "mesh_size": 0.005, "contact_mesh_size": 0.005}
 
 
-def read(given: dict) -> multibody.Multibody:
-    return multibody.read(given, Path(), "self")
+def read(given: dict):
+    return read_scene(given, Path(), "self")
 
 
 def partners(given: dict) -> list[tuple[int, int]]:
@@ -114,7 +117,7 @@ def test_a_hairpin_in_three_dimensions(tmp_path):
     (tmp_path / "pin.geo").write_text(points + "Curve Loop(1) = {1:8}; Plane Surface(1) = {1}; Extrude {0, 0, 0.02} { Surface{1}; }\n")
     body = {"shape": "mesh", "file": "pin.geo", "position": [0, 0.0151, 0], "velocity": [0, -6, 0], "mesh_size": 0.0095, "contact_mesh_size": 0.0095}
     given = SCENE | {"dimension": "3d", "degree": 1, "accuracy": 0.3, "body": [body], "obstacle": [FLOOR | {"point": [0, 0, 0], "normal": [0, 1, 0]}], "end_time": 1.8e-3, "fields": 20}
-    on, off = (run.run(multibody.read(given | {"contact": {"self_contact": word}}, tmp_path, "pin"), {}, tmp_path / word, estimate=False) for word in ("on", "auto"))
+    on, off = (run.run(read_scene(given | {"contact": {"self_contact": word}}, tmp_path, "pin"), {}, tmp_path / word, estimate=False) for word in ("on", "auto"))
     balanced(on)
     slot = distances(on, lambda x, y: (abs(y - 0.005) < 1e-9) & (x > -0.03), lambda x, y: (abs(y + 0.005) < 1e-9) & (x > -0.03))
     assert abs(slot.min()) < 5e-4 and on.summary["max_penetration"] < 2e-4
@@ -134,9 +137,9 @@ def test_which_bodies_touch_themselves(tmp_path):
     for contact, said in (({"self_contact": "yes"}, "^contact.self_contact: 'yes' is not known .accepted: auto|on|off"), ({"self_contact": "on", "pairing": "pairwise"}, "^contact.self_contact: on, but pairing = 'pairwise'")):
         with pytest.raises(BadInput, match=said):
             read(given | {"contact": contact})
-    _, used, _ = read(SCENE | {"body": [PIN], "contact": {"penalty": 1e9}}).prepare(tmp_path)
+    _, used, _ = assembly.prepare(read(SCENE | {"body": [PIN], "contact": {"penalty": 1e9}}), tmp_path)
     assert used["contact"]["self_contact"] == "auto" and used["contact"]["pair"] == [{"bodies": ["pin", "pin"], "penalty": 1e9, "friction_static": 0, "friction_dynamic": 0}]
-    assert partners(used) == [(0, 0)] and read(used).prepare(tmp_path)[1] == used
+    assert partners(used) == [(0, 0)] and assembly.prepare(read(used), tmp_path)[1] == used
 
 
 def test_where_it_cannot_happen_it_changes_nothing(tmp_path):

@@ -180,7 +180,8 @@ struct Surface {
   std::vector<int> unknown, body;          // of component i of node a of a cell at (i nodes + a) cells + cell
   std::vector<double> side, pointShape;    // N_a of a point at a np + point
   std::vector<int> touchesItself;          // (bodies)
-  std::vector<double> reference, middle, outward, room, shape;   // nodal positions; of the cells there as in pair.idp; N_a = shape(a, :) . monomials, by rows
+  std::vector<double> reference, middle, outward, room;   // nodal positions in the reference; of the cells there as in pair.idp
+  std::vector<double> shape;               // N_a = shape(a, :) . monomials, by rows
 };
 
 struct Rows { Ints row, unknown;  Reals normal, slip; };
@@ -367,7 +368,8 @@ private:
     return -place.gap <= std::min(reach, 0.1 * length(apart)) ? place.gap : -place.gap;
   }
 
-  // Points and cells of two bodies, or of one and itself, near each other: only those in the overlap of the bodies' boxes, sorted along its longest side.
+  // Points and cells of two bodies, or of one and itself, near each other: only those in the overlap of the bodies' boxes, sorted along its
+  // longest side.
   void sweep(const double *x, const std::vector<int> &bodyA, const std::vector<int> &bodyB, std::vector<std::pair<long, int>> &found) const {
     Vector<A> from, to;
     int axis = 0;
@@ -559,8 +561,9 @@ template<class T, class K> std::vector<T> copied(const K &given) { return std::v
 static long surface(KNM<double> *shape, long points, long obstacles, long bodies, Ints unknown, Ints body, Reals side, Reals pointShape,
                     Ints touchesItself, Reals reference, Reals middle, Reals outward, Reals room) {
   const int cells = int(body->N()), nodes = int(shape->N());
-  Surface s = {cells, nodes, int(points), cells * int(points), int(obstacles), int(bodies), copied<int>(unknown), copied<int>(body), copied<double>(side), copied<double>(pointShape),
-    copied<int>(touchesItself), copied<double>(reference), copied<double>(middle), copied<double>(outward), copied<double>(room), {}};
+  Surface s = {cells, nodes, int(points), cells * int(points), int(obstacles), int(bodies), copied<int>(unknown), copied<int>(body),
+    copied<double>(side), copied<double>(pointShape), copied<int>(touchesItself), copied<double>(reference), copied<double>(middle),
+    copied<double>(outward), copied<double>(room), {}};
   for (int a = 0; a < nodes; a++) for (int j = 0; j < shape->M(); j++) s.shape.push_back((*shape)(a, j));
   if (shape->M() == termsOf(2)) known.reset(new Pairs<2>(s)); else known.reset(new Pairs<3>(s));
   return 0;

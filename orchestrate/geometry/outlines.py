@@ -237,7 +237,7 @@ class Outline(Shape):
         return (count - 1) * spacing
 
     def folding(self, revolved: bool = False) -> float:
-        """The strain (or less) of the body bent until its outline, or of a section with x = 0 as its axis one half of it, touches itself; infinite where it never does."""
+        """The strain (or less) of the body bent until its outline, or half a section, touches itself; infinite where it never does."""
         return min(folding(loop.polygon[::1 if k == 0 else -1], self.half_thickness, revolved) for k, loop in enumerate(self.loops))
 
     @property
@@ -310,13 +310,15 @@ def distance_to_polygon(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
 
 
 def folding(corners: np.ndarray, thickness: float, revolved: bool) -> float:
-    """Least of thickness s / w^2 over pairs of sides of a polygon, the body to its left, that see each other across what is empty (pair.idp): s [m] their distance,
-    w the way along the polygon, so that a wall which closes s bends by that, a ring of a radius r by 0.2 thickness / r. Sides of a meridian see none beyond the axis."""
+    """Least of thickness s / w^2 over pairs of sides of a polygon, the body to its left, that see each other across what is empty (pair.idp):
+    s [m] their distance, w the way along the polygon. A wall that closes s bends by some of that; of a ring it is 0.2 thickness / radius.
+    `revolved`: sides of a meridian see none beyond the axis."""
     along = np.roll(corners, -1, axis=0) - corners
     length = np.linalg.norm(along, axis=1)
     if (cross(along, np.roll(along, -1, axis=0)) >= -1e-9 * length * np.roll(length, -1)).all():
         return math.inf                                        # convex
-    middle, normal, place, least = corners + along / 2, along @ [[0, -1], [1, 0]] / length[:, None], np.cumsum(length) - length / 2, math.inf
+    middle, normal, place = corners + along / 2, along @ [[0, -1], [1, 0]] / length[:, None], np.cumsum(length) - length / 2
+    least = math.inf
     for at in range(0, len(corners), CHUNK):
         some = slice(at, at + CHUNK)
         to = middle - middle[some, None]

@@ -211,7 +211,8 @@ def used_tables(scene: Scene, sizes: list[Sizes | None], values: dict[str, Value
         bodies.append(used)
     obstacles = [{"name": one.name} | {key: value for key, value in given.items() if key not in OWN}
                  for given, one in zip(scene.given.get("obstacle", []), scene.obstacles)]
-    contact = {key: values[key] for key in scene.contact} | {SELF_CONTACT.name: scene.given.get("contact", {}).get(SELF_CONTACT.name, SELF_CONTACT.default)}
+    contact = {key: values[key] for key in scene.contact}
+    contact |= {SELF_CONTACT.name: scene.given.get("contact", {}).get(SELF_CONTACT.name, SELF_CONTACT.default)}
     contact |= {"pair": [{"bodies": names(pair)} | own for pair, own in zip(scene.pairs, pairs)]}
     top = {"title": scene.title, "script": scene.script, "dimension": scene.dimension.name} | _symmetry(scene) | {key: values[key] for key in scene.values}
     return top | {"body": bodies, "obstacle": obstacles, "contact": contact}
@@ -318,7 +319,7 @@ def data_file(scene: Scene, disc: dict[str, Value], centres: np.ndarray, rounds:
         circles C      body x y radius                                                                  in the mesh
         files F        body                                                                             whose mesh is that of a file
         obstacles M    name kind count p1 ... pcount vx vy
-        pairs K        a b penalty friction_static friction_dynamic                                     a, b: body, or -1 - obstacle; of a = b it touches itself
+        pairs K        a b penalty friction_static friction_dynamic                                     a, b: body, or -1 - obstacle (a = b: itself)
     centre: of the area in the mesh; place: where it is at the start; the angle of the disc in degrees. In three dimensions
         ffimpact-bodies-3d 1
         copies 1, 2 or 4                                                                                how often the mesh makes the whole bodies

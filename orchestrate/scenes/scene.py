@@ -41,7 +41,7 @@ RUN = ("gravity", "body_force_x", "body_force_y", "degree", "integrator", "dt", 
 OWN = ("penalty", "friction_static", "friction_dynamic")                                  # a pair may have its own
 CONTACT = (*OWN, "exponent", "slip_velocity", "regularization", "friction_transition", "pairing", "pairing_range")
 SELF_CONTACT = Parameter("self_contact", "word", "auto", "-", "", words=("auto", "on", "off"))
-FOLDING = 0.2                # of Outline.folding: a ring as thick as its inner radius; a body that closes only at more does not touch itself
+FOLDING = 0.2                # of Outline.folding: that of a ring as thick as its inner radius; what closes only at more does not touch itself
 TOUCHING = 1e-9              # of a body's thickness: an overlap up to it is round-off
 
 
@@ -266,10 +266,12 @@ def _touching_themselves(contact: Table, pairing: str, all_bodies: list[Body], o
     """The bodies that self_contact makes their own partners."""
     asked = contact.parameter(SELF_CONTACT.name, SELF_CONTACT)
     if asked == "on" and pairing != "closest-point":
-        raise BadInput(f"{contact.at(SELF_CONTACT.name)}: on, but pairing = '{pairing}' is between bodies (accepted: auto|off, or pairing = 'closest-point')")
+        raise BadInput(f"{contact.at(SELF_CONTACT.name)}: on, but pairing = '{pairing}' is between bodies "
+                       f"(accepted: auto|off, or pairing = 'closest-point')")
     if asked == "off" or pairing != "closest-point":
         return []
-    return [k for k, body in enumerate(all_bodies) if asked == "on" or (of is not SOLID and body.outline.folding(of is AXISYMMETRIC) < FOLDING)]
+    flat = of is not SOLID
+    return [k for k, body in enumerate(all_bodies) if asked == "on" or (flat and body.outline.folding(of is AXISYMMETRIC) < FOLDING)]
 
 
 def _of_the_scene(path: str, given: dict) -> None:
