@@ -255,12 +255,13 @@ def test_a_spinning_body_is_fine_where_it_will_touch():
 
 
 def test_a_hole_touches_only_what_is_in_it():
-    """A ring's inner circle has the label 3, with a disc or an obstacle inside it the label 1."""
+    """A ring's inner circle has the label 3; with a disc or an obstacle inside it, or where the ring may touch itself, the label 1."""
     ring = {"shape": "ring", "radius": 1, "inner_radius": 0.8, "position": [0, 0]}
-    alone = read(SCENE | {"body": [ring, DISC | {"position": [3, 0]}]})
+    thin = read(SCENE | {"body": [ring, DISC | {"position": [3, 0]}]})
+    alone = read(SCENE | {"body": [ring, DISC | {"position": [3, 0]}], "contact": {"self_contact": "off"}})
     filled = read(SCENE | {"body": [ring, DISC | {"position": [0.2, 0]}]})
     post = read(SCENE | {"body": [ring | {"velocity": [1, 0]}], "obstacle": [{"kind": "circle", "centre": [0.6, 0], "radius": 0.1}]})
-    for scene, labels in ((alone, {1, 3}), (filled, {1}), (post, {1})):
+    for scene, labels in ((thin, {1}), (alone, {1, 3}), (filled, {1}), (post, {1})):
         m = assembly.assemble(scene).mesh
         assert set(m.labels) == labels
         inner = np.hypot(*m.points[m.edges].mean(axis=1).T) < 0.85
@@ -390,7 +391,7 @@ BAD = [
     ([("contact.pair", 3)], "contact.pair: '3' is no list of tables (accepted: [[contact.pair]])"),
     ([("contact.pair", [{"penalty": 1e9}])], "contact.pair.1.bodies: '' is no pair (accepted: two names, one at least of a body, of disc, block, floor)"),
     ([("contact.pair", [{"bodies": ["disc", "ball"]}])], "contact.pair.1.bodies: 'ball' is not in the scene (accepted: two names, one at least of a body, of disc, block, floor)"),
-    ([("contact.pair", [{"bodies": ["disc", "disc"]}])], "contact.pair.1.bodies: '['disc', 'disc']' cannot touch each other"),
+    ([("contact.pair", [{"bodies": ["floor", "floor"]}])], "contact.pair.1.bodies: '['floor', 'floor']' cannot touch each other"),
     ([("contact.pair", [{"bodies": ["disc", "block"]}, {"bodies": ["block", "disc"]}])], "contact.pair.2.bodies: '['block', 'disc']' has a table already"),
     ([("contact.pair", [{"bodies": ["disc", "block"], "exponent": 2}])],
      "contact.pair.1.exponent: '2' holds for the whole scene (accepted: in [contact]; here penalty, friction_static, friction_dynamic)"),

@@ -178,7 +178,10 @@ inline void turning(const Foot<3> &foot, const Vector<3> &n, const Vector<3> &m,
 struct Surface {
   int cells, nodes, points, np, obstacles, bodies;   // nodes and points of a cell
   std::vector<int> unknown, body;          // of component i of node a of a cell at (i nodes + a) cells + cell
-  std::vector<double> side, pointShape, shape;   // N_a of a point at a np + point; N_a = shape(a, :) . monomials, by rows
+  std::vector<double> side, pointShape;    // N_a of a point at a np + point
+  std::vector<int> touchesItself;          // (bodies)
+  std::vector<double> reference, middle, outward, room;   // nodal positions in the reference; of the cells there as in pair.idp
+  std::vector<double> shape;               // N_a = shape(a, :) . monomials, by rows
 };
 
 struct Rows { Ints row, unknown;  Reals normal, slip; };
@@ -203,7 +206,7 @@ public:
     std::vector<std::vector<int>> own(s.bodies);
     for (int c = 0; c < s.cells; c++) { box(x, c);  own[s.body[c]].push_back(c); }
     std::vector<std::pair<long, int>> found;   // slot, cell
-    for (int a = 0; a < s.bodies; a++) for (int b = a + 1; b < s.bodies; b++) sweep(x, own[a], own[b], found);
+    for (int a = 0; a < s.bodies; a++) for (int b = s.touchesItself[a] ? a : a + 1; b < s.bodies; b++) sweep(x, own[a], own[b], found);
     std::sort(found.begin(), found.end());
     slot.clear();  first.clear();  cell.clear();
     for (const auto &one : found) {
@@ -230,7 +233,7 @@ public:
         if (A == 2 || length(feet[e - first[k]].arm) <= std::abs(place.gap) + 2 * reach) { cells.push_back(cell[e]);  kept.push_back(patchAtStart[e]); }
       slots.push_back(slot[k]);
       firsts.push_back(int(cells.size()));
-      startGap.push_back(place.gap);
+      startGap.push_back(gapOf(int(k), place));
       startUnseen.push_back(place.unseen);
     }
     slot.swap(slots);  first.swap(firsts);  cell.swap(cells);  patchAtStart.swap(kept);
@@ -248,9 +251,10 @@ public:
     for (int k = 0; k < n; k++) {
       now[k] = project(middle, k);
       const Place last = project(end, k);
+      const double endGap = gapOf(k, last);
       const bool seen = !startUnseen[k] && !now[k].unseen && !last.unseen;
-      if (seen) { q0[slot[k]] = -startGap[k];  q1[slot[k]] = -last.gap; }
-      row(k, n, seen, last.gap - startGap[k], rows);
+      if (seen) { q0[slot[k]] = -startGap[k];  q1[slot[k]] = -endGap; }
+      row(k, n, seen, endGap - startGap[k], rows);
     }
   }
 
@@ -329,7 +333,43 @@ private:
     }
   }
 
-  // Points and cells of two bodies near each other: only those in the overlap of the bodies' boxes, sorted along its longest side.
+  // Of cells of one body: 0 neighbours, 1 partners, 2 that see each other, (a) of pair.idp.
+  int sightOf(int c, int e) const {
+    const Surface &s = surface;
+    double ahead = 0, behind = 0, turned = 0, square = 0;
+    bool shared = false;
+    for (int a = 0; a < A; a++) for (int b = 0; b < A; b++) shared = shared || node(c, 0, a) == node(e, 0, b);
+    for (size_t i = 0; i < s.middle.size(); i += s.cells) {
+      const double w = s.middle[i + e] - s.middle[i + c];
+      ahead += s.outward[i + c] * w;
+      behind += s.outward[i + e] * w;
+      turned += s.outward[i + c] * s.outward[i + e];
+      square += w * w;
+    }
+    const bool turns = turned < std::cos(80 * M_PI / 180);
+    if (turns && std::min(ahead, -behind) > 1e-9 * std::sqrt(square)) return 2;
+    return !shared && (turns || std::sqrt(square) > s.room[c] + s.room[e]) ? 1 : 0;
+  }
+
+  // The gap of slot k; of a point of a body inside that body it is positive at a foot that it does not touch.
+  double gapOf(int k, const Place &place) const {
+    const Surface &s = surface;
+    const int p = int(slot[k] % s.np), c = cell[place.pick];
+    if (place.gap >= 0 || slot[k] / s.np < s.obstacles + s.bodies - 1) return place.gap;
+    if (-place.gap <= reach && sightOf(p / s.points, c) == 2) return place.gap;
+    Vector<termsOf(A)> power, slope[A - 1];
+    monomials(place.foot.r, power, slope);
+    Vector<A> apart = pointPlace(s.reference.data(), p);
+    for (int a = 0; a < s.nodes; a++) {
+      double N = 0;
+      for (int j = 0; j < termsOf(A); j++) N += s.shape[a * termsOf(A) + j] * power[j];
+      apart = plus(apart, -N, nodePlace(s.reference.data(), c, a));
+    }
+    return -place.gap <= std::min(reach, 0.1 * length(apart)) ? place.gap : -place.gap;
+  }
+
+  // Points and cells of two bodies, or of one and itself, near each other: only those in the overlap of the bodies' boxes, sorted along its
+  // longest side.
   void sweep(const double *x, const std::vector<int> &bodyA, const std::vector<int> &bodyB, std::vector<std::pair<long, int>> &found) const {
     Vector<A> from, to;
     int axis = 0;
@@ -342,6 +382,7 @@ private:
       if (to[i] < from[i]) return;
       if (to[i] - from[i] > to[axis] - from[axis]) axis = i;
     }
+    const bool itself = &bodyA == &bodyB;
     const auto meet = [&](int c, const Vector<A> &l, const Vector<A> &h) {
       for (int i = 0; i < A; i++) if (low[c][i] > h[i] || high[c][i] < l[i]) return false;
       return true;
@@ -352,14 +393,15 @@ private:
     std::sort(nearB.begin(), nearB.end(), [&](int c, int e) { return low[c][axis] < low[e][axis]; });
     for (int c : bodyA) if (meet(c, from, to)) {
       auto e = std::lower_bound(nearB.begin(), nearB.end(), low[c][axis] - widest, [&](int f, double least) { return low[f][axis] < least; });
-      for (; e != nearB.end() && low[*e][axis] <= high[c][axis]; ++e) if (meet(*e, low[c], high[c])) { join(x, c, *e, found);  join(x, *e, c, found); }
+      for (; e != nearB.end() && low[*e][axis] <= high[c][axis]; ++e)
+        if (meet(*e, low[c], high[c]) && (!itself || (c < *e && sightOf(c, *e) > 0))) { join(x, c, *e, found);  join(x, *e, c, found); }
     }
   }
 
   // Points of a cell within reach of the box of another.
   void join(const double *x, int own, int other, std::vector<std::pair<long, int>> &found) const {
     const Surface &s = surface;
-    const int partner = s.obstacles + s.body[other] - (s.body[other] > s.body[own] ? 1 : 0);
+    const int partner = s.obstacles + (s.body[other] == s.body[own] ? s.bodies - 1 : s.body[other] - (s.body[other] > s.body[own] ? 1 : 0));
     for (int p = own * s.points; p < (own + 1) * s.points; p++) {
       const Vector<A> y = pointPlace(x, p);
       bool near = true;
@@ -516,9 +558,12 @@ static std::unique_ptr<AnyPairs> known;
 
 template<class T, class K> std::vector<T> copied(const K &given) { return std::vector<T>(&(*given)[0], &(*given)[0] + given->N()); }
 
-static long surface(KNM<double> *shape, long points, long obstacles, long bodies, Ints unknown, Ints body, Reals side, Reals pointShape) {
+static long surface(KNM<double> *shape, long points, long obstacles, long bodies, Ints unknown, Ints body, Reals side, Reals pointShape,
+                    Ints touchesItself, Reals reference, Reals middle, Reals outward, Reals room) {
   const int cells = int(body->N()), nodes = int(shape->N());
-  Surface s = {cells, nodes, int(points), cells * int(points), int(obstacles), int(bodies), copied<int>(unknown), copied<int>(body), copied<double>(side), copied<double>(pointShape), {}};
+  Surface s = {cells, nodes, int(points), cells * int(points), int(obstacles), int(bodies), copied<int>(unknown), copied<int>(body),
+    copied<double>(side), copied<double>(pointShape), copied<int>(touchesItself), copied<double>(reference), copied<double>(middle),
+    copied<double>(outward), copied<double>(room), {}};
   for (int a = 0; a < nodes; a++) for (int j = 0; j < shape->M(); j++) s.shape.push_back((*shape)(a, j));
   if (shape->M() == termsOf(2)) known.reset(new Pairs<2>(s)); else known.reset(new Pairs<3>(s));
   return 0;

@@ -1,5 +1,6 @@
 """Outlines in the plane: closed curves, their areas, what is inside, distances to them. Points are arrays (n, 2) in m."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -235,6 +236,10 @@ class Outline(Shape):
         """Of a stretch with so many of the samples."""
         return (count - 1) * spacing
 
+    def folding(self, revolved: bool = False) -> float:
+        """The strain (or less) of the body bent until its outline, or half a section, touches itself; infinite where it never does."""
+        return min(folding(loop.polygon[::1 if k == 0 else -1], self.half_thickness, revolved) for k, loop in enumerate(self.loops))
+
     @property
     def disc(self) -> tuple[np.ndarray, float] | None:
         """Centre and radius of a disc, None for anything else."""
@@ -302,6 +307,28 @@ def distance_to_polygon(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
         s = np.clip((to * along).sum(axis=2) / length, 0, 1)
         distance[at:at + CHUNK] = np.sqrt(((to - s[..., None] * along)**2).sum(axis=2).min(axis=1))
     return distance
+
+
+def folding(corners: np.ndarray, thickness: float, revolved: bool) -> float:
+    """Least of thickness s / w^2 over pairs of sides of a polygon, the body to its left, that see each other across what is empty (pair.idp):
+    s [m] their distance, w the way along the polygon. A wall that closes s bends by some of that; of a ring it is 0.2 thickness / radius.
+    `revolved`: sides of a meridian see none beyond the axis."""
+    along = np.roll(corners, -1, axis=0) - corners
+    length = np.linalg.norm(along, axis=1)
+    if (cross(along, np.roll(along, -1, axis=0)) >= -1e-9 * length * np.roll(length, -1)).all():
+        return math.inf                                        # convex
+    middle, normal, place = corners + along / 2, along @ [[0, -1], [1, 0]] / length[:, None], np.cumsum(length) - length / 2
+    least = math.inf
+    for at in range(0, len(corners), CHUNK):
+        some = slice(at, at + CHUNK)
+        to = middle - middle[some, None]
+        distance, way = np.linalg.norm(to, axis=2), np.abs(place - place[some, None])
+        ahead, behind = (to * normal[some, None]).sum(axis=2), (to * normal).sum(axis=2)
+        sees = (np.minimum(ahead, -behind) > 1e-9 * distance) & (normal[some] @ normal.T < math.cos(math.radians(80)))
+        if revolved:
+            sees &= (middle[some, None, 0] > 0) & (middle[:, 0] > 0)
+        least = min(least, (thickness * distance[sees] / np.minimum(way, length.sum() - way)[sees]**2).min(initial=math.inf))
+    return float(least)
 
 
 def crossing_sides(first: np.ndarray, second: np.ndarray) -> np.ndarray:

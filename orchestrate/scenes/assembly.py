@@ -23,7 +23,7 @@ from ..failure import BadInput
 from ..mesh.mesh import AXIS, FREE, Sizes, nearest
 from ..mesh.outline_mesh import Curve, mesh_body
 from .mirror import COPIES, FOLDED, copies
-from .scene import OWN, Pair, Scene
+from .scene import OWN, SELF_CONTACT, Pair, Scene
 from ..geometry.outlines import Loop
 from ..input.parameters import Value
 from ..input.tables import to_toml
@@ -211,7 +211,9 @@ def used_tables(scene: Scene, sizes: list[Sizes | None], values: dict[str, Value
         bodies.append(used)
     obstacles = [{"name": one.name} | {key: value for key, value in given.items() if key not in OWN}
                  for given, one in zip(scene.given.get("obstacle", []), scene.obstacles)]
-    contact = {key: values[key] for key in scene.contact} | {"pair": [{"bodies": names(pair)} | own for pair, own in zip(scene.pairs, pairs)]}
+    contact = {key: values[key] for key in scene.contact}
+    contact |= {SELF_CONTACT.name: scene.given.get("contact", {}).get(SELF_CONTACT.name, SELF_CONTACT.default)}
+    contact |= {"pair": [{"bodies": names(pair)} | own for pair, own in zip(scene.pairs, pairs)]}
     top = {"title": scene.title, "script": scene.script, "dimension": scene.dimension.name} | _symmetry(scene) | {key: values[key] for key in scene.values}
     return top | {"body": bodies, "obstacle": obstacles, "contact": contact}
 
@@ -264,12 +266,13 @@ def _near(body: Body, k: int, one: Meeting, depth: float, points: np.ndarray) ->
 
 def _boundary(scene: Scene, k: int) -> list[list[tuple[Curve, float, int]]]:
     """The closed curves that bound the mesh of body k, the outer first, counter-clockwise: each piece with the largest element size on it and its label.
-    Nothing reaches a hole that holds no other body and no obstacle."""
+    Nothing reaches a hole that holds no other body and no obstacle, unless the body touches itself."""
     outer, *holes = scene.bodies[k].outline.loops
     if scene.dimension is AXISYMMETRIC:
         *surface, axis = revolution.boundary(outer)
         return [[*((piece, _largest(outer), FREE) for piece in surface), (axis, np.inf, AXIS)]]
-    reached = [True, *(_holds(scene, k, hole) for hole in scene.bodies[k].placed.loops[1:])]
+    itself = any(pair.first == pair.second == k for pair in scene.pairs)
+    reached = [True, *(itself or _holds(scene, k, hole) for hole in scene.bodies[k].placed.loops[1:])]
     return [[(partial(loop.at, piece), _largest(loop), FREE if touched else NEVER) for piece in range(len(loop.corners))]
             for loop, touched in zip((outer, *holes), reached)]
 
@@ -316,7 +319,7 @@ def data_file(scene: Scene, disc: dict[str, Value], centres: np.ndarray, rounds:
         circles C      body x y radius                                                                  in the mesh
         files F        body                                                                             whose mesh is that of a file
         obstacles M    name kind count p1 ... pcount vx vy
-        pairs K        a b penalty friction_static friction_dynamic                                     a, b: body, or -1 - obstacle
+        pairs K        a b penalty friction_static friction_dynamic                                     a, b: body, or -1 - obstacle (a = b: itself)
     centre: of the area in the mesh; place: where it is at the start; the angle of the disc in degrees. In three dimensions
         ffimpact-bodies-3d 1
         copies 1, 2 or 4                                                                                how often the mesh makes the whole bodies

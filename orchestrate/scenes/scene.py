@@ -9,7 +9,8 @@ makes the bodies of its parameters, all at the top of the file.
     [[obstacle]]                 # see obstacles.py; with penalty, friction_static, friction_dynamic of its own
     [contact]                    # penalty, exponent, friction_static, friction_dynamic, slip_velocity, regularization, friction_transition,
     pairing = "closest-point"    # pairing_range
-    [[contact.pair]]             # what differs between two of them
+    self_contact = "auto"        # which bodies touch themselves, too: auto, those that may fold onto themselves; on: all, off: none
+    [[contact.pair]]             # what differs between two of them, or of a body and itself, which then touches itself
     bodies = ["disc", "floor"]
     friction_static = 0.3
 """
@@ -26,8 +27,8 @@ from ..failure import BadInput, brief
 from ..freefem.describe import describe
 from ..geometry.outlines import Shape, normal_of
 from ..input import dimension, parameters
-from ..input.dimension import SOLID, Dimension
-from ..input.parameters import Value
+from ..input.dimension import AXISYMMETRIC, SOLID, Dimension
+from ..input.parameters import Parameter, Value
 from ..input.tables import Table, listed
 from ..output import estimate
 from . import bodies, mirror, obstacles
@@ -39,6 +40,8 @@ RUN = ("gravity", "body_force_x", "body_force_y", "degree", "integrator", "dt", 
        "chatter", "end_time", "fields", "modes", "checkpoint_every", "without")
 OWN = ("penalty", "friction_static", "friction_dynamic")                                  # a pair may have its own
 CONTACT = (*OWN, "exponent", "slip_velocity", "regularization", "friction_transition", "pairing", "pairing_range")
+SELF_CONTACT = Parameter("self_contact", "word", "auto", "-", "", words=("auto", "on", "off"))
+FOLDING = 0.2                # of Outline.folding: that of a ring as thick as its inner radius; what closes only at more does not touch itself
 TOUCHING = 1e-9              # of a body's thickness: an overlap up to it is round-off
 
 
@@ -200,11 +203,13 @@ def _of_tables(given: dict, folder: Path, name: str) -> Scene:
     if script != of.script:
         raise BadInput(f"script: '{brief(script)}' is not that of [[body]] tables in dimension = '{of.name}' (accepted: {of.script})")
     index = _names(all_bodies, all_obstacles)
-    contact_table = Table("contact", given.get("contact", {}), (*CONTACT, "pair"))
+    contact_table = Table("contact", given.get("contact", {}), (*CONTACT, SELF_CONTACT.name, "pair"))
     contact = _parameters(contact_table, CONTACT, of)
     pairs = _own_of_obstacles(rigid, len(all_bodies))
     for both, pair in _exceptions(contact_table, index).items():
         pairs[both] = replace(pair, values=pairs[both].values | pair.values) if both in pairs else pair
+    for k in _touching_themselves(contact_table, contact.get("pairing", "closest-point"), all_bodies, of):
+        pairs.setdefault((k, k), Pair(k, k, {}, "contact"))
     values = _parameters(table, RUN, of)
     found = Scene(name, table.text("title", name), script, given, folder, values, of, all_bodies, all_obstacles, contact, [pairs[both] for both in sorted(pairs)])
     _apart(found)
@@ -257,6 +262,18 @@ def _exceptions(contact: Table, index: dict[str, int]) -> dict[tuple[int, int], 
     return pairs
 
 
+def _touching_themselves(contact: Table, pairing: str, all_bodies: list[Body], of: Dimension) -> list[int]:
+    """The bodies that self_contact makes their own partners."""
+    asked = contact.parameter(SELF_CONTACT.name, SELF_CONTACT)
+    if asked == "on" and pairing != "closest-point":
+        raise BadInput(f"{contact.at(SELF_CONTACT.name)}: on, but pairing = '{pairing}' is between bodies "
+                       f"(accepted: auto|off, or pairing = 'closest-point')")
+    if asked == "off" or pairing != "closest-point":
+        return []
+    flat = of is not SOLID
+    return [k for k, body in enumerate(all_bodies) if asked == "on" or (flat and body.outline.folding(of is AXISYMMETRIC) < FOLDING)]
+
+
 def _of_the_scene(path: str, given: dict) -> None:
     """BadInput where a table has of its own what the contact of a scene has one of."""
     for key in CONTACT:
@@ -273,7 +290,7 @@ def _partners(path: str, given, index: dict[str, int]) -> tuple[int, int]:
         if name not in index:
             raise BadInput(f"{path}.bodies: '{brief(name)}' is not in the scene ({accepted})")
     first, second = sorted((index[name] for name in given), key=lambda k: (k < 0, abs(k)))
-    if first == second or first < 0:
+    if first < 0:
         raise BadInput(f"{path}.bodies: '{brief(given)}' cannot touch each other ({accepted})")
     return first, second
 
