@@ -28,8 +28,13 @@ template <class F, class... A> struct Called : E_F0mps {
   F f;
   Expression argument[sizeof...(A)];
   explicit Called(F g) : f(g) {}
-  template <size_t... i> long call(long (*)(A...), Stack s, std::index_sequence<i...>) const { return f(Given<A>::of((*argument[i])(s))...); }
-  template <size_t... i> long call(void (*)(A...), Stack s, std::index_sequence<i...>) const { f(Given<A>::of((*argument[i])(s))...);  return 0; }
+  template <size_t... i> long call(long (*)(A...), Stack s, std::index_sequence<i...>) const {
+    return f(Given<A>::of((*argument[i])(s))...);
+  }
+  template <size_t... i> long call(void (*)(A...), Stack s, std::index_sequence<i...>) const {
+    f(Given<A>::of((*argument[i])(s))...);
+    return 0;
+  }
   AnyType operator()(Stack s) const { return SetAny<long>(call(f, s, std::index_sequence_for<A...>())); }
 };
 

@@ -2,8 +2,8 @@
 //   tau = t(x),  x = x_w - B C B^T tau                                          C: compliance of the unknowns [m/N], S = C^-1
 // Newton's matrix is that of the moves y of the unknowns, with K = B^T D B sparse, D = dt/dx:
 //   (S + K) y = f = B^T (t - tau)
-// by LU where there are few unknowns, else by conjugate residuals, preconditioned by a sparse LU of K and S where K has entries: what else S couples is soft
-// beside K. Springs c T^T T are points more: rows T, force c x.
+// by LU where there are few unknowns, else by conjugate residuals, preconditioned by a sparse LU of K and S where K has entries: what else
+// S couples is soft beside K. Springs c T^T T are points more: rows T, force c x.
 #pragma once
 #include <umfpack.h>
 #include <memory>
@@ -36,7 +36,8 @@ inline void symmetric(const Vector &A, const Vector &x, Vector &y) {     // y = 
   if (n > 0) dsymv_("L", &n, &one, A.data(), &n, x.data(), &step, &zero, y.data(), &step);
 }
 // C = scale A B + keep C, C (m x n), k summed over, columns so far apart; `which`: "N" or "T", transposed, for A and B.
-inline void product(const char *which, int m, int n, int k, double scale, const double *A, int apartA, const double *B, int apartB, double keep, double *C, int apart) {
+inline void product(const char *which, int m, int n, int k, double scale, const double *A, int apartA, const double *B, int apartB,
+                    double keep, double *C, int apart) {
   if (m > 0 && n > 0) dgemm_(which, which + 1, &m, &n, &k, &scale, A, &apartA, B, &apartB, &keep, C, &apart);
 }
 
