@@ -1,7 +1,6 @@
 // contact-law.hpp: forces of a contact point in a step, normal (10) and, with friction, along the obstacle (11)-(13), and their derivatives. The same as
 // core/contact/normal.idp, friction.idp and tractions.idp, which say what the symbols mean, a point at a time.
-#ifndef FFIMPACT_CONTACT_LAW
-#define FFIMPACT_CONTACT_LAW
+#pragma once
 #include <algorithm>
 #include <cmath>
 
@@ -98,4 +97,3 @@ struct Law {
 };
 
 }
-#endif

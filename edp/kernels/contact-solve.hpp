@@ -1,17 +1,19 @@
 // contact-solve.hpp: contact and friction of a Newton step, solved on a frozen factorisation: what core/contact/solve.idp says, in the unknowns of the window.
-//   tau = t(x),  x = x_w - B C B^T tau                                                                       C: compliance of the unknowns
-// Newton's matrix, of the forces g on the unknowns or their moves y = C g, with K = B^T D B sparse, D = dt/dx and S = C^-1:
-//   (I + K C) g = f = B^T (t - tau)   few unknowns: LU of its part where K acts
-//   (S + K) y = f                     many: GMRES, preconditioned by a sparse LU of K and S where K has entries: what else S couples is soft beside K
-// Springs c T^T T are points more: rows T, force c x.
-#ifndef FFIMPACT_CONTACT_SOLVE
-#define FFIMPACT_CONTACT_SOLVE
+//   tau = t(x),  x = x_w - B C B^T tau                                          C: compliance of the unknowns [m/N], S = C^-1
+// Newton's matrix is that of the moves y of the unknowns, with K = B^T D B sparse, D = dt/dx:
+//   (S + K) y = f = B^T (t - tau)
+// by LU where there are few unknowns, else by conjugate residuals, preconditioned by a sparse LU of K and S where K has entries: what else
+// S couples is soft beside K. Springs c T^T T are points more: rows T, force c x.
+#pragma once
 #include <umfpack.h>
+#include <memory>
 #include <vector>
 #include "contact-law.hpp"
 
 extern "C" {
 void dsymv_(const char *, const int *, const double *, const double *, const int *, const double *, const int *, const double *, double *, const int *);
+void dgemm_(const char *, const char *, const int *, const int *, const int *, const double *, const double *, const int *, const double *, const int *,
+            const double *, double *, const int *);
 void dgetrf_(const int *, const int *, double *, const int *, int *, int *);
 void dgetrs_(const char *, const int *, const int *, const double *, const int *, const int *, double *, const int *, int *);
 void dpotrf_(const char *, const int *, double *, const int *, int *);
@@ -24,38 +26,39 @@ using Vector = std::vector<double>;
 using Indices = std::vector<int>;
 
 inline double dot(const Vector &a, const Vector &b) { double s = 0;  for (size_t i = 0; i < a.size(); i++) s += a[i] * b[i];  return s; }
+inline double norm(const Vector &a) { return std::sqrt(dot(a, a)); }
 inline void add(double s, const Vector &a, Vector &b) { for (size_t i = 0; i < a.size(); i++) b[i] += s * a[i]; }
 inline double largest(const Vector &a) { double m = 0;  for (double v : a) if (!(std::abs(v) <= m)) { m = std::abs(v);  if (m != m) return m; }  return m; }
-inline void symmetric(int n, const double *A, const Vector &x, Vector &y) {
+inline void symmetric(const Vector &A, const Vector &x, Vector &y) {     // y = A x
   const double one = 1, zero = 0;
-  const int step = 1;
+  const int n = x.size(), step = 1;
   y.resize(n);
-  if (n > 0) dsymv_("L", &n, &one, A, &n, x.data(), &step, &zero, y.data(), &step);
+  if (n > 0) dsymv_("L", &n, &one, A.data(), &n, x.data(), &step, &zero, y.data(), &step);
+}
+// C = scale A B + keep C, C (m x n), k summed over, columns so far apart; `which`: "N" or "T", transposed, for A and B.
+inline void product(const char *which, int m, int n, int k, double scale, const double *A, int apartA, const double *B, int apartB,
+                    double keep, double *C, int apart) {
+  if (m > 0 && n > 0) dgemm_(which, which + 1, &m, &n, &k, &scale, A, &apartA, B, &apartB, &keep, C, &apart);
 }
 
 // The points of the window, its springs behind them, and their rows B on its n unknowns: a block of `kinds` values for each unknown of a point.
 struct Rows {
   int n = 0, points = 0, kinds = 1;
-  Indices first{0}, column, owner, heldFirst, held;                // of a point its entries; of an entry its column and point; of a column its entries
+  Indices first{0}, column, owner;                                 // of a point its entries; of an entry its column and point
   Vector value, spring;                                            // kinds an entry; stiffness c of the springs
+  Indices start, row, place;                                       // entries of K and the diagonal by columns; where those of stiffness() are
+  std::shared_ptr<void> symbolic;                                  // what UMFPACK makes of that
 
   int blocks() const { return first.size() - 1; }
-  void begin(int unknowns, int kindsOfPoint) { n = unknowns;  kinds = kindsOfPoint;  points = 0;  first.assign(1, 0);  column.clear();  owner.clear();  value.clear();  place.assign(n, -1); }
+  int entries(int b) const { return first[b + 1] - first[b]; }
+  void begin(int unknowns, int kindsOfPoint) { *this = Rows();  n = unknowns;  kinds = kindsOfPoint; }
   void entry(int j, int kind, double v) {                          // of the point that is being built
-    if (place[j] < first.back()) { place[j] = column.size();  column.push_back(j);  owner.push_back(blocks());  value.resize(value.size() + kinds, 0.); }
-    value[kinds * place[j] + kind] += v;
+    const int e = std::find(column.begin() + first.back(), column.end(), j) - column.begin();
+    if (e == (int)column.size()) { column.push_back(j);  owner.push_back(blocks());  value.resize(value.size() + kinds, 0.); }
+    value[kinds * e + kind] += v;
   }
   void endPoint() { first.push_back(column.size()); }
-  void end(const Vector &springs) {
-    spring = springs;
-    points = blocks() - spring.size();
-    heldFirst.assign(n + 1, 0);
-    for (int j : column) heldFirst[j + 1]++;
-    for (int j = 0; j < n; j++) heldFirst[j + 1] += heldFirst[j];
-    held.resize(column.size());
-    Indices next = heldFirst;
-    for (size_t e = 0; e < column.size(); e++) held[next[column[e]]++] = e;
-  }
+  void end(const Vector &springs) { spring = springs;  points = blocks() - spring.size(); }
   void push(const Vector &t, Vector &force) const {                // B^T t
     force.assign(n, 0.);
     for (size_t e = 0; e < column.size(); e++) for (int c = 0; c < kinds; c++) force[column[e]] += value[kinds * e + c] * t[kinds * owner[e] + c];
@@ -64,166 +67,120 @@ struct Rows {
     move.assign(kinds * blocks(), 0.);
     for (size_t e = 0; e < column.size(); e++) for (int c = 0; c < kinds; c++) move[kinds * owner[e] + c] += value[kinds * e + c] * way[column[e]];
   }
- private:
-  Indices place;
+  void slope(const Vector &D, const Vector &move, Vector &change) const {   // D move
+    change.assign(move.size(), 0.);
+    for (int b = 0; b < blocks(); b++)
+      for (int i = 0; i < kinds; i++) for (int j = 0; j < kinds; j++) change[kinds * b + i] += D[kinds * (kinds * b + i) + j] * move[kinds * b + j];
+  }
+  template <class Function> void stiffness(const Vector &D, Function add) const {   // add(t, i, j, what), which sum to K_ij; t counts them
+    for (int b = 0, t = 0; b < blocks(); b++) {
+      const double *slopes = &D[kinds * kinds * b];
+      if (std::all_of(slopes, slopes + kinds * kinds, [](double d) { return d == 0; })) { t += entries(b) * entries(b);  continue; }
+      for (int e = first[b]; e < first[b + 1]; e++) {
+        double way[3] = {}, *to = way;                             // D B, of this column
+        for (int i = 0; i < kinds; i++, to++) for (int c = 0; c < kinds; c++) *to += slopes[kinds * i + c] * value[kinds * e + c];
+        for (int o = first[b]; o < first[b + 1]; o++, t++) {
+          double sum = 0;
+          for (int i = 0; i < kinds; i++) sum += value[kinds * o + i] * way[i];
+          add(t, column[o], column[e], sum);
+        }
+      }
+    }
+  }
+  void pattern() {
+    if (symbolic) return;
+    Indices I, J;
+    void *made = nullptr;
+    for (int b = 0; b < blocks(); b++)
+      for (int e = first[b]; e < first[b + 1]; e++) for (int o = first[b]; o < first[b + 1]; o++) { I.push_back(column[o]);  J.push_back(column[e]); }
+    for (int j = 0; j < n; j++) { I.push_back(j);  J.push_back(j); }
+    start.resize(n + 1);
+    row.resize(I.size());
+    place.resize(I.size());
+    umfpack_di_triplet_to_col(n, n, I.size(), I.data(), J.data(), nullptr, start.data(), row.data(), nullptr, place.data());
+    umfpack_di_symbolic(n, n, start.data(), row.data(), nullptr, &made, nullptr, nullptr);
+    symbolic.reset(made, [](void *s) { umfpack_di_free_symbolic(&s); });
+  }
 };
 
 // Newton's matrix at some D, and what solves with it.
 class Newton {
  public:
-  int mostDense = 200, mostIterations = 10;                        // columns of K that are solved with densely; of GMRES with an older P
+  int mostDense = 200, mostIterations = 10;                        // unknowns that are solved with densely; iterations with an older P
   bool made = false;
-  ~Newton() { forget(); }
-  void forget() { made = false;  iterations = 0;  if (numeric) umfpack_di_free_numeric(&numeric);  numeric = nullptr; }
+  Vector D;                                                        // that it is of
+  void forget() { made = false;  iterations = 0;  numeric.reset(); }
+  bool fits(const Rows &B) const { return made && n == B.n && D.size() == (size_t)B.blocks() * B.kinds * B.kinds; }
 
-  void make(const Rows &B, const Vector &slopes, const double *C, const double *S) {
+  void make(Rows &B, const Vector &slopes, const Vector &S) {
+    const bool dense = B.n <= mostDense;
     D = slopes;
-    assemble(B);
-    const bool dense = (int)active.size() <= mostDense;
+    n = B.n;
     if (dense || iterations > mostIterations) forget();
-    if (dense) factorDense(B.n, C);
-    else if (!numeric) factorSparse(B.n, S);
+    if (dense) factorDense(B, S);
+    else if (!numeric) factorSparse(B, S);
     made = true;
   }
-  bool fits(const Rows &B) const { return made && (int)Kp.size() == B.n + 1 && D.size() == (size_t)B.blocks() * B.kinds * B.kinds; }
-  void slope(const Rows &B, const Vector &move, Vector &change) const {   // D move
-    const int k = B.kinds;
-    change.assign(move.size(), 0.);
-    for (int b = 0; b < B.blocks(); b++) for (int i = 0; i < k; i++) for (int j = 0; j < k; j++) change[k * b + i] += D[k * k * b + k * i + j] * move[k * b + j];
-  }
-  void solve(const Vector &f, const double *C, const double *S, double goal, Vector &y) {
-    if (numeric) return gmres(f, S, goal, y);
-    const int n = f.size(), m = active.size(), one = 1;
-    Vector g = f, h(m), w(n, 0.);
+  void solve(const Rows &B, const Vector &f, const Vector &S, double goal, Vector &y) {   // to a rest of norm goal [N]
+    const int one = 1;
     int info;
-    symmetric(n, C, f, y);
-    if (m == 0) return;
-    product(y, w);
-    for (int j = 0; j < m; j++) h[j] = -w[active[j]];
-    dgetrs_("T", &m, &one, LU.data(), &m, pivots.data(), h.data(), &m, &info);
-    for (int j = 0; j < m; j++) g[active[j]] += h[j];
-    symmetric(n, C, g, y);
+    if (n > mostDense) return conjugate(B, f, S, goal, y);
+    y = f;
+    if (n > 0) dgetrs_("N", &n, &one, LU.data(), &n, pivots.data(), y.data(), &n, &info);
   }
 
  private:
-  Vector D, Kx, LU;
-  Indices Kp, Ki, active, pivots, Pp, Pi;                          // K by columns; those that have entries; P = K and S where K has entries
-  Vector Px;
-  void *numeric = nullptr;                                         // the LU of P
-  int iterations = 0;                                              // of the last GMRES
+  int n = 0, iterations = 0;                                       // of the last solution
+  Vector LU, P;                                                    // P: K and, where it has entries, S
+  Indices pivots;
+  std::shared_ptr<void> numeric;                                   // the LU of P
 
-  void assemble(const Rows &B) {
-    const int n = B.n, k = B.kinds;
-    Indices seen(n, -1), acts(B.blocks());
-    for (int b = 0; b < B.blocks(); b++) for (int i = 0; i < k * k; i++) if (D[k * k * b + i] != 0) acts[b] = 1;
-    Kp.assign(1, 0);  Ki.clear();  Kx.clear();  active.clear();
-    for (int j = 0; j < n; j++) {
-      const int start = Ki.size();
-      for (int h = B.heldFirst[j]; h < B.heldFirst[j + 1]; h++) {
-        const int e = B.held[h], b = B.owner[e];
-        if (!acts[b]) continue;
-        double push[3] = {0, 0, 0};                                // D B, of this column
-        for (int i = 0; i < k; i++) for (int c = 0; c < k; c++) push[i] += D[k * k * b + k * i + c] * B.value[k * e + c];
-        for (int o = B.first[b]; o < B.first[b + 1]; o++) {
-          const int row = B.column[o];
-          double v = 0;
-          for (int i = 0; i < k; i++) v += B.value[k * o + i] * push[i];
-          if (seen[row] < start) { seen[row] = Ki.size();  Ki.push_back(row);  Kx.push_back(0.); }
-          Kx[seen[row]] += v;
-        }
-      }
-      if ((int)Ki.size() > start) active.push_back(j);
-      Kp.push_back(Ki.size());
-    }
-  }
-
-  void product(const Vector &y, Vector &w) const {                 // w += K y
-    for (int j : active) for (int e = Kp[j]; e < Kp[j + 1]; e++) w[Ki[e]] += Kx[e] * y[j];
-  }
-
-  void factorDense(int n, const double *C) {
-    const int m = active.size();
-    Indices at(n, -1);
-    Vector soft(m * m);                                            // C, of these
+  void factorDense(const Rows &B, const Vector &S) {
     int info;
-    for (int j = 0; j < m; j++) at[active[j]] = j;
-    for (int j = 0; j < m; j++) for (int i = 0; i < m; i++) soft[j * m + i] = C[(size_t)n * active[j] + active[i]];
-    LU.assign(m * m, 0.);                                          // transposed: columns are added
-    pivots.resize(m);
-    for (int j = 0; j < m; j++) {
-      for (int e = Kp[active[j]]; e < Kp[active[j] + 1]; e++) {
-        double *row = &LU[at[Ki[e]] * m];
-        for (int i = 0; i < m; i++) row[i] += Kx[e] * soft[j * m + i];
-      }
-      LU[j * m + j] += 1;
-    }
-    if (m > 0) dgetrf_(&m, &m, LU.data(), &m, pivots.data(), &info);
+    LU = S;
+    pivots.resize(n);
+    B.stiffness(D, [this](int, int i, int j, double K) { LU[(size_t)n * j + i] += K; });
+    if (n > 0) dgetrf_(&n, &n, LU.data(), &n, pivots.data(), &info);
   }
 
-  void factorSparse(int n, const double *S) {
-    Pp.assign(1, 0);  Pi.clear();  Px.clear();
-    for (int j = 0; j < n; j++) {
-      Indices order;
-      for (int e = Kp[j]; e < Kp[j + 1]; e++) order.push_back(e);
-      std::sort(order.begin(), order.end(), [this](int a, int b) { return Ki[a] < Ki[b]; });
-      if (order.empty()) { Pi.push_back(j);  Px.push_back(S[(size_t)n * j + j]); }
-      for (int e : order) { Pi.push_back(Ki[e]);  Px.push_back(Kx[e] + S[(size_t)n * j + Ki[e]]); }
-      Pp.push_back(Pi.size());
-    }
-    void *symbolic = nullptr;
-    umfpack_di_symbolic(n, n, Pp.data(), Pi.data(), Px.data(), &symbolic, nullptr, nullptr);
-    umfpack_di_numeric(Pp.data(), Pi.data(), Px.data(), symbolic, &numeric, nullptr, nullptr);
-    umfpack_di_free_symbolic(&symbolic);
+  void factorSparse(Rows &B, const Vector &S) {
+    void *made = nullptr;
+    B.pattern();
+    P.resize(B.start[n]);
+    for (int j = 0; j < n; j++) for (int e = B.start[j]; e < B.start[j + 1]; e++) P[e] = S[(size_t)n * j + B.row[e]];
+    B.stiffness(D, [&](int t, int, int, double K) { P[B.place[t]] += K; });
+    umfpack_di_numeric(B.start.data(), B.row.data(), P.data(), B.symbolic.get(), &made, nullptr, nullptr);
+    numeric.reset(made, [](void *s) { umfpack_di_free_numeric(&s); });
   }
 
-  void gmres(const Vector &f, const double *S, double goal, Vector &y) {
-    // (S + K) P^-1 p = f, y = P^-1 p (Saad and Schultz 1986), restarted
-    const int n = f.size(), most = 60;
+  void conjugate(const Rows &B, const Vector &f, const Vector &S, double goal, Vector &y) {
+    // generalised conjugate residuals (Eisenstat, Elman, Schultz 1983), the iterates of GMRES
     double control[UMFPACK_CONTROL];
     umfpack_di_defaults(control);
     control[UMFPACK_IRSTEP] = 0;
-    Vector left = f, w(n);
-    iterations = 0;
+    Vector left = f, move, change, more;
+    std::vector<Vector> ways, images;
     y.assign(n, 0.);
-    for (int round = 0; round < 20; round++) {
-      const double start = std::sqrt(dot(left, left));
-      if (!(start > goal)) return;
-      std::vector<Vector> V(1, left), Z;
-      std::vector<Vector> H;
-      Vector rest(1, start), cosine, sine;
-      for (double &v : V[0]) v /= start;
-      for (int k = 0; k < most && std::abs(rest[k]) > goal; k++) {
-        iterations++;
-        Z.emplace_back(n);
-        umfpack_di_solve(UMFPACK_A, Pp.data(), Pi.data(), Px.data(), Z[k].data(), V[k].data(), numeric, control, nullptr);
-        symmetric(n, S, Z[k], w);
-        product(Z[k], w);
-        Vector h(k + 2);
-        for (int i = 0; i <= k; i++) { h[i] = dot(w, V[i]);  add(-h[i], V[i], w); }
-        h[k + 1] = std::sqrt(dot(w, w));
-        V.push_back(w);
-        for (double &v : V[k + 1]) v /= std::max(h[k + 1], 1e-300);
-        for (int i = 0; i < k; i++) {
-          const double a = h[i];
-          h[i] = cosine[i] * a + sine[i] * h[i + 1];
-          h[i + 1] = cosine[i] * h[i + 1] - sine[i] * a;
-        }
-        const double length = std::hypot(h[k], h[k + 1]);
-        cosine.push_back(h[k] / length);
-        sine.push_back(h[k + 1] / length);
-        h[k] = length;
-        rest.push_back(-sine[k] * rest[k]);
-        rest[k] *= cosine[k];
-        H.push_back(h);
+    for (iterations = 0; iterations < 200 && norm(left) > goal; iterations++) {
+      Vector way(n), image;
+      umfpack_di_solve(UMFPACK_A, B.start.data(), B.row.data(), P.data(), way.data(), left.data(), numeric.get(), control, nullptr);
+      symmetric(S, way, image);
+      B.pull(way, move);
+      B.slope(D, move, change);
+      B.push(change, more);
+      add(1, more, image);
+      for (size_t k = 0; k < ways.size(); k++) {
+        const double h = dot(image, images[k]);
+        add(-h, images[k], image);
+        add(-h, ways[k], way);
       }
-      for (int k = (int)H.size() - 1; k >= 0; k--) {
-        for (int i = k + 1; i < (int)H.size(); i++) rest[k] -= H[i][k] * rest[i];
-        rest[k] /= H[k][k];
-        add(rest[k], Z[k], y);
-      }
-      symmetric(n, S, y, left);
-      product(y, left);
-      for (int i = 0; i < n; i++) left[i] = f[i] - left[i];
+      const double scale = 1 / std::max(norm(image), 1e-300), along = scale * scale * dot(left, image);
+      add(along, way, y);
+      add(-along, image, left);
+      for (double &v : way) v *= scale;
+      for (double &v : image) v *= scale;
+      ways.push_back(way);
+      images.push_back(image);
     }
   }
 };
@@ -240,7 +197,13 @@ class Problem {
   double enough = 0, sticksBelow = 0;
   int inverses = 0, mostTurns = 4, agreeingFrom = 20;              // inverses, before plain Newton with a line search takes over
 
-  void compliance(int n, const double *looseCompliance) { C = looseCompliance;  size = n;  S.clear(); }
+  void compliance(int n, const double *given) {
+    const int before = order(C);
+    bool grows = n >= before;                                      // the same columns, and more
+    for (int j = 0; j < before && grows; j++) grows = std::equal(&C[(size_t)before * j], &C[(size_t)before * j] + before, given + (size_t)n * j);
+    if (!grows) S.clear();
+    C.assign(given, given + (size_t)n * n);
+  }
 
   int solve(long mostInverses, long &inversesOfStep) {
     // Newton; with friction on the linearised law, and with a matrix that serves on near the end and at the start of the next solve. Returns the
@@ -257,7 +220,7 @@ class Problem {
     for (int it = 0; inverses < 60 && inversesOfStep <= mostInverses; it++) {
       const double scale = largest(t) + largest(tau), error = largest(unbalance);
       if (it == 0) biggest = scale;
-      bool done = error <= close * scale || scale == 0 || std::sqrt(dot(unbalance, unbalance)) <= enough;
+      bool done = error <= close * scale || scale == 0 || norm(unbalance) <= enough;
       if (!done) {
         if (!(error <= 1e6 * biggest)) return -1;                  // diverges, or is not a number
         const bool searches = !rubs || inverses >= agreeingFrom;
@@ -265,7 +228,8 @@ class Problem {
           inverses++;
           if (rubs) inversesOfStep++;
           if (!searches) linearise();
-          newton.make(B, slopes, C, stiffness());
+          stiffen();
+          newton.make(B, slopes, S);
         }
         errorBefore = error;
         correct(searches ? 1e-6 : 1e-3);                           // a line search asks for the true direction
@@ -277,25 +241,37 @@ class Problem {
   }
 
  private:
-  const double *C = nullptr;
-  int size = 0;
-  Vector S, x, t, slopes, unbalance, step, move, sigma;
+  Vector C, S, x, t, slopes, unbalance, step, move, sigma;
 
-  const double *stiffness() {                                      // S = C^-1, for many unknowns
-    if (size <= newton.mostDense) return nullptr;
-    if (S.empty()) {
-      int info;
-      S.assign(C, C + (size_t)size * size);
-      dpotrf_("L", &size, S.data(), &size, &info);
-      dpotri_("L", &size, S.data(), &size, &info);
-      for (int j = 0; j < size; j++) for (int i = j + 1; i < size; i++) S[(size_t)size * i + j] = S[(size_t)size * j + i];
+  static int order(const Vector &A) { return std::lround(std::sqrt((double)A.size())); }
+  void stiffen() {
+    // S = C^-1. Where C has only got columns: of S_0 = C_0^-1 and C = [C_0 b; b^T c] with q = S_0 b, s = (c - b^T q)^-1
+    //   S = [S_0 + q s q^T, -q s; -s q^T, s]
+    const int n = order(C), m = 3 * order(S) < 2 * n ? 0 : order(S), k = n - m;
+    int info;
+    if (k == 0) return;
+    Vector q(m * k), sq(m * k), s(k * k), whole((size_t)n * n);
+    const double *b = &C[(size_t)n * m];
+    for (int j = 0; j < k; j++) std::copy(b + (size_t)n * j + m, b + (size_t)n * (j + 1), &s[k * j]);
+    product("NN", m, k, m, 1, S.data(), m, b, n, 0, q.data(), m);
+    product("TN", k, k, m, -1, b, n, q.data(), m, 1, s.data(), k);
+    dpotrf_("L", &k, s.data(), &k, &info);
+    dpotri_("L", &k, s.data(), &k, &info);
+    for (int j = 0; j < k; j++) for (int i = j + 1; i < k; i++) s[k * i + j] = s[k * j + i];
+    product("NN", m, k, k, -1, q.data(), m, s.data(), k, 0, sq.data(), m);
+    for (int j = 0; j < m; j++) std::copy(&S[(size_t)m * j], &S[(size_t)m * j] + m, &whole[(size_t)n * j]);
+    product("NT", m, m, k, -1, sq.data(), m, q.data(), m, 1, whole.data(), n);
+    for (int j = 0; j < k; j++) {
+      double *column = &whole[(size_t)n * (m + j)];
+      for (int i = 0; i < m; i++) column[i] = whole[(size_t)n * i + m + j] = sq[m * j + i];
+      std::copy(&s[k * j], &s[k * j] + k, column + m);
     }
-    return S.data();
+    S.swap(whole);
   }
   void comply(const Vector &f, Vector &way) const {                // B C B^T f
     Vector g, y;
     B.push(f, g);
-    symmetric(B.n, C, g, y);
+    symmetric(C, g, y);
     B.pull(y, way);
   }
   void place() {
@@ -354,9 +330,9 @@ class Problem {
     // (S + K) y = B^T (t - tau), to a share of it; step = t - tau - D B y of the forces, move = -B C B^T step
     Vector f, y, change;
     B.push(unbalance, f);
-    newton.solve(f, C, S.data(), std::max(share * std::sqrt(dot(f, f)), 1e-3 * enough), y);
+    newton.solve(B, f, S, std::max(share * norm(f), 1e-3 * enough), y);
     B.pull(y, move);
-    newton.slope(B, move, change);
+    B.slope(newton.D, move, change);
     step = unbalance;
     add(-1, change, step);
     comply(step, move);
@@ -401,4 +377,3 @@ class Problem {
 };
 
 }
-#endif

@@ -1,137 +1,118 @@
 // contact.hpp: the compiled contact of core/contact/{normal,tractions,window,solve}.idp by its names in the scripts.
-#ifndef FFIMPACT_CONTACT
-#define FFIMPACT_CONTACT
+#pragma once
 #include "call.hpp"
 #include "contact-solve.hpp"
 
 namespace contact {
 
-using Reals = KN<double> *;
-using Ints = KN<long> *;
-
 static Problem problem;
 static Law &law = problem.law;
 
-static long setLaw(double exponent, double slipVelocity, double bridge, double sticksBelow, string *regularization, bool jumps, long slips) {
+static void setLaw(double exponent, double slipVelocity, double bridge, double sticksBelow, std::string &regularization, bool jumps, long slips) {
   law.exponent = exponent;
   law.slipVelocity = slipVelocity;
   law.bridge = bridge;
-  law.regularization = *regularization == "sqrt" ? sqrtOf : *regularization == "tanh" ? tanhOf : *regularization == "linear" ? linear : linearPrinted;
+  law.regularization = regularization == "sqrt" ? sqrtOf : regularization == "tanh" ? tanhOf : regularization == "linear" ? linear : linearPrinted;
   law.jumps = jumps;
   law.slips = slips;
   problem.sticksBelow = sticksBelow;
-  return 0;
 }
 
-static long normal(Reals qa, Reals qb, Reals k, long where, Reals t, Reals stiff) {
+static void normal(Reals qa, Reals qb, Reals k, long where, Reals t, Reals stiff) {
   law.where = where;
-  for (int i = 0; i < qa->n; i++) law.normal((*qa)[i], (*qb)[i], (*k)[i], (*t)[i], (*stiff)[i]);
-  return 0;
+  for (int i = 0; i < qa.n; i++) law.normal(qa[i], qb[i], k[i], t[i], stiff[i]);
 }
 
-static long tractions(Reals qa, Reals place, Reals k, Ints of, Ints sticks, Reals muStatic, Reals muDynamic, double dt, long where, Reals t, Reals stiff, Reals drag, Reals coupling) {
-  const int n = qa->n, kinds = 1 + law.slips;
+static void tractions(Reals qa, Reals place, Reals k, Ints of, Ints sticks, Reals muStatic, Reals muDynamic, double dt, long where,
+                      Reals t, Reals stiff, Reals drag, Reals coupling) {
+  const int n = qa.n, kinds = 1 + law.slips;
   law.where = where;
   law.dt = dt;
   for (int i = 0; i < n; i++) {
-    const int s = (*of)[i];
+    const int s = of[i];
     double x[3];
     Forces f;
-    for (int c = 0; c < kinds; c++) x[c] = (*place)[c * n + i];
-    law.at({(*qa)[i], (*k)[i], (*muStatic)[s], (*muDynamic)[s], (*sticks)[i] == 1}, x, nullptr, f);
-    for (int c = 0; c < kinds; c++) (*t)[c * n + i] = f.t[c];
-    (*stiff)[i] = f.slope[0][0];
-    for (int c = 1; c < kinds; c++) { (*coupling)[(c - 1) * n + i] = f.slope[c][0];  (*drag)[(c - 1) * n + i] = f.slope[c][c]; }
-    if (kinds == 3) (*drag)[2 * n + i] = f.slope[1][2];
+    for (int c = 0; c < kinds; c++) x[c] = place[c * n + i];
+    law.at({qa[i], k[i], muStatic[s], muDynamic[s], sticks[i] == 1}, x, nullptr, f);
+    for (int c = 0; c < kinds; c++) t[c * n + i] = f.t[c];
+    stiff[i] = f.slope[0][0];
+    for (int c = 1; c < kinds; c++) { coupling[(c - 1) * n + i] = f.slope[c][0];  drag[(c - 1) * n + i] = f.slope[c][c]; }
+    if (kinds == 3) drag[2 * n + i] = f.slope[1][2];
   }
-  return 0;
 }
 
-static long setCompliance(KNM<double> *C) {
-  const long n = C->N();
-  static Vector copy;
-  copy.assign(&(*C)(0, 0), &(*C)(0, 0) + n * n);
-  problem.compliance(n, copy.data());
-  problem.newton.forget();
-  return 0;
-}
-
-static long sortRows(Ints row, Ints column, Reals value, Ints start, Ints unknowns, Reals values) {
+static void sortRows(Ints row, Ints column, Reals value, Ints start, Ints unknowns, Reals values) {
   // Triplets by rows, in their order.
-  const long entries = row->n, rows = start->n - 1;
-  *start = 0L;
-  unknowns->resize(entries);
-  values->resize(entries);
-  for (long k = 0; k < entries; k++) (*start)[(*row)[k] + 1]++;
-  for (long i = 0; i < rows; i++) (*start)[i + 1] += (*start)[i];
-  std::vector<long> next(&(*start)[0], &(*start)[0] + rows);
-  for (long k = 0; k < entries; k++) { const long at = next[(*row)[k]]++;  (*unknowns)[at] = (*column)[k];  (*values)[at] = (*value)[k]; }
-  return 0;
+  const long entries = row.n, rows = start.n - 1;
+  start = 0L;
+  unknowns.resize(entries);
+  values.resize(entries);
+  for (long k = 0; k < entries; k++) start[row[k] + 1]++;
+  for (long i = 0; i < rows; i++) start[i + 1] += start[i];
+  std::vector<long> next = copied<long>(start);
+  for (long k = 0; k < entries; k++) { const long at = next[row[k]]++;  unknowns[at] = column[k];  values[at] = value[k]; }
 }
 
-static long take(Reals q, double reach, long kinds, Ints rowStart, Ints rowUnknown, Reals rowValue, Ints springUnknown, Reals springValue, Ints inWindow, Reals outWindow,
-                 Ints slots, Ints index, Ints unknowns) {
+static void take(Reals q, double reach, long kinds, Ints rowStart, Ints rowUnknown, Reals rowValue, Ints springUnknown, Reals springValue,
+                 Ints inWindow, Reals outWindow, Ints slots, Ints index, Ints unknowns) {
   // The slots with q > -reach join the window's, and the unknowns of all their rows and of the springs its unknowns.
-  const long ns = q->n;
-  std::vector<long> slot(&(*slots)[0], &(*slots)[0] + slots->n), unknown(&(*unknowns)[0], &(*unknowns)[0] + unknowns->n);
-  const auto join = [&](long j, double value) { if (value != 0 && (*index)[j] < 0) { (*index)[j] = unknown.size();  unknown.push_back(j); } };
-  for (long s = 0; s < ns; s++) if ((*inWindow)[s] == 0 && (*q)[s] > -reach) { (*inWindow)[s] = 1;  (*outWindow)[s] = 0;  slot.push_back(s); }
-  for (long s : slot) for (long r = s; r < kinds * ns; r += ns) for (long k = (*rowStart)[r]; k < (*rowStart)[r + 1]; k++) join((*rowUnknown)[k], (*rowValue)[k]);
-  for (long k = 0; k < springUnknown->n; k++) join((*springUnknown)[k], (*springValue)[k]);
-  slots->resize(slot.size());
-  unknowns->resize(unknown.size());
-  std::copy(slot.begin(), slot.end(), &(*slots)[0]);
-  std::copy(unknown.begin(), unknown.end(), &(*unknowns)[0]);
-  return 0;
+  const long ns = q.n;
+  std::vector<long> slot = copied<long>(slots), unknown = copied<long>(unknowns);
+  const auto join = [&](long j, double value) { if (value != 0 && index[j] < 0) { index[j] = unknown.size();  unknown.push_back(j); } };
+  for (long s = 0; s < ns; s++) if (inWindow[s] == 0 && q[s] > -reach) { inWindow[s] = 1;  outWindow[s] = 0;  slot.push_back(s); }
+  for (long s : slot) for (long r = s; r < kinds * ns; r += ns) for (long k = rowStart[r]; k < rowStart[r + 1]; k++) join(rowUnknown[k], rowValue[k]);
+  for (long k = 0; k < springUnknown.n; k++) join(springUnknown[k], springValue[k]);
+  slots.resize(slot.size());
+  unknowns.resize(unknown.size());
+  std::copy(slot.begin(), slot.end(), (long *)slots);
+  std::copy(unknown.begin(), unknown.end(), (long *)unknowns);
 }
 
-static long setWindow(Ints slots, Ints index, long unknowns, long ns, Ints rowStart, Ints rowUnknown, Reals rowValue, Ints springOf, Ints springUnknown, Reals springValue, Reals springStiffness) {
+static void setWindow(Ints slots, Ints index, long unknowns, long ns, Ints rowStart, Ints rowUnknown, Reals rowValue,
+                      Ints springOf, Ints springUnknown, Reals springValue, Reals springStiffness) {
   Rows &B = problem.B;
   const int kinds = 1 + law.slips;
   B.begin(unknowns, kinds);
-  for (int i = 0; i < slots->n; i++) {
-    for (int c = 0; c < kinds; c++) for (long r = (*slots)[i] + c * ns, k = (*rowStart)[r]; k < (*rowStart)[r + 1]; k++)
-      if ((*rowValue)[k] != 0) B.entry((*index)[(*rowUnknown)[k]], c, (*rowValue)[k]);
+  for (int i = 0; i < slots.n; i++) {
+    for (int c = 0; c < kinds; c++) for (long r = slots[i] + c * ns, k = rowStart[r]; k < rowStart[r + 1]; k++)
+      if (rowValue[k] != 0) B.entry(index[rowUnknown[k]], c, rowValue[k]);
     B.endPoint();
   }
-  std::vector<Indices> entries(springStiffness->n);
-  for (int k = 0; k < springOf->n; k++) if ((*springValue)[k] != 0) entries[(*springOf)[k]].push_back(k);
-  for (const Indices &of : entries) {
-    for (int k : of) B.entry((*index)[(*springUnknown)[k]], 0, (*springValue)[k]);
+  for (int s = 0; s < springStiffness.n; s++) {
+    for (int k = 0; k < springOf.n; k++) if (springOf[k] == s && springValue[k] != 0) B.entry(index[springUnknown[k]], 0, springValue[k]);
     B.endPoint();
   }
-  B.end(Vector(&(*springStiffness)[0], &(*springStiffness)[0] + springStiffness->n));
-  return 0;
+  B.end(copied<double>(springStiffness));
 }
 
-static long solve(Ints slots, Reals q, Reals place, Reals ahead, double dt, long where, double enough, bool known, Ints sticks, Ints turns, Reals k, Reals muStatic, Reals muDynamic,
-                  long mostInverses, long *inversesOfStep, Reals tau, Reals force) {
+static long solve(Ints slots, Reals q, Reals place, Reals ahead, double dt, long where, double enough, bool known, Ints sticks, Ints turns,
+                  Reals k, Reals muStatic, Reals muDynamic, long mostInverses, long &inversesOfStep, Reals tau, Reals force) {
   // Slots of the window; of all slots penetrations at the start, x_w, sides of the jump and how often they changed, stiffness, coefficients. The springs are
   // unstretched at -ahead. `known`: whether the matrix of the last solve may serve.
   Problem &p = problem;
   const Rows &B = p.B;
-  const long points = slots->n, ns = q->n, kinds = B.kinds;
+  const long points = slots.n, ns = q.n, kinds = B.kinds;
   law.dt = dt;
   law.where = where;
   p.enough = enough;
   if (!known) p.newton.forget();
   p.point.resize(points);
   p.turned.resize(points);
-  B.pull(Vector(&(*ahead)[0], &(*ahead)[0] + ahead->n), p.start);
+  B.pull(copied<double>(ahead), p.start);
   p.tau.assign(p.start.size(), 0.);
   for (int i = 0; i < points; i++) {
-    const long s = (*slots)[i];
-    p.point[i] = {(*q)[s], (*k)[s], (*muStatic)[s], (*muDynamic)[s], (*sticks)[s] == 1};
-    p.turned[i] = (*turns)[s];
-    for (int c = 0; c < kinds; c++) { p.start[kinds * i + c] = (*place)[s + c * ns];  p.tau[kinds * i + c] = (*tau)[c * points + i]; }
+    const long s = slots[i];
+    p.point[i] = {q[s], k[s], muStatic[s], muDynamic[s], sticks[s] == 1};
+    p.turned[i] = turns[s];
+    for (int c = 0; c < kinds; c++) { p.start[kinds * i + c] = place[s + c * ns];  p.tau[kinds * i + c] = tau[c * points + i]; }
   }
-  const long iterations = p.solve(mostInverses, *inversesOfStep);
+  const long iterations = p.solve(mostInverses, inversesOfStep);
   if (iterations < 0) return -1;
   for (int i = 0; i < points; i++) {
-    for (int c = 0; c < kinds; c++) (*tau)[c * points + i] = p.tau[kinds * i + c];
-    if (law.slips > 0) { (*sticks)[(*slots)[i]] = p.point[i].sticks;  (*turns)[(*slots)[i]] = p.turned[i]; }
+    for (int c = 0; c < kinds; c++) tau[c * points + i] = p.tau[kinds * i + c];
+    if (law.slips > 0) { sticks[slots[i]] = p.point[i].sticks;  turns[slots[i]] = p.turned[i]; }
   }
-  for (int j = 0; j < B.n; j++) (*force)[j] = p.force[j];
+  std::copy(p.force.begin(), p.force.end(), (double *)force);
   return iterations;
 }
 
@@ -139,7 +120,7 @@ static void addContact() {
   ::add("kernelLaw", setLaw);
   ::add("kernelNormal", normal);
   ::add("kernelTractions", tractions);
-  ::add("kernelSoft", setCompliance);
+  ::add("kernelSoft", +[](Table C) { problem.compliance(C.N(), &C(0, 0)); });
   ::add("kernelSort", sortRows);
   ::add("kernelTake", take);
   ::add("kernelWindow", setWindow);
@@ -147,4 +128,3 @@ static void addContact() {
 }
 
 }
-#endif

@@ -1,8 +1,8 @@
 // factor.hpp: the tangent A = massScale M + stiffnessScale K in CHOLMOD's hands, A = L L^T with the unknowns that can touch ordered last: those of the
-// list `last`, w. The tail of L is then the factor of their Schur complement, S = A_ww - A_wr A_rr^-1 A_rw = L_ww L_ww^T [N/m], and S^-1 = (A^-1)_ww [m/N] their
-// compliance, without a back-substitution for each. Only the numbers are computed anew while pattern and `last` stay. A small matrix CHOLMOD takes column by
-// column, as L D L^T, which may be indefinite, though not in w; a large one by dense blocks of columns, as L L^T, which may not.
-// What is held has a 1 on the diagonal and no other entries.
+// list `last`, w. The tail of L is then the factor of their Schur complement, S = A_ww - A_wr A_rr^-1 A_rw = L_ww L_ww^T [N/m], and
+// S^-1 = (A^-1)_ww [m/N] their compliance, without a back-substitution for each. Only the numbers are computed anew while pattern and `last` stay. A small
+// matrix CHOLMOD takes column by column, as L D L^T, which may be indefinite, though not in w; a large one by dense blocks of columns, as L L^T, which
+// may not. What is held has a 1 on the diagonal and no other entries.
 #pragma once
 #include <cholmod.h>
 #include "bodies.hpp"
@@ -11,15 +11,12 @@ extern "C" void dpotri_(const char *uplo, const int *n, double *A, const int *le
 
 class Factor {
 public:
-  std::vector<int> last;                   // w
-  std::vector<double> tail, inverse;       // L_ww (lower triangle by columns); S^-1, empty until it is asked for
-
   Factor() {
     cholmod_start(&common);
     common.print = 0;                      // that A is not positive definite is an answer, not an error
   }
 
-  // The pattern of A, of the blocks of B.
+  // The pattern of A, of the blocks of B, and how CHOLMOD would order it.
   void pattern(const bodies::Bodies &B) {
     struct Entry { int row, column; size_t from; };
     std::vector<Entry> entries;
@@ -31,60 +28,37 @@ public:
           if (B.pairA[p] == B.pairB[p] && r < c) continue;   // a block on the diagonal is there whole
           entries.push_back({std::max(r, c), std::min(r, c), p * D * D + i * D + k});
         }
-    std::sort(entries.begin(), entries.end(), [](const Entry &a, const Entry &b) { return a.column != b.column ? a.column < b.column : a.row < b.row; });
-    column.assign(B.ndof + 1, 0);
+    std::sort(entries.begin(), entries.end(),
+              [](const Entry &a, const Entry &b) { return a.column != b.column ? a.column < b.column : a.row < b.row; });
+    n = B.ndof;
+    column.assign(n + 1, 0);
     row.clear();  from.clear();
     for (const Entry &e : entries) { column[e.column + 1]++;  row.push_back(e.row);  from.push_back(e.from); }
-    for (int j = 0; j < B.ndof; j++) column[j + 1] += column[j];
+    for (int j = 0; j < n; j++) column[j + 1] += column[j];
     value.assign(row.size(), 0.);
     A = cholmod_sparse();
-    A.nrow = A.ncol = B.ndof;
+    A.nrow = A.ncol = n;
     A.nzmax = row.size();
     A.p = column.data();  A.i = row.data();  A.x = value.data();
     A.stype = -1;                          // the lower triangle
     A.itype = CHOLMOD_INT;  A.xtype = CHOLMOD_REAL;  A.dtype = CHOLMOD_DOUBLE;
     A.sorted = A.packed = 1;
-    forgetOrder();
+    if (L) cholmod_free_factor(&L, &common);
+    cholmod_factor *alone = cholmod_analyze(&A, &common);   // by AMD, or METIS where that is poor
+    ordered.assign((int *)alone->Perm, (int *)alone->Perm + n);
+    cholmod_free_factor(&alone, &common);
   }
 
   // The numbers of A, of the blocks of B.
   void numbers(const bodies::Bodies &B) {
-    for (int j = 0; j < B.ndof; j++)
+    for (int j = 0; j < n; j++)
       for (int e = column[j]; e < column[j + 1]; e++)
         value[e] = B.free[j] == 0 || B.free[row[e]] == 0 ? row[e] == j : B.block[from[e]];
   }
 
-  bool ordered() const { return L != nullptr; }
-
-  // Orders w last, whatever was last before; the rest as CHOLMOD would order it alone.
-  void order(const std::vector<int> &w) {
-    forgetOrder();
-    last = w;
-    std::vector<int> rest, permutation;
-    std::vector<char> isLast(A.nrow, 0);
-    for (int j : w) isLast[j] = 1;
-    for (int j = 0; j < int(A.nrow); j++) if (!isLast[j]) rest.push_back(j);
-    if (!rest.empty()) {
-      common.nmethods = 0;                 // AMD, and METIS where that is poor
-      common.postorder = 1;
-      cholmod_sparse *whole = cholmod_copy(&A, 0, 0, &common), *part = cholmod_submatrix(whole, rest.data(), rest.size(), rest.data(), rest.size(), 0, 1, &common);
-      part->stype = -1;
-      cholmod_factor *alone = cholmod_analyze(part, &common);
-      for (int k : std::vector<int>((int *)alone->Perm, (int *)alone->Perm + rest.size())) permutation.push_back(rest[k]);
-      cholmod_free_factor(&alone, &common);
-      cholmod_free_sparse(&part, &common);
-      cholmod_free_sparse(&whole, &common);
-    }
-    permutation.insert(permutation.end(), w.begin(), w.end());
-    common.nmethods = 1;
-    common.method[0].ordering = CHOLMOD_GIVEN;
-    common.postorder = 0;
-    L = cholmod_analyze_p(&A, permutation.data(), nullptr, 0, &common);
-    common.method[0].ordering = CHOLMOD_GIVEN;
-  }
-
-  // L. Returns 0, or 1: A is indefinite, or S is (or it holds what is not a number).
-  int factorise() {
+  // L, with w last, the rest in CHOLMOD's order. Returns 0, or 1: A is indefinite, or S is (or it holds what is not a number).
+  int factorise(const std::vector<int> &w) {
+    if (!L || w != last) order(w);
     inverse.clear();
     tail.assign(last.size() * last.size(), 0.);
     cholmod_factorize(&A, L, &common);
@@ -94,47 +68,34 @@ public:
     return 0;
   }
 
-  // A x = b, of `count` right-hand sides, one behind the other.
-  void solve(const double *b, double *x, int count) {
-    cholmod_dense right = dense(const_cast<double *>(b), count);
-    cholmod_solve2(CHOLMOD_A, L, &right, nullptr, &solution, nullptr, &work1, &work2, &common);
-    std::copy((double *)solution->x, (double *)solution->x + A.nrow * count, x);
-  }
+  // A x = b.
+  void solve(const double *b, double *x) { solve(b, x, 0); }
 
-  // A x = b, b of entries at u alone, all of which are in w: the rest of L^-1 b is zero, and the way back from there all that is left.
+  // A x = b, b of entries at u alone, all of which are in w: the rest of L^-1 b is zero.
   void respond(const std::vector<int> &u, const double *b, double *x) {
-    int n = int(last.size()), first = int(A.nrow) - n;
-    std::vector<double> y(A.nrow, 0.);
-    std::vector<int> at(A.nrow);
-    const int *permutation = (int *)L->Perm;
-    for (int k = first; k < int(A.nrow); k++) at[permutation[k]] = k;
-    for (size_t j = 0; j < u.size(); j++) y[at[u[j]]] = b[j];
-    for (int j = 0; j < n; j++) {          // L_ww^-1
-      double *tailY = &y[first];
-      const double *column = &tail[size_t(j) * n];
-      tailY[j] /= column[j];
-      for (int i = j + 1; i < n; i++) tailY[i] -= column[i] * tailY[j];
-    }
-    if (!L->is_super && !L->is_ll) for (int j = 0; j < n; j++) y[first + j] /= tail[size_t(j) * n + j];   // D^-1/2: CHOLMOD's triangle has ones
-    cholmod_dense right = dense(y.data(), 1);
-    cholmod_solve2(CHOLMOD_Lt, L, &right, nullptr, &solution, nullptr, &work1, &work2, &common);
-    for (int k = 0; k < int(A.nrow); k++) x[permutation[k]] = ((double *)solution->x)[k];
+    right.assign(n, 0.);
+    for (size_t j = 0; j < u.size(); j++) right[u[j]] = b[j];
+    solve(right.data(), x, n - int(last.size()));
   }
 
-  // S^-1 = (A^-1)_ww, whole, by columns.
-  const std::vector<double> &compliance() {
-    int n = int(last.size()), info = 0;
-    if (!inverse.empty() || n == 0) return inverse;
-    inverse = tail;
-    dpotri_("L", &n, inverse.data(), &n, &info);
-    for (int j = 0; j < n; j++) for (int i = j + 1; i < n; i++) inverse[size_t(i) * n + j] = inverse[size_t(j) * n + i];
-    return inverse;
+  // C = (A^-1)_uu by columns, u in w.
+  void compliance(const std::vector<int> &u, double *C) {
+    const int m = int(last.size()), k = int(u.size());
+    int info = 0;
+    if (inverse.empty() && m > 0) {
+      inverse = tail;                      // of which dpotri leaves the lower triangle
+      dpotri_("L", &m, inverse.data(), &m, &info);
+    }
+    std::vector<size_t> at(n);
+    for (int j = 0; j < m; j++) at[last[j]] = j;
+    for (int j = 0; j < k; j++)
+      for (int i = 0; i < k; i++) C[size_t(j) * k + i] = inverse[std::min(at[u[i]], at[u[j]]) * m + std::max(at[u[i]], at[u[j]])];
   }
 
   // y = A x.
   void product(const double *x, double *y) const {
-    std::fill(y, y + A.nrow, 0.);
-    for (int j = 0; j < int(A.nrow); j++)
+    std::fill(y, y + n, 0.);
+    for (int j = 0; j < n; j++)
       for (int e = column[j]; e < column[j + 1]; e++) {
         y[row[e]] += value[e] * x[j];
         if (row[e] != j) y[j] += value[e] * x[row[e]];
@@ -142,49 +103,113 @@ public:
   }
 
 private:
+  int n = 0;
   cholmod_common common;
   cholmod_sparse A = cholmod_sparse();
   cholmod_factor *L = nullptr;
   cholmod_dense *solution = nullptr, *work1 = nullptr, *work2 = nullptr;
-  std::vector<int> column, row;
+  std::vector<int> column, row, ordered, last;   // entries of A; CHOLMOD's order; w
   std::vector<size_t> from;                // entry of A -> where in the blocks
-  std::vector<double> value;
+  std::vector<double> value, tail, inverse;      // of A; L_ww (lower triangle by columns); S^-1 (lower triangle), empty until it is asked for
+  std::vector<double> y, z, right;
 
-  void forgetOrder() {
+  void order(const std::vector<int> &w) {
+    std::vector<char> isLast(n, 0);
+    std::vector<int> permutation;
+    last = w;
+    for (int j : w) isLast[j] = 1;
+    for (int j : ordered) if (!isLast[j]) permutation.push_back(j);
+    permutation.insert(permutation.end(), w.begin(), w.end());
     if (L) cholmod_free_factor(&L, &common);
-    last.clear();  tail.clear();  inverse.clear();
+    common.nmethods = 1;
+    common.method[0].ordering = CHOLMOD_GIVEN;
+    common.postorder = 0;
+    L = cholmod_analyze_p(&A, permutation.data(), nullptr, 0, &common);
   }
 
-  cholmod_dense dense(double *x, int count) const {
-    cholmod_dense X = cholmod_dense();
-    X.nrow = X.d = A.nrow;
-    X.ncol = count;
-    X.nzmax = A.nrow * count;
-    X.x = x;
-    X.xtype = CHOLMOD_REAL;  X.dtype = CHOLMOD_DOUBLE;
-    return X;
+  // A x = b, b zero before `first` in the order of L. Where L is small its loops are ours: they are so short that BLAS takes longer to be called.
+  void solve(const double *b, double *x, int first) {
+    const int *permutation = (int *)L->Perm, *super = (int *)L->super;
+    if (!L->is_super || (first == 0 && L->xsize > 1000000)) {
+      cholmod_dense given = cholmod_dense();
+      given.nrow = given.nzmax = given.d = n;
+      given.ncol = 1;
+      given.x = const_cast<double *>(b);
+      given.xtype = CHOLMOD_REAL;  given.dtype = CHOLMOD_DOUBLE;
+      cholmod_solve2(CHOLMOD_A, L, &given, nullptr, &solution, nullptr, &work1, &work2, &common);
+      std::copy((double *)solution->x, (double *)solution->x + n, x);
+      return;
+    }
+    y.resize(n);
+    for (int k = 0; k < n; k++) y[k] = b[permutation[k]];
+    for (int s = 0; s < int(L->nsuper); s++) if (super[s + 1] > first) forward(block(s));
+    for (int s = int(L->nsuper) - 1; s >= 0; s--) backward(block(s));
+    for (int k = 0; k < n; k++) x[permutation[k]] = y[k];
+  }
+
+  // Columns of L that have their rows in common, themselves first; of them four at a time, the last again where there are fewer.
+  struct Block { int first, width, height;  const int *rows;  const double *value; };
+  struct Four {
+    const double *c[4];
+    int count;
+    Four(const Block &B, int j) : count(std::min(4, B.width - j)) {
+      for (int k = 0; k < 4; k++) c[k] = B.value + size_t(j + std::min(k, count - 1)) * B.height;
+    }
+  };
+  Block block(int s) const {
+    const int *super = (int *)L->super, *pi = (int *)L->pi, *px = (int *)L->px;
+    return {super[s], super[s + 1] - super[s], pi[s + 1] - pi[s], (int *)L->s + pi[s], (double *)L->x + px[s]};
+  }
+  void forward(const Block &B) {
+    z.assign(B.height, 0.);
+    std::copy(&y[B.first], &y[B.first] + B.width, z.begin());
+    for (int j = 0; j < B.width; j += 4) {
+      const Four F(B, j);
+      double x[4] = {}, *to = z.data();
+      for (int k = 0; k < F.count; k++) {
+        for (int l = 0; l < k; l++) z[j + k] -= F.c[l][j + k] * x[l];
+        x[k] = z[j + k] /= F.c[k][j + k];
+      }
+      const double *c0 = F.c[0], *c1 = F.c[1], *c2 = F.c[2], *c3 = F.c[3], x0 = x[0], x1 = x[1], x2 = x[2], x3 = x[3];
+      for (int i = j + F.count; i < B.height; i++) to[i] -= c0[i] * x0 + c1[i] * x1 + c2[i] * x2 + c3[i] * x3;
+    }
+    std::copy(z.begin(), z.begin() + B.width, &y[B.first]);
+    for (int i = B.width; i < B.height; i++) y[B.rows[i]] += z[i];
+  }
+  void backward(const Block &B) {
+    z.resize(B.height);
+    for (int i = 0; i < B.height; i++) z[i] = y[B.rows[i]];
+    for (int j = (B.width - 1) / 4 * 4; j >= 0; j -= 4) {
+      const Four F(B, j);
+      const double *c0 = F.c[0], *c1 = F.c[1], *c2 = F.c[2], *c3 = F.c[3], *of = z.data();
+      double s0 = 0, s1 = 0, s2 = 0, s3 = 0;
+      for (int i = j + F.count; i < B.height; i++) { s0 += c0[i] * of[i];  s1 += c1[i] * of[i];  s2 += c2[i] * of[i];  s3 += c3[i] * of[i]; }
+      const double s[4] = {s0, s1, s2, s3};
+      for (int k = F.count - 1; k >= 0; k--) {
+        z[j + k] -= s[k];
+        for (int l = k + 1; l < F.count; l++) z[j + k] -= F.c[k][j + l] * z[j + l];
+        z[j + k] /= F.c[k][j + k];
+      }
+    }
+    std::copy(z.begin(), z.begin() + B.width, &y[B.first]);
   }
 
   // L_ww, out of blocks of columns that have their rows in common.
   void takeBlocks() {
-    int n = int(last.size()), first = int(A.nrow) - n;
-    const int *super = (int *)L->super, *pi = (int *)L->pi, *px = (int *)L->px, *rows = (int *)L->s;
-    const double *x = (double *)L->x;
-    for (int s = int(L->nsuper) - 1; s >= 0 && super[s + 1] > first; s--) {
-      int height = pi[s + 1] - pi[s];
-      for (int j = std::max(first, super[s]); j < super[s + 1]; j++)
-        for (int k = j - super[s]; k < height; k++)
-          tail[size_t(j - first) * n + rows[pi[s] + k] - first] = x[px[s] + size_t(j - super[s]) * height + k];
+    const int m = int(last.size()), first = n - m;
+    for (int s = int(L->nsuper) - 1; s >= 0 && block(s).first + block(s).width > first; s--) {
+      const Block B = block(s);
+      for (int j = std::max(0, first - B.first); j < B.width; j++)
+        for (int k = j; k < B.height; k++) tail[size_t(B.first + j - first) * m + B.rows[k] - first] = B.value[size_t(j) * B.height + k];
     }
   }
 
   // L_ww, out of the columns of a unit triangle with D on its diagonal: times the root of D, not a number where that is negative.
   void takeColumns() {
-    int n = int(last.size()), first = int(A.nrow) - n;
-    const int *p = (int *)L->p, *count = (int *)L->nz, *rows = (int *)L->i;
+    const int m = int(last.size()), first = n - m, *p = (int *)L->p, *count = (int *)L->nz, *rows = (int *)L->i;
     const double *x = (double *)L->x;
-    for (int j = first; j < int(A.nrow); j++) {
-      double scale = L->is_ll ? 1 : std::sqrt(x[p[j]]), *column = &tail[size_t(j - first) * n];
+    for (int j = first; j < n; j++) {
+      double scale = L->is_ll ? 1 : std::sqrt(x[p[j]]), *column = &tail[size_t(j - first) * m];
       for (int k = p[j]; k < p[j] + count[j]; k++) column[rows[k] - first] = x[k] * scale;
       if (!L->is_ll) column[j - first] = scale;
     }

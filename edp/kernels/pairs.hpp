@@ -1,7 +1,6 @@
 // pairs.hpp: the gap between deformable bodies, of core/contact/pair.idp, where its formulas stand: which points are near which cells of another body (edges in
 // the plane, faces in space, A components), the closest points of these, the rows of the conserving gap, and the springs at vertices.
-#ifndef FFIMPACT_PAIRS
-#define FFIMPACT_PAIRS
+#pragma once
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,8 +11,6 @@
 
 namespace pairs {
 
-using Reals = KN<double> *;
-using Ints = KN<long> *;
 template<size_t A> using Vector = std::array<double, A>;
 
 template<size_t A> double dot(const Vector<A> &a, const Vector<A> &b) {
@@ -243,7 +240,7 @@ public:
 
   void gaps(const double *d, double *q0, double *q1, const Rows &rows) {
     const long n = long(slot.size()), entries = 2 * A * surface.nodes * n;
-    rows.row->resize(entries);  rows.unknown->resize(entries);  rows.normal->resize(entries);  rows.slip->resize((A - 1) * entries);
+    rows.row.resize(entries);  rows.unknown.resize(entries);  rows.normal.resize(entries);  rows.slip.resize((A - 1) * entries);
     patches(d, step);
     middle = end = patchAtStart;
     for (size_t e = 0; e < cell.size(); e++) { middle[e] = plus(middle[e], 0.5, step[e]);  end[e] = plus(end[e], 1, step[e]); }
@@ -270,16 +267,16 @@ public:
       before[k] = {cell[now[k].pick], now[k].foot.r[0], length(now[k].foot.tangent[0]), now[k].n};
     }
     const int found = int(at.size());
-    stiffness->resize(found);  of->resize(2 * blocks * found);  unknown->resize(2 * blocks * found);  value->resize(2 * blocks * found);
+    stiffness.resize(found);  of.resize(2 * blocks * found);  unknown.resize(2 * blocks * found);  value.resize(2 * blocks * found);
     for (int i = 0; i < found; i++) {
       const Place &place = now[at[i]];
       const double slip[2] = {place.n[1], -place.n[0]};
-      (*stiffness)[i] = c[i];
+      stiffness[i] = c[i];
       each(at[i], place, [&](int block, int unknowns, int component, double N, const double *) {
         const int at = 2 * blocks * i + block;
-        (*of)[at] = i;
-        (*unknown)[at] = unknowns;
-        (*value)[at] = free[unknowns] * N * slip[component];
+        of[at] = i;
+        unknown[at] = unknowns;
+        value[at] = free[unknowns] * N * slip[component];
       });
     }
     return found;
@@ -527,12 +524,12 @@ private:
     }
     each(k, p, [&](int block, int unknown, int i, double N, const double *turn) {
       const long at = k * 2L * A * surface.nodes + block;
-      (*rows.row)[at] = slot[k];
-      (*rows.unknown)[at] = unknown;
+      rows.row[at] = slot[k];
+      rows.unknown[at] = unknown;
       for (int j = 0; j < A; j++) {
         double value = f[j][i] * N;
         for (int l = 0; l < A - 1; l++) value += c[j][l][i] * turn[l];
-        (j == 0 ? (*rows.normal)[at] : (*rows.slip)[(j - 1) * entries + at]) = seen ? value : 0;
+        (j == 0 ? rows.normal[at] : rows.slip[(j - 1) * entries + at]) = seen ? value : 0;
       }
     });
   }
@@ -556,35 +553,25 @@ private:
 
 static std::unique_ptr<AnyPairs> known;
 
-template<class T, class K> std::vector<T> copied(const K &given) { return std::vector<T>(&(*given)[0], &(*given)[0] + given->N()); }
-
-static long surface(KNM<double> *shape, long points, long obstacles, long bodies, Ints unknown, Ints body, Reals side, Reals pointShape,
-                    Ints touchesItself, Reals reference, Reals middle, Reals outward, Reals room) {
-  const int cells = int(body->N()), nodes = int(shape->N());
-  Surface s = {cells, nodes, int(points), cells * int(points), int(obstacles), int(bodies), copied<int>(unknown), copied<int>(body),
-    copied<double>(side), copied<double>(pointShape), copied<int>(touchesItself), copied<double>(reference), copied<double>(middle),
-    copied<double>(outward), copied<double>(room), {}};
-  for (int a = 0; a < nodes; a++) for (int j = 0; j < shape->M(); j++) s.shape.push_back((*shape)(a, j));
-  if (shape->M() == termsOf(2)) known.reset(new Pairs<2>(s)); else known.reset(new Pairs<3>(s));
-  return 0;
-}
-static long search(Reals x, double reach) { return known->search(&(*x)[0], reach); }
-static long start(Reals x) { return known->start(&(*x)[0], x->N()); }
-static long gaps(Reals d, Reals q0, Reals q1, Ints row, Ints unknown, Reals normal, Reals slip) {
-  known->gaps(&(*d)[0], &(*q0)[0], &(*q1)[0], {row, unknown, normal, slip});
-  return 0;
-}
-static long springs(Reals t, Reals free, Reals most, Ints of, Ints unknown, Reals value, Reals stiffness) {
-  return known->springs(&(*t)[0], &(*free)[0], &(*most)[0], of, unknown, value, stiffness);
-}
-
 static void addPairs() {
-  ::add("kernelSurface", surface);
-  ::add("kernelSearchPairs", search);
-  ::add("kernelPairStart", start);
-  ::add("kernelPairGaps", gaps);
-  ::add("kernelPairSprings", springs);
+  ::add("kernelSurface", +[](Table shape, long points, long obstacles, long bodies, Ints unknown, Ints body, Reals side, Reals pointShape,
+                           Ints touchesItself, Reals reference, Reals middle, Reals outward, Reals room) {
+    const int cells = int(body.N()), nodes = int(shape.N());
+    Surface s = {cells, nodes, int(points), cells * int(points), int(obstacles), int(bodies),
+                 copied<int>(unknown), copied<int>(body), copied<double>(side), copied<double>(pointShape),
+                 copied<int>(touchesItself), copied<double>(reference), copied<double>(middle), copied<double>(outward),
+                 copied<double>(room), {}};
+    for (int a = 0; a < nodes; a++) for (int j = 0; j < shape.M(); j++) s.shape.push_back(shape(a, j));
+    if (shape.M() == termsOf(2)) known.reset(new Pairs<2>(s)); else known.reset(new Pairs<3>(s));
+  });
+  ::add("kernelSearchPairs", +[](Reals x, double reach) { return known->search(x, reach); });
+  ::add("kernelPairStart", +[](Reals x) { return known->start(x, x.N()); });
+  ::add("kernelPairGaps", +[](Reals d, Reals q0, Reals q1, Ints row, Ints unknown, Reals normal, Reals slip) {
+    known->gaps(d, q0, q1, {row, unknown, normal, slip});
+  });
+  ::add("kernelPairSprings", +[](Reals t, Reals free, Reals most, Ints of, Ints unknown, Reals value, Reals stiffness) {
+    return known->springs(t, free, most, of, unknown, value, stiffness);
+  });
 }
 
 }
-#endif
