@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from orchestrate import run, scene
@@ -133,7 +134,7 @@ def test_pressure_of_hertz(tmp_path):
     """At the largest force of a slow impact the pressure over the radius is p0 sqrt(1 - r^2/a^2) of that force, to 4 % of p0 (rms over the area), and
     the contact as wide, to 2 % (Johnson, Contact mechanics, 4.2); not that of twice the force."""
     found = run.run(scene.load("ball-axisymmetric"), {"speed": 0.1, "nu": 0.3, "penalty": "auto", "fields": 20}, tmp_path / "slow", estimate=False)
-    points = contact.read(found.folder)
+    points = pd.DataFrame(contact.read(found.folder))
     force = points.assign(force=points.pressure * points.weight).groupby("t").force.sum()
     now = points[points.t == force.idxmax()]
 
