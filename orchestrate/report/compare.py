@@ -83,7 +83,7 @@ def draw(results: dict[str, RunResult], path: Path) -> None:
         _key(force, {"end of the contact": ":", "by the paper": "-."} if stated else {"end of the contact": ":"})
         _key(energy, {"total": "--", "elastic": "-"})
         velocity.set(ylabel="velocity [m/s]", xlabel="time [ms]")
-        _key(velocity, {"$v_x$": "-", "$v_y$": "--", r"$-\omega R$": ":"} if rubs else {"$v_y$": "--"})
+        _key(velocity, {"along x": "-", "along y": "--", "−ωR": ":"} if rubs else {"along y": "--"})
         force.margins(x=0)
         figure.legend(*force.get_legend_handles_labels(), loc="outside upper center", ncols=1)
         save(figure, path)
