@@ -114,7 +114,7 @@ def _mass(result: RunResult) -> float:
 
 def _material(used: dict) -> str:
     """Law, nu and penalty, where the scene has one of them."""
-    return f"{LAWS.get(used['law'], used['law'])}, ν = {used['nu']:g}, k = {used['penalty']:.3g}, " if "law" in used else ""
+    return f"{LAWS.get(used['law'], used['law'])}, ν = {used['nu']:g}, k = {report.stiffness(used)}, " if "law" in used else ""
 
 
 def _doubts(summary: dict) -> str:
