@@ -81,5 +81,6 @@ fi
 [ -x .venv/bin/python ] || "$(find_python)" -m venv .venv || stop "no python >= 3.11 with venv found; apt-get install python3 python3-venv"
 .venv/bin/python -m pip install -q --disable-pip-version-check -r requirements.lock
 .venv/bin/python -c 'import gmsh, matplotlib.pyplot'   # they load, and matplotlib's font list is made now, not in the first run
+.venv/bin/python -m compileall -q orchestrate           # now, not in the first run, or in every one where nothing may be written
 .venv/bin/python -c 'from orchestrate.freefem import freefem; freefem.find()'   # builds edp/libclock.so and the kernels where there is a compiler
 say "ready"

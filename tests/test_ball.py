@@ -47,7 +47,7 @@ def test_run_of_a_whole_ball(result):
 def test_units_and_pictures_are_those_of_a_ball(result, oblique):
     """Nothing is per metre; all pictures are drawn, of a quarter with its mirror image."""
     text = report.report(result)
-    assert "N s" in text and "/m" not in text.replace("m/s", "")
+    assert "N s" in text and "/m" not in text.replace("m/s", "").replace("Pa/m", "")
     pictures = {"energies", "force", "velocity", "shapes", "contact"}
     assert {path.stem for path in (result.folder / "figures").iterdir()} == pictures
     assert {path.stem for path in (oblique.folder / "figures").iterdir()} == pictures | {"flight", "rolling"}
@@ -77,11 +77,12 @@ def test_contact_points_carry_the_load(oblique):
     """The sum of pressure and shear over the surface are the forces of the history at that instant; half the ball has both sides of z = 0 in its
     weights, and the shear along z cancels there."""
     table, history = contact.read(oblique.folder), oblique.history
-    for t, rows in table.groupby("t"):
+    for t in np.unique(table.t):
+        rows = table[table.t == t]
         row = np.argmin(np.abs(history["t"] - t))
         assert (rows.pressure * rows.weight).sum() == pytest.approx(history["normal_force"][row], rel=1e-6)
         assert (rows.shear * rows.weight).sum() == pytest.approx(history["friction_force"][row], rel=1e-6)
-    assert (table.z > -1e-9).all() and np.abs(table.y).max() < 1e-3 and table.shear_z.abs().max() > 0
+    assert (table.z > -1e-9).all() and np.abs(table.y).max() < 1e-3 and np.abs(table.shear_z).max() > 0
 
 
 @pytest.mark.parametrize("flags, said", [

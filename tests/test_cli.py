@@ -69,8 +69,14 @@ def test_a_run_needs_no_matplotlib(fake, tmp_path, monkeypatch, capsys):
     assert said.err.startswith("ffimpact: the figures could not be drawn: ") and said.err.count("\n") == 1 and "contact time" in said.out
     assert main(["run", "disc-normal", "--out", str(tmp_path / "out")]) == 0 and (tmp_path / "out/figures/force.png").exists()
     assert "finished earlier" in capsys.readouterr().out and fake.starts() == starts
-    known = subprocess.run([sys.executable, "-c", "import orchestrate.run, sys; print('matplotlib' in sys.modules)"], cwd=ROOT, capture_output=True, text=True)
-    assert known.stdout == "False\n"
+
+
+def test_what_a_run_does_not_load():
+    """A run that is there is told of without matplotlib; one is drawn without pandas, which takes longer to load than a tenth of the run."""
+    drawing = "from orchestrate.report import bodies, contact, figures, impacts, solid, vibration"
+    for loads, heavy in (("import orchestrate.run", {"matplotlib", "pandas"}), (drawing, {"pandas"})):
+        known = subprocess.run([sys.executable, "-c", f"{loads}; import sys; print({heavy} & set(sys.modules))"], cwd=ROOT, capture_output=True, text=True)
+        assert known.stdout == "set()\n"
 
 
 def test_published_numbers_are_not_shown_beside_another_scene(fake, tmp_path):

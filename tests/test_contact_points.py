@@ -53,7 +53,7 @@ def ran(tmp_path_factory):
 
 def summed(result: RunResult) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Forces [N/m] by instant and partner from contact.csv, and the rows of the history at the same instants."""
-    points = contact.read(result.folder)
+    points = pd.DataFrame(contact.read(result.folder))
     points = points.assign(pressure=points.pressure * points.weight, shear=points.shear * points.weight)
     forces = points.groupby(["t", "partner"])[["pressure", "shear"]].sum().unstack(fill_value=0)
     history = pd.DataFrame(result.history)
@@ -77,14 +77,14 @@ def test_both_bodies_bear_the_force_between_them(ran, given):
     forces, there = summed(result)
     if "pairing" not in given:      # its forces differ in direction
         np.testing.assert_allclose(forces.pressure[[1, 2]].sum(axis=1), 2 * there.normal_load, rtol=1e-6)
-    shares = contact.read(result.folder).eval("load = pressure * weight").groupby("body").load.sum()
+    shares = pd.DataFrame(contact.read(result.folder)).eval("load = pressure * weight").groupby("body").load.sum()
     assert shares[1] == pytest.approx(shares[2], rel=0.1)
     np.testing.assert_allclose(forces.shear[1].sum(), forces.shear[2].sum(), rtol=0.1, atol=1e-9)
 
 
 def test_projected_pressure_has_the_same_resultant_and_moment(ran):
     """On the outline's own functions the force and its moment are those of the points, and the largest pressure is below theirs."""
-    table = contact.read(ran("disc-block", angle=60, friction_static=0.4).folder, beside=True)
+    table = pd.DataFrame(contact.read(ran("disc-block", angle=60, friction_static=0.4).folder, beside=True))
     for name, arm in (("force", 1.0), ("moment", table.X - table.X.min())):
         sums = table.assign(points=table.pressure * table.weight * arm, projected=table.projected_pressure * table.weight * arm).groupby(["t", "body"])[["points", "projected"]].sum()
         np.testing.assert_allclose(sums.projected, sums.points, rtol=1e-4, atol=1e-4 * sums.points.max(), err_msg=name)
@@ -118,7 +118,7 @@ def test_picture_and_broken_tables(ran):
     result = ran("disc-oblique")
     report.draw(result)
     assert (result.folder / "figures/contact.png").stat().st_size > 10000
-    assert contact.draw(contact.read(result.folder).iloc[:0], ["body"], False, np.array([])) is None
+    assert contact.draw(contact.read(result.folder)[:0], ["body"], False, np.array([])) is None
     (result.folder / "fields/contact.csv").write_text("t,body\n1,2\n")
     with pytest.raises(Unreadable, match="contact.csv cannot be read: it is not as the run has written it"):
         contact.read(result.folder)
@@ -126,7 +126,7 @@ def test_picture_and_broken_tables(ran):
 
 def test_a_profile_is_a_line_alone():
     """Where the pressure has a projection it is drawn as a line, without its points; where it has none the points are."""
-    table = pd.DataFrame({"t": 1e-3, "s": [-1e-3, 0, 1e-3], "pressure": [1e5, 3e5, 1e5], "projected_pressure": [1e5, 2e5, 1e5]})
+    table = pd.DataFrame({"t": 1e-3, "s": [-1e-3, 0, 1e-3], "pressure": [1e5, 3e5, 1e5], "projected_pressure": [1e5, 2e5, 1e5]}).to_records()
     for line, drawn in (("-", ("-", "")), ("", ("None", "."))):
         figure, axes = plt.subplots()
         contact._profiles(axes, table, "along the outline", line)

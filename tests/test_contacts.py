@@ -113,10 +113,10 @@ def test_in_contact_at_the_end(tmp_path):
 def test_bounces_are_drawn(tmp_path):
     """Where a meeting has several impacts there is a figure of restitution; grazing intervals are none; a damaged table is said."""
     rows, found = go(tmp_path, "disc-normal", COARSE | {"speed": 0, "height": 0.02, "gravity": 9.81, "end_time": 0.25, "accuracy": 0.3})
-    impacts.plt.close(figure := impacts.draw(rows, ["body"], ["plane"]))
+    impacts.plt.close(figure := impacts.draw(rows.to_records(), ["body"], ["plane"]))
     assert figure.axes[0].get_ylabel() == "restitution" and len(figure.axes[0].lines[0].get_xdata()) == len(rows)
-    light = rows.assign(impulse=[1.0] + [1e-3] * (len(rows) - 1))
-    assert impacts.draw(light, ["body"], ["plane"]) is None and impacts.draw(rows[:1], ["body"], ["plane"]) is None
+    light = rows.assign(impulse=[1.0] + [1e-3] * (len(rows) - 1)).to_records()
+    assert impacts.draw(light, ["body"], ["plane"]) is None and impacts.draw(rows[:1].to_records(), ["body"], ["plane"]) is None
     (found.folder / "contacts.csv").write_text("body\n1\n")
     with pytest.raises(Unreadable, match="contacts.csv cannot be read: it is not as the run has written it"):
         impacts.read(found.folder)

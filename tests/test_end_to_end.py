@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import resource
 import shutil
 import subprocess
 import sys
@@ -190,6 +191,13 @@ def test_material_breakdown_is_12(tmp_path):
     for x, y in re.findall(r"X = \((\S+), (\S+)\)", process.stderr):
         assert np.hypot(float(x), float(y) - 0.05) <= 0.05 and float(y) < 0.03
     assert not (tmp_path / "out/summary.json").exists()
+
+
+def test_files_that_may_not_grow_are_14(tmp_path):
+    """Where no file may be larger than 8 kB the run is one line with exit code 14, and leaves nothing."""
+    command = [sys.executable, "-m", "orchestrate", "run", "disc-normal", "--set", "accuracy=0.1", "--out", str(tmp_path / "out")]
+    ended = subprocess.run(command, cwd=run.ROOT, capture_output=True, text=True, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (8192, 8192)))
+    assert (ended.returncode, ended.stderr.count("\n")) == (14, 1) and "ulimit -f" in ended.stderr and not list(tmp_path.iterdir())
 
 
 def test_breakdown_can_be_run_through(tmp_path):

@@ -1,6 +1,7 @@
 """What small obstacles, corners and edges do: elements that resolve them, contact that begins when they touch, penetration that is measured, words that name them."""
 
 import math
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from orchestrate import run
 from orchestrate.scenes import approach, assembly
 from orchestrate.freefem.describe import describe
+from orchestrate.input.tables import to_toml
 from orchestrate.scene import Scene, read as read_scene
 
 DISC = {"name": "disc", "shape": "disc", "radius": 0.05, "position": [0, 0.0651], "velocity": [0, -3]}
@@ -122,6 +124,16 @@ def test_elements_follow_the_radius_of_an_obstacle(dimension, kind):
     assert sizes[1] == pytest.approx(sizes[0] / 10, rel=0.05) and sizes[0] <= 0.005 / 4 * 1.01
     assert penalties[1] == pytest.approx(10 * penalties[0], rel=0.05) and penalties[2] == penalties[3]
     assert sizes[2] == pytest.approx(sizes[3], rel=0.05)
+
+
+def test_an_obstacle_that_is_met_twice_has_one_table():
+    """A disc that comes down on two crests of a wave has one table of contact with it in the scene as used, which is read again as it was written."""
+    tables = scene(DISC | {"position": [0, 0.0551]}, {"name": "waves", "kind": "implicit", "distance": "y - 0.002*sin(200*x)"})
+    assert [(one.first, one.second) for one in approach.meetings(tables)] == [(0, -1), (0, -1)]
+    built = assembly.assemble(tables)
+    assert [pair["bodies"] for pair in built.used["contact"]["pair"]] == [["disc", "waves"]]
+    again = read_scene(tomllib.loads(to_toml(built.used)), Path(), "again")
+    assert [(pair.first, pair.second) for pair in again.pairs] == [(0, -1)] and assembly.assemble(again).data == built.data
 
 
 @pytest.mark.parametrize("gravity", [0, 9.81])

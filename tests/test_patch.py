@@ -34,7 +34,7 @@ def ran(tmp_path_factory):
 def at_the_same_times(result: RunResult) -> list[tuple[pd.DataFrame, pd.Series]]:
     """The points under load at an instant and the row of the history there."""
     history = pd.DataFrame(result.history)
-    return [(points, history.iloc[(history.t - t).abs().argmin()]) for t, points in contact.read(result.folder).groupby("t")]
+    return [(points, history.iloc[(history.t - t).abs().argmin()]) for t, points in pd.DataFrame(contact.read(result.folder)).groupby("t")]
 
 
 @pytest.mark.parametrize("which", SCENES)
@@ -78,7 +78,7 @@ def test_points_for_paraview(ran, which):
     """fields/contact.pvd lists a file for every snapshot of fields.pvd at the same time; it has the points and numbers of contact.csv there, displaced to
     their places; none without contact."""
     folder = ran(which).folder
-    table = contact.read(folder)
+    table = pd.DataFrame(contact.read(folder))
     files = vtu.series(folder / "fields/contact.pvd")
     assert [t for t, _ in files] == [t for t, _ in vtu.series(folder / "fields.pvd")] and {path.name for _, path in files} == {path.name for path in folder.glob("fields/*.vtp")}
     for t, path in files:
@@ -112,15 +112,15 @@ def test_panels_of_the_figure(ran, which, panels, maps):
     plt.close(figure)
 
 
-def cloud(bodies: int, turn: float) -> pd.DataFrame:
+def cloud(bodies: int, turn: float) -> np.recarray:
     """Points under load of whole bodies in three dimensions, in a disc of radius 1 mm whose normal is turned by an angle about z: pressure p0 sqrt(1 - r^2)."""
     rng = np.random.default_rng(1)
     radius, angle = np.sqrt(rng.uniform(0, 1, 400)), rng.uniform(0, 2 * np.pi, 400)
     across, up = 1e-3 * radius * np.cos(angle), 1e-3 * radius * np.sin(angle)
     x, y = across * np.cos(turn), across * np.sin(turn)
     one = pd.DataFrame({"s": 1e-3 * radius, "X": x, "Y": y, "Z": up, "x": x, "y": y, "z": up, "weight": np.pi * 1e-6 / 400, "pressure": 1e6 * np.sqrt(1 - radius**2),
-                        "shear": 1.0, "shear_z": 0.0, "slip_velocity": 0.1, "slip_velocity_z": 0.0, "slides": (radius > 0.7).astype(int), "partner": -1})
-    return pd.concat([one.assign(t=t, body=body) for t in (1e-3, 2e-3) for body in range(1, bodies + 1)], ignore_index=True)
+                        "projected_pressure": 0.0, "shear": 1.0, "shear_z": 0.0, "slip_velocity": 0.1, "slip_velocity_z": 0.0, "slides": (radius > 0.7).astype(int), "partner": -1})
+    return pd.concat([one.assign(t=t, body=body) for t in (1e-3, 2e-3) for body in range(1, bodies + 1)]).to_records(index=False)
 
 
 def test_rings_are_means_over_the_surface():

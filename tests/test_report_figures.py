@@ -112,7 +112,7 @@ def test_a_body_at_rest_on_its_partner_has_no_restitution():
     """An approach of round-off is no denominator; what a vibrating body is pushed off with is marked at the edge, and does not flatten the rest."""
     rows = pd.DataFrame(dict(body=1, partner=-1, start=[0, 0.03, 0.05], end=[0.02, 0.04, 0.06], impulse=1.0, approach=[5e-20, 0.02, 0.03], separation=0.004,
                              restitution=[8e16, 0.2, 4.4], restitution_tangential=np.nan, slip_before=0.0))
-    top = impacts.draw(rows, ["body"], ["plane"]).axes[0]
+    top = impacts.draw(rows.to_records(), ["body"], ["plane"]).axes[0]
     assert impacts.HIGHEST < top.get_ylim()[1] < 2
     pushed, = (line for line in top.lines if line.get_marker() == "^")
     assert list(pushed.get_xdata()) == [50] and list(pushed.get_ydata()) == [impacts.HIGHEST]

@@ -11,7 +11,7 @@ from .results import Contents, content, reading
 
 TRIANGLE, QUADRATIC_TRIANGLE, QUADRATIC_TETRAHEDRON = 5, 22, 24   # VTK's cell types
 NODES = {TRIANGLE: 3, QUADRATIC_TRIANGLE: 6, QUADRATIC_TETRAHEDRON: 10}
-FINEST, MOST = 6, 20_000     # straight triangles along a side of a quadratic one, at most; and of all, where that is more than two a side
+FINEST, MOST = 6, 2_000      # straight triangles along a side of a quadratic one, at most; and of all, where that is more than two a side
 EIGHT = [[0, 4, 6, 7], [4, 1, 5, 8], [6, 5, 2, 9], [7, 8, 9, 3],      # a quadratic tetrahedron as its corners and the four about the diagonal 4-9
          [4, 9, 5, 6], [4, 9, 6, 7], [4, 9, 7, 8], [4, 9, 8, 5]]
 CUTS = {1: [[[0, 1], [0, 2], [0, 3]]], 2: [[[0, 2], [0, 3], [1, 3]], [[0, 2], [1, 3], [1, 2]]],     # edges of a tetrahedron between its first so many

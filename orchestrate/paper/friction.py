@@ -119,7 +119,7 @@ def reflected(results: Results) -> Finding:
     return Finding(verdict, "; ".join(words) + "." + said, results.drawn(JUMP), results.sweep_runs(JUMP), lost(results))
 
 
-def _oscillation(history: History, modes: pd.DataFrame) -> tuple[np.ndarray, np.ndarray, float, float]:
+def _oscillation(history: History, modes: np.recarray) -> tuple[np.ndarray, np.ndarray, float, float]:
     """Of the normal force less the half sine and the sine that fit it best: peaks of its spectrum [Hz] from the lowest to the highest mode, a quarter of the
     largest or more; the modes with 1 % of the vibration; half of what the contact time tells apart; the share of all frequencies that is as near to such a
     mode."""
@@ -132,7 +132,7 @@ def _oscillation(history: History, modes: pd.DataFrame) -> tuple[np.ndarray, np.
     heights = spectrum(t, dt, force - push @ slow, frequencies)
     inner = heights[1:-1]
     peaks = frequencies[1:-1][(inner > heights[:-2]) & (inner > heights[2:]) & (inner > 0.25 * heights.max())]
-    strong = modes.frequency[modes.energy > 0.01 * modes.energy.sum()].to_numpy()
+    strong = modes.frequency[modes.energy > 0.01 * modes.energy.sum()]
     width = 1 / (2 * length)
     return peaks, strong, width, float((np.abs(frequencies[:, None] - strong).min(axis=1) < width).mean())
 

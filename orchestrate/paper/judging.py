@@ -100,7 +100,7 @@ class Results:
         """The summaries of `pair`."""
         return [read_summary(folder) for folder in self.pair(name, **values)]
 
-    def modes(self, name: str, **values) -> list[pd.DataFrame]:
+    def modes(self, name: str, **values) -> list[np.recarray]:
         """The natural modes of `pair`."""
         return [vibration.read(folder) for folder in self.pair(name, **values)]
 

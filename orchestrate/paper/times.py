@@ -74,7 +74,7 @@ def _over_meshes(results: Results, name: str, every: pd.DataFrame, beside: str, 
     met, sound = _met(whole, name), _met(whole[whole.ellipticity_lost_time.isna()], name)
     independent = [nu for nu in rows.nu.unique() if _together([sound.get((h, nu), []) for h in meshes])]
     nearest = whole.loc[(whole.contact_time - time).abs().idxmin()] if len(whole) else None
-    same = "" if nearest is None else f"; nearest ν = {nearest.nu:g}, k = {nearest.penalty:.2g}: " + ", ".join(
+    same = "" if nearest is None else f"; nearest ν = {nearest.nu:g}, k = {nearest.penalty:.2g} Pa/m: " + ", ".join(
         f"{1e3 * row.contact_time:.3f} ms on {1e3 * row.mesh_size:g} mm ({when(row.ellipticity_lost_time, 'ellipticity lost')}, "
         f"{when(row.breakdown_time, 'det F ≤ 0')})"
         for row in rows[(rows.nu == nearest.nu) & (rows.penalty == nearest.penalty)].itertuples())

@@ -6,7 +6,6 @@ from textwrap import wrap
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.ticker import NullFormatter
 
 from ..input import dimension
 from ..output import vtu
@@ -14,8 +13,8 @@ from ..scenes import obstacles
 from ..scenes.obstacles import Obstacle
 from ..input.parameters import Value
 from ..output.results import body_names, suffixes
-from .figures import (BARE, BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SHAPES, STRESS, Body, as_written, deformed, draw_body, is_half, least, material,
-                      most_stress, over_time, per_metre, scale_bar)
+from .figures import (BLACK, BLUE, GREEN, GREY, ORANGE, ORIGIN, PURPLE, Body, as_written, balance_error, deformed, instants, is_half, least, material,
+                      over_time, per_metre, side_by_side)
 
 ALONE = ("disc-plane", "ball-axisymmetric", "ball-plane")     # scripts of one body on the plane
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, "#56b4e9", "#e69f00")    # of bodies
@@ -118,17 +117,15 @@ def energies(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fig
     over_time([balance, together, *own], history, scene)
     for axes in (*own, together, balance):
         legend(axes, ncols=2 if axes is together and len(bodies) < 4 else 3)
-    error = np.abs(history["balance"]) / (largest or 1.0)       # not of the total alone: bodies at rest under gravity have none
-    balance.semilogy(t, np.where(error > 0, error, np.nan), color=BLACK, linewidth=0.9)
+    balance_error(balance, history, largest or 1.0)              # not of the total alone: bodies at rest under gravity have none
     balance.set_ylabel("|balance| / largest energy")
-    balance.yaxis.set_minor_formatter(NullFormatter())
     return figure
 
 
 def velocities(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
     """Velocities [m/s] of the centres of mass and spins [rad/s], a panel a component, a line a body."""
     bodies = columns_of(history, scene)
-    components = {"vx": "$v_x$ [m/s]", "vy": "$v_y$ [m/s]", "vz": "$v_z$ [m/s]", "spin_x": "spin about x [rad/s]", "spin_y": "spin about y [rad/s]", "spin": "spin [rad/s]"}
+    components = {**{f"v{axis}": f"velocity along {axis} [m/s]" for axis in "xyz"}, "spin_x": "spin about x [rad/s]", "spin_y": "spin about y [rad/s]", "spin": "spin [rad/s]"}
     moving = [name for name in components if any(np.any(history.get(name + of, 0)) for of in bodies.values())] or ["vy"]
     figure, grid = panels(len(moving), 2.8)
     for axes, name in zip(grid, moving):
@@ -170,23 +167,11 @@ def forces(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figur
 
 def shapes(series: list[tuple[float, Path]], scene: dict[str, Value]) -> plt.Figure:
     """All bodies at up to SHAPES instants among the obstacles, coloured by the von Mises stress [MPa]."""
-    picked = [series[k] for k in np.unique(np.linspace(0, len(series) - 1, SHAPES).round().astype(int))]
+    picked = instants(series)
     found = [deformed(vtu.read(path), is_half(scene)) for _, path in picked]
     left, right, low, high = view = limits(found)
-    columns = min(3, len(found)) if right - left < 3 * (high - low) else min(2, len(found))
-    rows, size = -(-len(found) // columns), 7.0 / columns
-    figure, grid = plt.subplots(rows, columns, figsize=(7.8, rows * (size * (high - low) / (right - left) + 0.25) + 0.5), squeeze=False,
-                                subplot_kw=BARE)
-    for axes in grid.flat:
-        axes.set_axis_off()
-    largest, rigid = most_stress(found), obstacles_of(scene)
-    for axes, body, (t, _) in zip(grid.flat, found, picked):
-        draw_obstacles(axes, rigid, view, t)
-        picture = draw_body(axes, body, largest)
-        axes.set_title(f"{1e3 * t:.2f} ms", pad=2)
-    scale_bar(grid[-1, 0])
-    figure.colorbar(picture, ax=grid[:, -1], label=STRESS, shrink=0.7, aspect=30, extend="max")
-    return figure
+    rigid, columns = obstacles_of(scene), 3 if right - left < 3 * (high - low) else 2
+    return side_by_side(found, [t for t, _ in picked], view, min(columns, len(found)), lambda axes, t, place: draw_obstacles(axes, rigid, view, t, place))
 
 
 def obstacles_of(scene: dict[str, Value]) -> list[Obstacle]:
@@ -202,10 +187,9 @@ def limits(found: list[Body]) -> tuple[float, float, float, float]:
     return left - margin, right + margin, bottom - margin, top + margin
 
 
-def draw_obstacles(axes: plt.Axes, rigid: list[Obstacle], view: tuple[float, float, float, float], t: float) -> list:
-    """The obstacles where they are at time t [s], grey, in axes with the limits `view` [m]; what was drawn."""
+def draw_obstacles(axes: plt.Axes, rigid: list[Obstacle], view: tuple[float, float, float, float], t: float, place: np.ndarray = ORIGIN) -> list:
+    """The obstacles where they are at time t [s], grey, within the limits `view` [m], drawn at a place [m]; what was drawn."""
     left, right, low, high = view
-    axes.set(xlim=(left, right), ylim=(low, high), aspect="equal")
     step = max(right - left, high - low) / GRID
     x, y = np.arange(left, right + step, step), np.arange(low, high + step, step)
     points = np.stack(np.meshgrid(x, y), axis=-1)
@@ -214,4 +198,5 @@ def draw_obstacles(axes: plt.Axes, rigid: list[Obstacle], view: tuple[float, flo
     gap = np.min([one.gap_in_plane(points.reshape(-1, 2), t) for one in rigid], axis=0).reshape(points.shape[:2])
     if not gap.min() < 0 < gap.max():
         return []
+    x, y = x + place[0], y + place[1]
     return [axes.contourf(x, y, gap, levels=[gap.min(), 0], colors=["#d0d0d0"]), axes.contour(x, y, gap, levels=[0], colors=[BLACK], linewidths=0.8)]

@@ -83,7 +83,7 @@ def draw(results: dict[str, RunResult], path: Path) -> None:
         _key(force, {"end of the contact": ":", "by the paper": "-."} if stated else {"end of the contact": ":"})
         _key(energy, {"total": "--", "elastic": "-"})
         velocity.set(ylabel="velocity [m/s]", xlabel="time [ms]")
-        _key(velocity, {"$v_x$": "-", "$v_y$": "--", r"$-\omega R$": ":"} if rubs else {"$v_y$": "--"})
+        _key(velocity, {"along x": "-", "along y": "--", "−ωR": ":"} if rubs else {"along y": "--"})
         force.margins(x=0)
         figure.legend(*force.get_legend_handles_labels(), loc="outside upper center", ncols=1)
         save(figure, path)
@@ -114,7 +114,7 @@ def _mass(result: RunResult) -> float:
 
 def _material(used: dict) -> str:
     """Law, nu and penalty, where the scene has one of them."""
-    return f"{LAWS.get(used['law'], used['law'])}, ν = {used['nu']:g}, k = {used['penalty']:.3g}, " if "law" in used else ""
+    return f"{LAWS.get(used['law'], used['law'])}, ν = {used['nu']:g}, k = {report.stiffness(used)}, " if "law" in used else ""
 
 
 def _doubts(summary: dict) -> str:

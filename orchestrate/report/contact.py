@@ -4,7 +4,6 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
-import pandas as pd
 from matplotlib.colors import ListedColormap
 
 from ..input.parameters import Value
@@ -24,7 +23,7 @@ ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 1), "ncols": 3, "fontsiz
 COLUMNS = ["t", "body", "partner", "s", "X", "Y", "x", "y", "weight", "pressure", "shear", "slip_velocity", "slides", "projected_pressure"]
 
 
-def read(folder: Path, beside: bool = False) -> pd.DataFrame:
+def read(folder: Path, beside: bool = False) -> np.recarray:
     """fields/contact.csv of the run in `folder`: a row for every point of an outline that bears load, at the instants of the snapshots; also for those `beside`,
     where only the projected pressure is not 0.
 
@@ -36,7 +35,7 @@ def read(folder: Path, beside: bool = False) -> pd.DataFrame:
     return table if beside else table[table.pressure > 0]
 
 
-def draw(table: pd.DataFrame, names: list[str], half: bool, free: np.ndarray, ball: dict[str, Value] | None = None, symmetry: str = "full",
+def draw(table: np.recarray, names: list[str], half: bool, free: np.ndarray, ball: dict[str, Value] | None = None, symmetry: str = "full",
          history: dict[str, np.ndarray] | None = None) -> plt.Figure | None:
     """A row of panels a body: pressure over the outline at some instants, over outline and time, with friction where it sticks and slides, and with the
     `history` half-width and largest pressure; None without contact. `table`: also of the points beside. `free`: times [s] at which nothing is touched.
@@ -44,12 +43,13 @@ def draw(table: pd.DataFrame, names: list[str], half: bool, free: np.ndarray, ba
     Half a body is drawn with its mirror image. `ball`: the scene where the body is a ball that nothing turns: all is drawn over the distance from
     its axis. Of other bodies in three dimensions: of one the points nearest to the plane z = 0, of several all over the distance from the first touch;
     below them the patch at some instants. `symmetry` (quarter, half, full): what of a body in three dimensions was computed."""
-    if table.empty:
-        return None
     around, table = table, table[table.pressure > 0]
-    largest = table.groupby("body").pressure.max().nlargest(MOST_BODIES)
+    if not len(table):
+        return None
+    bodies = [int(body) for body in np.unique(table.body)]
+    bodies = sorted(sorted(bodies, key=lambda body: -table.pressure[table.body == body].max())[:MOST_BODIES])
     instants = np.union1d(table.t, free[(free > table.t.min()) & (free < table.t.max())])
-    rubs, bodies, solid = bool(table.shear.any()), sorted(largest.index), "Z" in table
+    rubs, solid = bool(table.shear.any()), "Z" in table.dtype.names
     shown = ["profiles", "pressure"] + ["slip"] * rubs + ["history"] * (history is not None and "contact_half_width" in history)
     maps = (1 + rubs) * (solid and not ball)
     figure = plt.figure(figsize=(max(2.8 * len(shown), 7.0 if maps else 0), (2.5 + 1.7 * maps) * len(bodies) + 0.6))
@@ -78,37 +78,46 @@ def draw(table: pd.DataFrame, names: list[str], half: bool, free: np.ndarray, ba
     return figure
 
 
-def _section(points: pd.DataFrame, half: bool) -> tuple[pd.DataFrame, str, dict[str, str]]:
-    """Along the outline: t, s [m], pressure, state (SLIP: -1, 0, 1); of a body in three dimensions near the plane z = 0."""
-    if "Z" in points:
-        points = points[points.Z.abs() <= max(0.15 * points.Z.abs().max(), points.Z.abs().min())]
-    own = points.assign(state=np.where(points.slides > 0, np.sign(points.slip_velocity), 0.0))
-    own = own.groupby(["t", "s"], as_index=False).first()              # twice only where an outline meets itself
-    if half:
-        own = pd.concat([own, own.assign(s=-own.s, state=-own.state)]).drop_duplicates(["t", "s"])
-    return own, ALONG, SLIP
+def _columns(**columns: np.ndarray) -> np.recarray:
+    return np.rec.fromarrays(list(columns.values()), names=list(columns))
 
 
-def _radial(points: pd.DataFrame, ball: dict[str, Value] | None) -> tuple[pd.DataFrame, str, dict[str, str]]:
+def _section(points: np.recarray, half: bool) -> tuple[np.recarray, str, dict[str, str]]:
+    """Along the outline: t, s [m], pressure, projected_pressure, state (SLIP: -1, 0, 1); of a body in three dimensions near the plane z = 0."""
+    if "Z" in points.dtype.names:
+        away = np.abs(points.Z)
+        points = points[away <= max(0.15 * away.max(), away.min())]
+    state, sides = np.where(points.slides > 0, np.sign(points.slip_velocity), 0.0), (1, -1) if half else (1,)
+    own = np.concatenate([_columns(t=points.t, s=side * points.s, pressure=points.pressure, projected_pressure=points.projected_pressure, state=side * state)
+                          for side in sides]).view(np.recarray)
+    once = np.unique(np.stack([own.t, own.s]), axis=1, return_index=True)[1]      # twice only on the axis, and where an outline meets itself
+    return own[once], ALONG, SLIP
+
+
+def _radial(points: np.recarray, ball: dict[str, Value] | None) -> tuple[np.recarray, str, dict[str, str]]:
     """Over the distance from the axis, of a ball, or from the first touch: t, s [m], pressure, state. Of a surface means over rings: the pressure over all of
     its points that are ever under load; it slides where most of the load does."""
+    solid = "Z" in points.dtype.names
     if ball:
-        away, words, states = (np.hypot(points.X, points.Z) if "Z" in points else points.X), "distance from the axis", RADIAL
-        slip = (points.slip_velocity * points.X + points.slip_velocity_z * points.Z) / away if "Z" in points else points.slip_velocity
+        away, words, states = np.hypot(points.X, points.Z) if solid else points.X, "distance from the axis", RADIAL
+        slip = (points.slip_velocity * points.X + points.slip_velocity_z * points.Z) / away if solid else points.slip_velocity
     else:
-        away, words, states, slip = points.s.abs(), "distance from the first touch", SLIDES, np.ones(len(points))
-    own = points.assign(s=away, state=np.where(points.slides > 0, np.sign(slip), 0.0))
-    if "Z" not in points:
-        return own, words, states
-    all_points = own.drop_duplicates(["X", "Y", "Z"])
-    count = int(np.clip(np.sqrt(len(all_points)), 4, 40))
-    width = 1.0001 * all_points.s.max() / count
-    area = all_points.weight.groupby((all_points.s / width).astype(int)).sum()
-    own = own.assign(ring=(own.s / width).astype(int), load=own.pressure * own.weight)
-    own["turned"], own["sliding"] = own.load * own.state, own.load * (own.slides > 0)
-    sums = own.groupby(["t", "ring"], as_index=False)[["load", "turned", "sliding"]].sum()
-    return pd.DataFrame({"t": sums.t, "s": (sums.ring + 0.5) * width, "pressure": sums.load / sums.ring.map(area),
-                         "state": np.where(sums.sliding > sums.load / 2, np.sign(sums.turned), 0.0)}), words, states
+        away, words, states, slip = np.abs(points.s), "distance from the first touch", SLIDES, np.ones(len(points))
+    state = np.where(points.slides > 0, np.sign(slip), 0.0)
+    if not solid:
+        return _columns(t=points.t, s=away, pressure=points.pressure, state=state), words, states
+    _, every = np.unique(np.stack([points.X, points.Y, points.Z]), axis=1, return_index=True)
+    count = int(np.clip(np.sqrt(len(every)), 4, 40))
+    width = 1.0001 * away.max() / count
+    ring = (away / width).astype(int)
+    area = np.bincount(ring[every], points.weight[every], count)
+    times, instant = np.unique(points.t, return_inverse=True)
+    at, load = instant * count + ring, points.pressure * points.weight
+    total, turned, slid = (np.bincount(at, weights) for weights in (load, load * state, load * (points.slides > 0)))
+    found = np.unique(at)
+    own = _columns(t=times[found // count], s=(found % count + 0.5) * width, pressure=total[found] / area[found % count],
+                   state=np.where(slid > total / 2, np.sign(turned), 0.0)[found])
+    return own, words, states
 
 
 def _history(axes: plt.Axes, history: dict[str, np.ndarray], of: str) -> None:
@@ -124,20 +133,27 @@ def _history(axes: plt.Axes, history: dict[str, np.ndarray], of: str) -> None:
     axes.set(xlabel="time [ms]")
 
 
-def _maps(figure: plt.Figure, points: pd.DataFrame, rubs: bool, symmetry: str, several: bool) -> None:
+def _maps(figure: plt.Figure, points: np.recarray, rubs: bool, symmetry: str, several: bool) -> None:
     """The points under load at some instants, each a square of its area: coloured by pressure and, below, where they stick and slide. Of one body on
     the plane y = 0 at their places x, z, else in the reference along the two main directions of all of them."""
-    axes_of = {"quarter": ("X", "Z"), "half": ("Z",)}.get(symmetry, ())
-    points = points.assign(area=points.weight / 2 ** len(axes_of), state=np.where(points.slides > 0, 1.0 if several else np.sign(points.slip_velocity), 0.0))
-    for axis in axes_of:
-        image = points.assign(**{axis: -points[axis], axis.lower(): -points[axis.lower()]})
-        points = pd.concat([points, image.assign(state=-image.state) if axis == "X" and not several else image])
-    on_the_plane = not several and points.y.abs().max() < 0.1 * np.ptp(points.x)
-    points, labels = (points.assign(across=points.x, up=points.z), ("x [mm]", "z [mm]")) if on_the_plane else _in_plane(points)
+    mirrored = {"quarter": ("X", "Z"), "half": ("Z",)}.get(symmetry, ())
+    columns = {name: points[name] for name in ("t", "X", "Y", "Z", "x", "y", "z", "pressure")}
+    columns["area"] = points.weight / 2 ** len(mirrored)
+    columns["state"] = np.where(points.slides > 0, 1.0 if several else np.sign(points.slip_velocity), 0.0)
+    for axis in mirrored:
+        turned = (axis, axis.lower(), *(("state",) if axis == "X" and not several else ()))
+        columns = {name: np.concatenate([values, -values if name in turned else values]) for name, values in columns.items()}
+    if not several and np.abs(columns["y"]).max() < 0.1 * np.ptp(columns["x"]):             # on the plane
+        columns |= {"across": columns["x"], "up": columns["z"]}
+        labels = "x [mm]", "z [mm]"
+    else:
+        columns["across"], columns["up"] = _in_plane(np.stack([columns[axis] for axis in "XYZ"], axis=1))
+        labels = "along the patch [mm]", "across [mm]"
+    points = _columns(**columns)
     shown = _instants(points, MAPS)
     grid = figure.subplots(1 + rubs, len(shown), squeeze=False, sharex=True, sharey=True)
     states = SLIDES if several else SLIP
-    low, high = 1e3 * points[["across", "up"]].min().to_numpy(), 1e3 * points[["across", "up"]].max().to_numpy()
+    low, high = (1e3 * np.array([end(points.across), end(points.up)]) for end in (np.min, np.max))
     low, high = low - 0.04 * (high - low), high + 0.04 * (high - low)
     scale = 72 * min(5.2 / len(shown) / (high - low)[0], 1.1 / (high - low)[1])                # points a mm
     for row, (column, colours) in zip(grid, (("pressure", dict(cmap="viridis", vmin=0, vmax=1e-6 * points.pressure.max())), ("state", _colours(states)))):
@@ -157,41 +173,40 @@ def _maps(figure: plt.Figure, points: pd.DataFrame, rubs: bool, symmetry: str, s
         axes.set_xlabel(labels[0])
 
 
-def _in_plane(points: pd.DataFrame) -> tuple[pd.DataFrame, tuple[str, str]]:
-    """With `across` and `up` [m], from their centre along the two directions in which their reference places spread most; `up` the one nearer to z."""
-    places = points[["X", "Y", "Z"]].to_numpy()
+def _in_plane(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Of places (n, 3) [m] the distances from their centre along the two directions in which they spread most, the second the one nearer to z."""
     places = places - places.mean(axis=0)
     two = np.linalg.svd(places, full_matrices=False)[2][:2]
     two = two[np.argsort(np.abs(two[:, 2]))]
     two = two * np.sign(two[[0, 1], np.abs(two).argmax(axis=1)])[:, None]
-    return points.assign(across=places @ two[0], up=places @ two[1]), ("along the patch [mm]", "across [mm]")
+    return places @ two[0], places @ two[1]
 
 
-def _instants(table: pd.DataFrame, most: int = INSTANTS) -> list[tuple[float, pd.DataFrame, tuple]]:
+def _instants(table: np.recarray, most: int = INSTANTS) -> list[tuple[float, np.recarray, tuple]]:
     """(t, rows, colour) of up to `most` times."""
     times = np.unique(table.t)
     picked = times[np.unique(np.linspace(0, len(times) - 1, most + 2).round().astype(int)[1:-1])] if len(times) > most else times
     return [(t, table[table.t == t], colour) for t, colour in zip(picked, plt.get_cmap("plasma")(np.linspace(0, 0.85, len(picked))))]
 
 
-def _profiles(axes: plt.Axes, own: pd.DataFrame, words: str, line: str) -> None:
+def _profiles(axes: plt.Axes, own: np.recarray, words: str, line: str) -> None:
     """Pressure [MPa] over s [mm], which is the distance in these words, at up to INSTANTS times: along a line its projection on the outline's own
     functions, where it is more than nothing; without a line the points."""
     for t, now, colour in _instants(own):
-        now = now.sort_values("s")
+        now = now[np.argsort(now.s, kind="stable")]
         if line:
-            now = now[now.projected_pressure.abs() > 0.01 * now.projected_pressure.max()]
+            now = now[np.abs(now.projected_pressure) > 0.01 * now.projected_pressure.max()]
         axes.plot(1e3 * now.s, 1e-6 * (now.projected_pressure if line else now.pressure), color=colour, linestyle=line, marker="" if line else ".", linewidth=1.1,
                   markersize=2.5, label=f"{1e3 * t:.3g} ms")
     axes.set(xlabel=f"{words} [mm]", ylabel=PRESSURE, ylim=(0, None))
     axes.legend(**ABOVE)
 
 
-def _over_radius(axes: plt.Axes, table: pd.DataFrame, ball: dict[str, Value]) -> None:
+def _over_radius(axes: plt.Axes, table: np.recarray, ball: dict[str, Value]) -> None:
     """Pressure [MPa] at the points over their present distance [mm] from the axis, at up to INSTANTS times; in a slow impact Hertz' of the same force."""
     slow = ball["speed"] <= SLOW * np.sqrt(ball["young"] / ball["density"])
     for t, now, colour in _instants(table):
-        away = np.hypot(now.x, now.z) if "z" in now else now.x
+        away = np.hypot(now.x, now.z) if "z" in now.dtype.names else now.x
         axes.plot(1e3 * away, 1e-6 * now.pressure, color=colour, linestyle="", marker=".", markersize=3.5, label=f"{1e3 * t:.3g} ms")
         if slow:
             r, pressure = hertz((now.pressure * now.weight).sum(), ball)
@@ -210,13 +225,15 @@ def hertz(force: float, ball: dict[str, Value]) -> tuple[np.ndarray, np.ndarray]
     return r, 3 * force / (2 * np.pi * a**2) * np.sqrt(np.maximum(1 - (r / a) ** 2, 0))
 
 
-def _over_time(own: pd.DataFrame, column: str, instants: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _over_time(own: np.recarray, column: str, instants: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The instants (n) [s], places (m) [m] and the values (n, m) there; nan where there is no load."""
-    wide = own.pivot(index="t", columns="s", values=column).reindex(instants)
-    return instants, wide.columns.to_numpy(), wide.to_numpy()
+    places, place = np.unique(own.s, return_inverse=True)
+    values = np.full((len(instants), len(places)), np.nan)
+    values[np.searchsorted(instants, own.t), place] = own[column]
+    return instants, places, values
 
 
-def _slip(axes: plt.Axes, own: pd.DataFrame, instants: np.ndarray, states: dict[str, str]) -> None:
+def _slip(axes: plt.Axes, own: np.recarray, instants: np.ndarray, states: dict[str, str]) -> None:
     """Where the points under load stick and slide, over place and time."""
     times, places, values = _over_time(own, "state", instants)
     axes.pcolormesh(1e3 * times, 1e3 * places, values.T, shading="nearest", rasterized=True, **_colours(states))

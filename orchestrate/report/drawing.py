@@ -38,7 +38,7 @@ def draw(folder: Path, warnings: list[str]) -> list[Path]:
             along = contacts.draw(table, names, is_half(scene), history["t"][~touches],
                                   scene if scene.get("script") in BODY and is_half(scene) else None, scene.get("symmetry", "full"), history)
             drawn |= {"contact": along} if along else {}
-            inside = solid.draw(snapshots, table[table.pressure > 0], scene) if snapshots and "Z" in table else None
+            inside = solid.draw(snapshots, table[table.pressure > 0], scene) if snapshots and "Z" in table.dtype.names else None
             drawn |= {"solid": inside} if inside else {}
         if (folder / "contacts.csv").exists():
             bounces = impacts.draw(impacts.read(folder), names,

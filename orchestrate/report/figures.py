@@ -1,6 +1,7 @@
 """What figures have in common, and those of a body on the plane: energies, contact force, velocity of the centre of mass, deformed shapes; with friction also
 the friction force, what slides and sticks, and the flight, as figures 4 to 6 of the paper."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from textwrap import wrap
@@ -29,15 +30,18 @@ BLUE, ORANGE, GREEN, PURPLE, BLACK, GREY = "#0072b2", "#d55e00", "#009e73", "#aa
 SMALL = 7.5   # text of legends, of numbers in cells and below figures; all other text has the style's size
 STYLE = {"font.size": 9, "axes.titlesize": 9, "legend.fontsize": SMALL, "figure.titlesize": 9, "axes.spines.top": False, "axes.spines.right": False,
          "axes.linewidth": 0.8, "lines.linewidth": 1.4, "legend.frameon": False, "figure.dpi": 100, "savefig.dpi": 150,
-         "figure.constrained_layout.use": True, "figure.constrained_layout.w_pad": 0.08}
+         "figure.constrained_layout.use": True, "figure.constrained_layout.w_pad": 0.08,
+         "text.hinting": "none", "axes.titley": 1.0}     # quicker: outlines of letters as they are; titles stand where nothing is to be made way for
 BODY = {"ball-plane": "ball: ", "ball-axisymmetric": "ball as a body of revolution: "}
 STRESS = "von Mises stress [MPa]"
 SHAPES = 9   # small multiples at most
 ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 1), "handlelength": 1.6, "columnspacing": 1.4}   # a legend above its panel
 BELOW = {"loc": "upper center", "bbox_to_anchor": (0.5, 0), "borderaxespad": 5.5}         # one below it, under the numbers and the name of its axis
-BARE = {"xticks": [], "yticks": []}                               # of panels without axes: their ticks would still be laid out
+BARE = {"xticks": [], "yticks": []}                               # of a panel without axes: its ticks would still be laid out
 BAND = "#c8c8c8"   # of what other curves run along
 DASHED = (0, (4, 2))
+ORIGIN = np.zeros(2)
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")              # letters, as is all that pictures say: to parse formulas takes as long as to draw one
 filterwarnings("ignore", "Glyph .* missing from", UserWarning)    # a letter that the font lacks is an empty box in the title
 
 
@@ -156,14 +160,20 @@ def _energies(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fi
     top.plot(t, balance, color=BLACK, linestyle="--", linewidth=1.0, label=words)
     lowest = min(values.min() for values, _ in lines.values())
     top.set(ylabel=f"energy [J{per_metre(scene)}]", ylim=(min(0, 1.05 * lowest) - 0.015 * largest, 1.05 * largest))
-    error = np.abs(history["balance"]) / start
-    bottom.semilogy(t, np.where(error > 0, error, np.nan), color=BLACK, linewidth=0.9)
-    bottom.set(xlabel="time [ms]", ylabel="|balance| / $E_0$")
+    balance_error(bottom, history, start)
+    bottom.set(xlabel="time [ms]", ylabel="|balance| / E₀")
     bottom.margins(y=0.15)
-    bottom.yaxis.set_minor_formatter(NullFormatter())
     over_time([top, bottom], history, scene)
     top.legend(**ABOVE, ncols=3)
     return figure
+
+
+def balance_error(axes: plt.Axes, history: dict[str, np.ndarray], energy: float) -> None:
+    """The error of the balance over time [ms], relative to `energy` [J/m]."""
+    error = np.abs(history["balance"]) / energy
+    axes.semilogy(1e3 * history["t"], np.where(error > 0, error, np.nan), color=BLACK, linewidth=0.9)
+    axes.yaxis.set_major_formatter(lambda value, _: "10" + f"{np.log10(value):.0f}".translate(RAISED))
+    axes.yaxis.set_minor_formatter(NullFormatter())
 
 
 def least(values: np.ndarray, largest: float) -> str:
@@ -266,7 +276,7 @@ def _velocity(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fi
     axes.axhline(0, color=GREY, linewidth=0.6)
     moving = [name for name in ("vx", "vy", "vz") if name in history and history[name].any()]
     for name, colour in zip(moving, (BLUE, ORANGE, GREEN)):
-        axes.plot(t, history[name], color=colour, label=f"$v_{name[1]}$")
+        axes.plot(t, history[name], color=colour, label=f"along {name[1]}")
     axes.set(xlabel="time [ms]", ylabel="velocity of the centre of mass [m/s]")
     over_time([axes], history, scene)
     axes.legend(**ABOVE, ncols=4)
@@ -282,8 +292,8 @@ def _rolling(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fig
     if rigid := _rigid_rolling(history["t"], scene):
         for values, label in zip(rigid, ("rigid disc", None)):
             top.plot(t, values, color=BLACK, linestyle="--", linewidth=0.9, label=label)
-    top.plot(t, history["vx"], color=BLUE, label="$v_x$ of the centre")
-    top.plot(t, -scene["radius"] * history["spin"], color=ORANGE, label=r"$-\omega R$ of the rim")
+    top.plot(t, history["vx"], color=BLUE, label="centre, along x")
+    top.plot(t, -scene["radius"] * history["spin"], color=ORANGE, label="rim, −ωR")
     top.set_ylabel("velocity [m/s]")
     touches = history["normal_force"] > 0
     back = np.minimum(history["reverse_fraction"], history["sliding_fraction"])
@@ -436,24 +446,34 @@ def _draw_pose(axes: plt.Axes, pose: Pose, colour, line, label: str | None) -> N
 
 def _shapes(series: list[tuple[float, Path]], half: bool) -> plt.Figure:
     """The body at up to SHAPES instants above the plane y = 0, coloured by the von Mises stress [MPa]."""
-    picked = [series[k] for k in np.unique(np.linspace(0, len(series) - 1, SHAPES).round().astype(int))]
-    bodies = [deformed(vtu.read(path), half) for _, path in picked]
-    left, right, floor, high = view = limits(bodies)
+    picked = instants(series)
+    found = [deformed(vtu.read(path), half) for _, path in picked]
+    view = limits(found)
+    return side_by_side(found, [t for t, _ in picked], view, min(3, len(found)), lambda axes, _, at: draw_ground(axes, view, at))
 
-    columns = min(3, len(bodies))
-    rows = -(-len(bodies) // columns)
-    size = 6.4 / columns
-    figure, grid = plt.subplots(rows, columns, figsize=(6.4 + 0.8, rows * (size * (high - floor) / (right - left) + 0.25) + 0.3),
-                                squeeze=False, subplot_kw=BARE)
-    for axes in grid.flat:
-        axes.set_axis_off()
-    largest = most_stress(bodies)
-    for axes, body, (t, _) in zip(grid.flat, bodies, picked):
-        draw_ground(axes, view)
-        picture = draw_body(axes, body, largest)
-        axes.set_title(f"{1e3 * t:.2f} ms", pad=2)
-    scale_bar(grid[-1, 0])
-    figure.colorbar(picture, ax=grid[:, -1], label=STRESS, shrink=0.7, aspect=30, extend="max")
+
+def instants(series: list[tuple[float, Path]]) -> list[tuple[float, Path]]:
+    """Up to SHAPES snapshots of a run, from the first to the last."""
+    return [series[k] for k in np.unique(np.linspace(0, len(series) - 1, SHAPES).round().astype(int))]
+
+
+def side_by_side(found: list["Body"], times: list[float], view: tuple[float, float, float, float], columns: int, behind: Callable) -> plt.Figure:
+    """The bodies in rows, each at its time [s] within the limits `view` [m] with what behind(axes, time, place) draws there, coloured by the von Mises
+    stress [MPa]: in one panel, as each of its own would take as long as its body."""
+    left, right, low, high = view
+    rows, inch = -(-len(found) // columns), (right - left) * columns / 6.5             # [m]
+    step = np.array([right - left + 0.1 * inch, high - low + 0.3 * inch])
+    figure, axes = plt.subplots(figsize=(7.5, rows * step[1] / inch + 0.4), subplot_kw=BARE)
+    axes.set_axis_off()
+    axes.set(xlim=(left, right + (columns - 1) * step[0]), ylim=(low - (rows - 1) * step[1], low + step[1]), aspect="equal")
+    largest = most_stress(found)
+    for k, (body, t) in enumerate(zip(found, times)):
+        place = step * (k % columns, -(k // columns))
+        behind(axes, t, place)
+        picture = draw_body(axes, body, largest, place)
+        axes.text(*place + ((left + right) / 2, high), f"{1e3 * t:.2f} ms", ha="center", va="bottom")
+    scale_bar(axes, 0.25 / columns)
+    figure.colorbar(picture, ax=axes, label=STRESS, shrink=0.7, aspect=30, extend="max")
     return figure
 
 
@@ -462,15 +482,15 @@ def most_stress(bodies: list["Body"]) -> float:
     return float(np.quantile(np.concatenate([body.stress for body in bodies]), 0.995)) or 1.0
 
 
-def scale_bar(axes: plt.Axes) -> None:
-    """Below axes in m, which have no ticks, a length of 1, 2 or 5 times a power of ten, at most a quarter of the width."""
+def scale_bar(axes: plt.Axes, share: float = 0.25) -> None:
+    """Below axes in m, which have no ticks, a length of 1, 2 or 5 times a power of ten, at most this share of the width."""
     left, right = axes.get_xlim()
-    wanted = 0.25 * (right - left)
+    wanted = share * (right - left)
     size = max(length for digit in (1, 2, 5) if (length := digit * 10.0 ** np.floor(np.log10(wanted))) <= wanted)
     below = axes.get_xaxis_transform() + ScaledTranslation(0, -9 / 72, axes.figure.dpi_scale_trans)      # [m] along, nine points down
     axes.plot([left, left + size], [0, 0], color=BLACK, linewidth=2.0, solid_capstyle="butt", transform=below, clip_on=False)
     factor, unit = (1e6, "μm") if size < 1e-3 else (1e3, "mm") if size < 1 else (1, "m")
-    axes.text(left + 1.15 * size, 0, f"{factor * size:.3g} {unit}", fontsize=SMALL, ha="left", va="center", transform=below)
+    axes.text(left + size + share / 16 * (right - left), 0, f"{factor * size:.3g} {unit}", fontsize=SMALL, ha="left", va="center", transform=below)
     axes.set_xlim(left, right)
 
 
@@ -507,16 +527,16 @@ def limits(bodies: list[Body]) -> tuple[float, float, float, float]:
     return left - margin, right + margin, min(low[:, 1].min(), 0) - 0.08 * top, top
 
 
-def draw_ground(axes: plt.Axes, view: tuple[float, float, float, float]) -> None:
-    """The ground below y = 0 in axes with the limits `view` [m]."""
-    left, right, floor, top = view
-    axes.fill_between([left, right], floor, 0, color="#d0d0d0", linewidth=0)
-    axes.axhline(0, color=BLACK, linewidth=0.8)
-    axes.set(xlim=(left, right), ylim=(floor, top), aspect="equal")
+def draw_ground(axes: plt.Axes, view: tuple[float, float, float, float], place: np.ndarray = ORIGIN) -> None:
+    """The ground below y = 0 within the limits `view` [m], drawn at a place [m]."""
+    left, right, floor, _ = view
+    x, y = place
+    axes.fill_between([left + x, right + x], floor + y, y, color="#d0d0d0", linewidth=0)
+    axes.plot([left + x, right + x], [y, y], color=BLACK, linewidth=0.8)
 
 
-def draw_body(axes: plt.Axes, body: Body, largest: float) -> TriMesh:
-    """The body coloured by its stress, on a scale from 0 to `largest` MPa."""
-    picture = axes.tripcolor(*body.points.T, body.triangles, body.stress, shading="gouraud", cmap="viridis", vmin=0, vmax=largest)
+def draw_body(axes: plt.Axes, body: Body, largest: float, place: np.ndarray = ORIGIN) -> TriMesh:
+    """The body coloured by its stress, on a scale from 0 to `largest` MPa, drawn at a place [m]."""
+    picture = axes.tripcolor(*(body.points + place).T, body.triangles, body.stress, shading="gouraud", cmap="viridis", vmin=0, vmax=largest)
     picture.set_in_layout(False)
     return picture

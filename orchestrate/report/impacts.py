@@ -4,7 +4,6 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
-import pandas as pd
 
 from ..output.results import read_table
 
@@ -17,7 +16,7 @@ COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"]
 NEEDED = ["body", "partner", "start", "end", "impulse", "approach", "separation", "restitution", "restitution_tangential"]
 
 
-def read(folder: Path) -> pd.DataFrame:
+def read(folder: Path) -> np.recarray:
     """contacts.csv of the run in `folder`: a row for every interval of contact of two bodies, or of a body with an obstacle (partner < 0).
 
     Columns and units: edp/core/run/columns.idp. Unreadable where it is not such a table.
@@ -25,32 +24,34 @@ def read(folder: Path) -> pd.DataFrame:
     return read_table(folder / "contacts.csv", NEEDED)
 
 
-def several(table: pd.DataFrame) -> pd.DataFrame:
-    """The impacts of all meetings, where there are more than one; intervals with less than LIGHTEST of the largest impulse of their meeting are none."""
-    impacts = table[table.impulse >= LIGHTEST * table.groupby(["body", "partner"]).impulse.transform("max")]
-    return impacts if len(impacts) > 1 else impacts.iloc[:0]
+def several(table: np.recarray) -> list[np.recarray]:
+    """The impacts of each meeting, where there are more than one of all; intervals with less than LIGHTEST of the largest impulse of their meeting are none."""
+    meetings = [table[(table.body == body) & (table.partner == partner)] for body, partner in np.unique(np.stack([table.body, table.partner], axis=1), axis=0)]
+    impacts = [rows[rows.impulse >= LIGHTEST * rows.impulse.max()] for rows in meetings]
+    return impacts if sum(map(len, impacts)) > 1 else []
 
 
-def draw(table: pd.DataFrame, names: list[str], rigid: list[str]) -> plt.Figure | None:
+def draw(table: np.recarray, names: list[str], rigid: list[str]) -> plt.Figure | None:
     """Restitution, across and along the partner, over the impacts of each meeting, and below them the speeds before each; None where there are not several.
     `names`: of the bodies; `rigid`: of the obstacles."""
     impacts = several(table)
-    if impacts.empty:
+    if not impacts:
         return None
     figure, (top, below) = plt.subplots(2, 1, figsize=(6.4, 5), sharex=True)
-    for colour, ((body, partner), rows) in zip(COLOURS, impacts.groupby(["body", "partner"])):
-        other = names[int(partner) - 1] if partner > 0 else rigid[-int(partner) - 1]
-        label, t = f"{names[int(body) - 1]} – {other}", 1e3 * rows.start
-        across = rows.restitution.where(rows.approach > LEAST_APPROACH * rows.approach.max())
+    for colour, rows in zip(COLOURS, impacts):
+        body, partner, t = int(rows.body[0]), int(rows.partner[0]), 1e3 * rows.start
+        label = f"{names[body - 1]} – {names[partner - 1] if partner > 0 else rigid[-partner - 1]}"
+        across = np.where(rows.approach > LEAST_APPROACH * np.fmax.reduce(rows.approach), rows.restitution, np.nan)
         pushed = across > HIGHEST
-        top.plot(t, across.where(~pushed), "o-", color=colour, markersize=4, linewidth=0.8, label=f"{label}: across")
+        top.plot(t, np.where(pushed, np.nan, across), "o-", color=colour, markersize=4, linewidth=0.8, label=f"{label}: across")
         if pushed.any():
             top.plot(t[pushed], np.full(pushed.sum(), HIGHEST), "^", color=colour, markersize=5, label=f"{label}: across, above {HIGHEST:g}")
-        along = rows.restitution_tangential.where(rows.slip_before > LEAST_SLIP * np.maximum(rows.approach, rows.slip_before.max()))
-        if along.notna().any():
+        slips = rows.slip_before > LEAST_SLIP * np.maximum(rows.approach, np.fmax.reduce(rows.slip_before))
+        along = np.where(slips, rows.restitution_tangential, np.nan)
+        if np.isfinite(along).any():
             top.plot(t, along, "s--", color=colour, markersize=4, linewidth=0.8, fillstyle="none", label=f"{label}: along")
         below.plot(t, rows.approach, "o-", color=colour, markersize=4, linewidth=0.8)
-        if along.notna().any():
+        if np.isfinite(along).any():
             below.plot(t, rows.slip_before, "s--", color=colour, markersize=4, linewidth=0.8, fillstyle="none")
     top.set(ylabel="restitution", ylim=(min(0.0, top.get_ylim()[0]), max(1.05, top.get_ylim()[1])))
     top.axhline(1, color="#999999", linewidth=0.6)

@@ -191,7 +191,7 @@ class PlaneStage(Stage):
             self.drawn = bodies.draw_obstacles(self.above, self.rigid, view, motion.times[0])
         else:
             draw_ground(self.above, view)
-        self.above.set(xlabel="x [m]", ylabel="y [m]")
+        self.above.set(xlim=(left, right), ylim=(floor, top), aspect="equal", xlabel="x [m]", ylabel="y [m]")
         self.largest = np.quantile([body.stress for body in motion.bodies], 0.999) or 1.0   # one spot does not darken all the rest
         self.picture = draw_body(self.above, motion.bodies[0], self.largest)
         self.figure.colorbar(self.picture, cax=bar, label=STRESS, extend="max")

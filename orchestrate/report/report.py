@@ -93,15 +93,21 @@ def draw(result: RunResult) -> None:
         print(f"ffimpact: the figures could not be drawn: {error!r}", file=sys.stderr)
 
 
+def stiffness(contact: dict[str, Value]) -> str:
+    """The penalty k of a contact t_N = k p^m (10) with its unit."""
+    m = contact["exponent"]
+    return f"{contact['penalty']:.4g} Pa/m" + f"^{m:g}" * (m != 1)
+
+
 def _scene(scene: dict[str, Value]) -> list[str]:
     """What was run: materials, speed, contact."""
     contact = scene.get("contact", scene)
-    words = f"penalty {contact['penalty']:g}"
+    words = f"penalty {stiffness(contact)}"
     if contact.get("friction_static"):
         words += f", friction {contact['friction_static']:g} static, {contact['friction_dynamic']:g} dynamic"
     if "body" not in scene:
         return [f"{scene['law']}, nu = {scene['nu']:g}, {scene['speed']:g} m/s, angle {scene.get('angle', 90):g} degrees, {words}"]
-    return [*(f"{body['name']}: {body['shape']}, {body['law']}, young = {body['young']:g}, nu = {body['nu']:g}" for body in scene["body"]),
+    return [*(f"{body['name']}: {body['shape']}, {body['law']}, young = {body['young']:g} Pa, nu = {body['nu']:g}" for body in scene["body"]),
             *(f"{one['name']}: rigid {one['kind']}" for one in scene["obstacle"]), words]
 
 

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
-import pandas as pd
 from matplotlib.cm import ScalarMappable
 
 from ..output import vtu
@@ -112,9 +111,10 @@ class Pressure:
     area A and exp(-(distance/h)^2), h^2 the largest A. Points that bear no load at the time have none, and where points that ever bear some
     fill less than all of the neighbourhood, of radius 2 h, the rest of it has none: the force is kept."""
 
-    def __init__(self, table: pd.DataFrame, axes: tuple[int, ...], vertices: np.ndarray):
+    def __init__(self, table: np.recarray, axes: tuple[int, ...], vertices: np.ndarray):
         self.table, self.largest = table, float(table.pressure.max()) if len(table) else 0.0
-        self.points = table.drop_duplicates(["X", "Y", "Z"])[["X", "Y", "Z", "weight"]].to_numpy()
+        rows = np.stack([table[name] for name in ("X", "Y", "Z", "weight")], axis=1)
+        self.points = rows[np.unique(rows[:, :3], axis=0, return_index=True)[1]]
         known, self.source = self.points[:, :3], np.arange(len(self.points))
         for axis in axes:
             known = np.vstack([known, known * np.where(np.arange(3) == axis, -1, 1)])
@@ -131,7 +131,7 @@ class Pressure:
 
     def at(self, t: float) -> np.ndarray:
         now = self.table[self.table.t == self._instant(t)]
-        load = dict(zip(now[["X", "Y", "Z"]].itertuples(index=False, name=None), now.pressure))
+        load = dict(zip(zip(now.X, now.Y, now.Z), now.pressure))
         values = np.array([load.get((x, y, z), 0.0) for x, y, z, _ in self.points])
         found = np.zeros(len(self.near))
         found[self.near] = self.share @ values[self.source] if len(values) else 0.0
@@ -139,7 +139,7 @@ class Pressure:
 
     def _instant(self, t: float) -> float:
         """The time of the table that is `t` to the digits that are written; nan where no point bears load then."""
-        times = self.table.t.unique()
+        times = np.unique(self.table.t)
         nearest = times[np.abs(times - t).argmin()] if len(times) else np.nan
         return nearest if abs(nearest - t) <= 1e-6 * max(abs(t), np.ptp(times) if len(times) else 0) else np.nan
 
@@ -165,7 +165,7 @@ class Views:
     """The snapshots `series` of a body in three dimensions, rendered. `times` [s]; `stress`, `pressure`: the largest that is drawn [MPa]; `loaded`: at
     which snapshots the body is touched."""
 
-    def __init__(self, series: list[tuple[float, Path]], table: pd.DataFrame, scene: dict[str, Value]):
+    def __init__(self, series: list[tuple[float, Path]], table: np.recarray, scene: dict[str, Value]):
         axes = AXES.get(scene.get("symmetry"), ())
         solids = [whole(vtu.read_solid(path), axes) for _, path in series]
         points, tetrahedra = solids[0].points, solids[0].tetrahedra
@@ -221,10 +221,10 @@ class Views:
             plotter.close()
 
 
-def draw(series: list[tuple[float, Path]], table: pd.DataFrame, scene: dict[str, Value]) -> plt.Figure | None:
+def draw(series: list[tuple[float, Path]], table: np.recarray, scene: dict[str, Value]) -> plt.Figure | None:
     """The body at up to INSTANTS times at which it is touched: above cut open, with its stress, below from below, with the contact pressure. None of a
     body in the plane, without contact, and where nothing can be rendered."""
-    if table.empty or vtu.read_solid(series[0][1]) is None or missing():
+    if not len(table) or vtu.read_solid(series[0][1]) is None or missing():
         return None
     views = Views(series, table, scene)
     picked = [views.loaded[k] for k in np.unique(np.linspace(0, len(views.loaded) - 1, INSTANTS).round().astype(int))] if views.loaded else [0]

@@ -120,6 +120,8 @@ def _check(stage: Path, exit_code: int, said: str) -> None:
     said = read_json(stage / "failure.json").get("message") or said
     if exit_code in FAILURES and said:
         raise Failure(said, exit_code)
+    if exit_code == -signal.SIGXFSZ:
+        raise Unreadable("out: a file of the run is larger than files may be here; raise ulimit -f, or ask for fewer fields or steps")
     if "Load error" in log:
         raise Failure(f"FreeFem++ lacks a plugin: {_tail(stage)}; {freefem.HOW}", 13)
     how = f"was killed by {signal.Signals(-exit_code).name}" if exit_code < 0 else f"stopped with exit code {exit_code}"

@@ -117,7 +117,7 @@ def violations(table: pd.DataFrame) -> list[str]:
 def words(run: Mapping[str, Value]) -> str:
     """A case, with its accuracy where it has one, in words."""
     which = f", {run['accuracy'] if run['accuracy'] == REFERENCE else 'accuracy ' + format(run['accuracy'], 'g')}" if "accuracy" in run else ""
-    return f"{run['law']}, nu {run['nu']:g}, k {run['penalty']:g}{which}"
+    return f"{run['law']}, nu {run['nu']:g}, k {run['penalty']:g} Pa/m{which}"
 
 
 def differences(table: pd.DataFrame) -> pd.DataFrame:
