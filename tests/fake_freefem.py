@@ -107,7 +107,7 @@ def main(arguments: list[str]) -> int:
     if any(word.endswith("probe.edp") for word in arguments):
         print("Load error: Element_QF" if mode == "noplugin" else "version 4.6" if mode == "old" else "version 4.9")
         return 2 if mode == "noplugin" else 0
-    if any(word.endswith("describe.edp") for word in arguments):
+    if any("/describe" in word for word in arguments):
         os.execv(REAL, [REAL, *arguments])
     if count := os.environ.get("FAKE_COUNT"):
         with open(count, "a") as file:

@@ -15,7 +15,7 @@ from orchestrate import run, scene
 from orchestrate.freefem import freefem
 from orchestrate.input import parameters
 from orchestrate.output import results, vtu
-from orchestrate.freefem.describe import describe
+from orchestrate.freefem.describe import describe, describe_results
 from orchestrate.failure import Failure, NotInstalled
 from orchestrate.report import literature, report
 
@@ -45,7 +45,7 @@ def test_folder_holds_what_the_contract_says(result):
 
 def test_scripts_describe_what_they_write(result):
     """The columns and numbers that the scripts say they write are those of the files, in their order."""
-    told, written = describe(), json.loads((result.folder / "summary.json").read_text())
+    told, written = describe_results(), json.loads((result.folder / "summary.json").read_text())
     assert (result.folder / "history.csv").read_text().splitlines()[0].split(",") == told["columns"]
     assert [key for key in written if key in told["summary"]] == told["summary"]
     numbers = {key for key, value in written.items() if type(value) in (int, float)}
@@ -347,7 +347,7 @@ def test_hopping_is_no_chatter(tmp_path):
 
 def test_every_number_of_a_run_has_a_unit_and_a_meaning(result):
     """Each key of the summary and each column of the tables that a run writes is one that the scripts explain (docs/results.md)."""
-    told = {name for table in describe()["meanings"].values() for name in table}
+    told = {name for table in describe_results()["meanings"].values() for name in table}
     assert set(result.summary) <= told, set(result.summary) - told
     for name in ("history.csv", "contacts.csv", "fields/contact.csv"):
         columns = set((result.folder / name).read_text().partition("\n")[0].split(","))

@@ -6,7 +6,7 @@ import pytest
 
 from orchestrate import scene
 from orchestrate.report import pages
-from orchestrate.freefem.describe import describe
+from orchestrate.freefem.describe import describe_results
 from orchestrate.places import ROOT
 
 
@@ -19,7 +19,7 @@ def test_pages_are_as_the_scripts_have_it(path):
 @pytest.mark.parametrize("script", pages.SCRIPTS)
 def test_every_column_and_number_has_a_meaning(script):
     """Each has a unit and words, once; nothing has that is not written."""
-    told = describe({} if "ball-axi" in script else {"angle": 60, "friction_static": 0.3}, script)
+    told = describe_results({} if "ball-axi" in script else {"angle": 60, "friction_static": 0.3}, script)
     named = {name for key in ("columns", "summary", "contact_columns", "body_columns", "body_summary") for name in told[key]}
     meanings = [name for table in told["meanings"].values() for name in table]
     assert named <= set(meanings), named - set(meanings)

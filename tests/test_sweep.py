@@ -18,7 +18,7 @@ from orchestrate import run
 from orchestrate.input import parameters
 from orchestrate.output import results
 from orchestrate.__main__ import main
-from orchestrate.freefem.describe import describe
+from orchestrate.freefem.describe import describe_results
 from orchestrate.failure import BadInput
 from orchestrate.report.figures import plt
 from orchestrate.sweeps import study
@@ -52,7 +52,7 @@ def test_points_are_products_of_axes_and_zips(tmp_path):
         (v, n, law) for v in (1.0, 10.0, 100.0) for n, law in ((0.3, "svk"), (0.4, "neohookean"))]
     assert wanted.axes == ["speed", "nu", "law"] and wanted.scene == "disc-oblique" and wanted.base == {"fields": 0}
     assert wanted.runs == wanted.points + [point | {"accuracy": 0.001} for point in wanted.points]
-    assert wanted.collect == describe()["summary"] and "contact_time" in wanted.collect
+    assert wanted.collect == describe_results()["summary"] and "contact_time" in wanted.collect
 
 
 @pytest.mark.parametrize("text, words", [

@@ -1,4 +1,4 @@
-"""What the FreeFEM scripts say of themselves and of a scene: asked of edp/describe.edp, never read from their source."""
+"""What the FreeFEM scripts say of themselves, of a scene and of its results: asked of edp/describe*.edp, never read from their source."""
 
 import json
 import subprocess
@@ -11,24 +11,34 @@ from ..places import ROOT
 
 def describe(values: dict | None = None, script: str = "disc-plane") -> dict:
     """The answer of edp/describe.edp to the parameters in `values` of a scene of edp/<script>.edp: scripts, parameters (rows of the
-    table), columns (of history.csv), summary (the numbers of summary.json), body_columns and body_summary (of each of several
-    bodies), and of the scene bodies (how many), `used` (every parameter as used, SI units), half (is half the body enough?),
+    table), and of the scene bodies (how many), `used` (every parameter as used, SI units), half (is half the body enough?),
     touch_arc [rad], accuracy_made.
 
     BadInput where the script refuses the values; NotInstalled without FreeFem++.
     """
+    return json.loads(_ask("edp/describe.edp", _flags(values, script)))
+
+
+def describe_results(values: dict | None = None, script: str = "disc-plane") -> dict:
+    """The answer of edp/describe-results.edp for the same: bodies, columns (of history.csv), summary (the numbers of summary.json),
+    body_columns and body_summary (of each of several bodies), contact_columns (of contacts.csv), and by file and name `meanings`: unit, words.
+    Raises as describe()."""
+    return json.loads(_ask("edp/describe-results.edp", _flags(values, script)))
+
+
+def _flags(values: dict | None, script: str) -> tuple[str, ...]:
     flags = {"script": script} | (values or {})
-    return json.loads(_ask(tuple(text for name, value in flags.items() for text in (f"-{name}", str(value)))))
+    return tuple(text for name, value in flags.items() for text in (f"-{name}", str(value)))
 
 
 @cache
-def _ask(flags: tuple[str, ...]) -> str:
+def _ask(asked: str, flags: tuple[str, ...]) -> str:
     program = freefem.find()
-    answer = subprocess.run([program.command, "-nw", "-ne", "-v", "0", "edp/describe.edp", *flags], cwd=ROOT, env=program.environment,
+    answer = subprocess.run([program.command, "-nw", "-ne", "-v", "0", asked, *flags], cwd=ROOT, env=program.environment,
                             stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace", timeout=60)
     if answer.returncode == 0:
         return answer.stdout
     said = [line.removeprefix("ffimpact: ") for line in answer.stderr.splitlines() if line.startswith("ffimpact: ")]
     if answer.returncode == 10 and said:
         raise BadInput(said[-1])
-    raise NotInstalled(f"{program.command} does not run edp/describe.edp (exit code {answer.returncode}); {freefem.HOW}")
+    raise NotInstalled(f"{program.command} does not run {asked} (exit code {answer.returncode}); {freefem.HOW}")

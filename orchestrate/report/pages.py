@@ -5,7 +5,7 @@ import re
 import shutil
 from pathlib import Path
 
-from ..freefem.describe import describe
+from ..freefem.describe import describe_results
 from ..places import COMMAND, ROOT, shown
 
 RESULTS = """# Results
@@ -82,7 +82,7 @@ def pages() -> dict[Path, str]:
 
 def results() -> str:
     """Files, columns and numbers of a run."""
-    told = [describe({}, script) for script in SCRIPTS]
+    told = [describe_results({}, script) for script in SCRIPTS]
     text, meanings = RESULTS, told[0]["meanings"]
     for file, table, lists in TABLES:
         known = {name: entry for each in meanings.values() for name, entry in each.items()}

@@ -24,7 +24,7 @@ from pathlib import Path
 import numpy as np
 
 from ..failure import BadInput, brief
-from ..freefem.describe import describe
+from ..freefem.describe import describe, describe_results
 from ..geometry.outlines import Shape, normal_of
 from ..input import dimension, parameters
 from ..input.dimension import AXISYMMETRIC, SOLID, Dimension
@@ -111,7 +111,7 @@ class Scene:
 
     def _named(self, what: str) -> list[str]:
         """Columns or numbers; those of each of several bodies have the suffixes _1, _2 ..."""
-        said = describe(script=self.script)
+        said = describe_results(script=self.script)
         bodies = len(self.bodies) or said["bodies"]
         return said[what] + [f"{name}_{b}" for b in range(1, bodies + 1) for name in said[f"body_{what}"] if bodies > 1]
 
