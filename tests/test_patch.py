@@ -11,7 +11,7 @@ import pytest
 from orchestrate import run, scene
 from orchestrate.output import vtu
 from orchestrate.report import bodies, contact, figures
-from orchestrate.output.results import RunResult
+from orchestrate.output.results import RunResult, body_names
 
 SCENES = {"disc": ("disc-normal", {}), "whole disc": ("disc-oblique", {}), "revolution": ("ball-axisymmetric", {"accuracy": 0.1}),
           "ball": ("ball", {"accuracy": 0.2}), "oblique ball": ("ball-oblique", {}),
@@ -103,7 +103,7 @@ def test_panels_of_the_figure(ran, which, panels, maps):
     result = ran(which)
     several = bodies.are_several(result.scene)
     half = figures.is_half(result.scene)
-    figure = contact.draw(contact.read(result.folder), bodies.names(result.scene) if several else ["body"], half, np.array([]),
+    figure = contact.draw(contact.read(result.folder), body_names(result.scene) if several else ["body"], half, np.array([]),
                           result.scene if half and result.scene["script"] in figures.BODY else None, result.scene.get("symmetry", "full"), result.history)
     titles = [axes.get_xlabel() for axes in figure.axes]
     assert sum("mm" in title or "ms" in title for title in titles) - maps // 2 == panels, titles
