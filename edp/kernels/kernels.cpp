@@ -6,6 +6,7 @@
 #include "factor.hpp"
 #include "contact.hpp"
 #include "pairs.hpp"
+#include "numbers.hpp"
 
 static bodies::Bodies body;
 static bodies::Deformation deformation;
@@ -64,6 +65,7 @@ static void addKernels() {
   addFactor();
   contact::addContact();
   pairs::addPairs();
+  add("kernelRows", numbers::write);
 }
 
 LOADFUNC(addKernels)
