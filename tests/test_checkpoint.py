@@ -28,8 +28,8 @@ SCENES = {   # flags of edp/disc-plane.edp, steps between checkpoints, rows of h
     "newmark": (COARSE | dict(accuracy=0.1, dt=2e-5, integrator="newmark"), 10, 100),
     "backward-euler": (COARSE | dict(accuracy=0.1, dt=2e-5, integrator="backward-euler"), 10, 100),
     "bdf2": (COARSE | dict(accuracy=0.1, dt=2e-5, integrator="bdf2"), 10, 100),
-    "central-difference": (COARSE | dict(accuracy=0.2, angle=60, friction_static=0.5, friction_dynamic=0.4, slip_velocity=0.5,
-                                         end_time=3e-4, integrator="central-difference"), 10, 200),
+    "central-difference": (COARSE | dict(accuracy=0.2, angle=60, friction_static=0.5, friction_dynamic=0.4, slip_velocity=0.1,
+                                         dt=3e-5, integrator="central-difference"), 10, 80),
 }
 EFFORT = ("wall_seconds", "total_seconds", "cpu_seconds", "estimate_cpu_seconds", "peak_memory", "phase_seconds", "resumed_at", "provenance")
 

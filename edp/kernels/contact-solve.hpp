@@ -1,9 +1,10 @@
 // contact-solve.hpp: contact and friction of a Newton step, solved on a frozen factorisation: what core/contact/solve.idp says, in the unknowns of the window.
-//   tau = t(x),  x = x_w - B C B^T tau                                          C: compliance of the unknowns [m/N], S = C^-1
+//   tau = t(x),  x = x_w - B C B^T tau                                          C: compliance of the unknowns [m/N], S = C^-1;
+//                                                                             of explicit steps both are diagonal, and n values instead of n n
 // Newton's matrix is that of the moves y of the unknowns, with K = B^T D B sparse, D = dt/dx:
 //   (S + K) y = f = B^T (t - tau)
 // by LU where there are few unknowns, else by conjugate residuals, preconditioned by a sparse LU of K and S where K has entries: what else
-// S couples is soft beside K. Springs c T^T T are points more: rows T, force c x.
+// S couples is soft beside K; nothing where S is diagonal. Springs c T^T T are points more: rows T, force c x.
 #pragma once
 #include <umfpack.h>
 #include <memory>
@@ -29,10 +30,12 @@ inline double dot(const Vector &a, const Vector &b) { double s = 0;  for (size_t
 inline double norm(const Vector &a) { return std::sqrt(dot(a, a)); }
 inline void add(double s, const Vector &a, Vector &b) { for (size_t i = 0; i < a.size(); i++) b[i] += s * a[i]; }
 inline double largest(const Vector &a) { double m = 0;  for (double v : a) if (!(std::abs(v) <= m)) { m = std::abs(v);  if (m != m) return m; }  return m; }
+inline bool isDiagonal(const Vector &A, int n) { return n > 1 && A.size() == (size_t)n; }
 inline void symmetric(const Vector &A, const Vector &x, Vector &y) {     // y = A x
   const double one = 1, zero = 0;
   const int n = x.size(), step = 1;
   y.resize(n);
+  if (isDiagonal(A, n)) { for (int j = 0; j < n; j++) y[j] = A[j] * x[j];  return; }
   if (n > 0) dsymv_("L", &n, &one, A.data(), &n, x.data(), &step, &zero, y.data(), &step);
 }
 // C = scale A B + keep C, C (m x n), k summed over, columns so far apart; `which`: "N" or "T", transposed, for A and B.
@@ -113,10 +116,10 @@ class Newton {
   bool fits(const Rows &B) const { return made && n == B.n && D.size() == (size_t)B.blocks() * B.kinds * B.kinds; }
 
   void make(Rows &B, const Vector &slopes, const Vector &S) {
-    const bool dense = B.n <= mostDense;
     D = slopes;
     n = B.n;
-    if (dense || iterations > mostIterations) forget();
+    dense = n <= mostDense && !isDiagonal(S, n);
+    if (dense || isDiagonal(S, n) || iterations > mostIterations) forget();
     if (dense) factorDense(B, S);
     else if (!numeric) factorSparse(B, S);
     made = true;
@@ -124,13 +127,14 @@ class Newton {
   void solve(const Rows &B, const Vector &f, const Vector &S, double goal, Vector &y) {   // to a rest of norm goal [N]
     const int one = 1;
     int info;
-    if (n > mostDense) return conjugate(B, f, S, goal, y);
+    if (!dense) return conjugate(B, f, S, goal, y);
     y = f;
     if (n > 0) dgetrs_("N", &n, &one, LU.data(), &n, pivots.data(), y.data(), &n, &info);
   }
 
  private:
   int n = 0, iterations = 0;                                       // of the last solution
+  bool dense = false;
   Vector LU, P;                                                    // P: K and, where it has entries, S
   Indices pivots;
   std::shared_ptr<void> numeric;                                   // the LU of P
@@ -147,7 +151,8 @@ class Newton {
     void *made = nullptr;
     B.pattern();
     P.resize(B.start[n]);
-    for (int j = 0; j < n; j++) for (int e = B.start[j]; e < B.start[j + 1]; e++) P[e] = S[(size_t)n * j + B.row[e]];
+    for (int j = 0; j < n; j++) for (int e = B.start[j]; e < B.start[j + 1]; e++)
+      P[e] = isDiagonal(S, n) ? (B.row[e] == j) * S[j] : S[(size_t)n * j + B.row[e]];
     B.stiffness(D, [&](int t, int, int, double K) { P[B.place[t]] += K; });
     umfpack_di_numeric(B.start.data(), B.row.data(), P.data(), B.symbolic.get(), &made, nullptr, nullptr);
     numeric.reset(made, [](void *s) { umfpack_di_free_numeric(&s); });
@@ -204,6 +209,7 @@ class Problem {
     if (!grows) S.clear();
     C.assign(given, given + (size_t)n * n);
   }
+  void looseness(int n, const double *given) { C.assign(given, given + n);  S.clear(); }   // diagonal
 
   int solve(long mostInverses, long &inversesOfStep) {
     // Newton; with friction on the linearised law, and with a matrix that serves on near the end and at the start of the next solve. Returns the
@@ -247,6 +253,7 @@ class Problem {
   void stiffen() {
     // S = C^-1. Where C has only got columns: of S_0 = C_0^-1 and C = [C_0 b; b^T c] with q = S_0 b, s = (c - b^T q)^-1
     //   S = [S_0 + q s q^T, -q s; -s q^T, s]
+    if (isDiagonal(C, B.n)) { S = C;  for (double &s : S) s = 1 / s;  return; }
     const int n = order(C), m = 3 * order(S) < 2 * n ? 0 : order(S), k = n - m;
     int info;
     if (k == 0) return;

@@ -121,6 +121,7 @@ static void addContact() {
   ::add("kernelNormal", normal);
   ::add("kernelTractions", tractions);
   ::add("kernelSoft", +[](Table C) { problem.compliance(C.N(), &C(0, 0)); });
+  ::add("kernelLoose", +[](Reals C) { problem.looseness(C.n, &C[0]); });
   ::add("kernelSort", sortRows);
   ::add("kernelTake", take);
   ::add("kernelWindow", setWindow);

@@ -1,0 +1,73 @@
+"""Central differences: contact and friction are solved on the lumped mass, so that the bodies' own waves alone set the parts of a step."""
+
+import pytest
+
+from orchestrate import run, scene
+from verification.measure import disc
+
+EXPLICIT = {"integrator": "central-difference"}
+OBLIQUE = dict(law="neohookean", nu=0.45, speed=12, angle=60, penalty=1e10, friction_static=0.7, friction_dynamic=0.5, slip_velocity=0.1,
+               mesh_size=0.012, contact_mesh_size=0.003)
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory):
+    """The oblique disc by the implicit default and by explicit steps."""
+    return {name: disc(tmp_path_factory.mktemp(name), **OBLIQUE | more) for name, more in (("implicit", {}), ("explicit", EXPLICIT))}
+
+
+def parts(found) -> int:
+    return found.summary["residual_evaluations"]
+
+
+def conserves(found, drift: float) -> None:
+    assert found.summary["momentum_drift"] < 1e-12 and (found.summary["angular_momentum_drift"] or 0) < 1e-12
+    assert found.summary["energy_drift"] < drift
+
+
+def test_explicit_steps_agree_with_the_conserving_ones(runs):
+    """Impulse, rebound and friction work are those of the implicit run on the same mesh; momenta exact, the energy drift small and told."""
+    there, found = runs["implicit"].summary, runs["explicit"].summary
+    assert found["impulse"] == pytest.approx(there["impulse"], rel=0.002)
+    for name, scale in (("rebound_vx", 12), ("rebound_vy", 12), ("rebound_spin", 12 / 0.05)):
+        assert found[name] == pytest.approx(there[name], abs=0.005 * scale), name
+    assert found["friction_work"] == pytest.approx(there["friction_work"], abs=0.005 * there["energy_initial"])
+    assert found["contact_time"] == pytest.approx(there["contact_time"], rel=0.03)
+    conserves(runs["explicit"], 2e-4)
+
+
+@pytest.mark.parametrize("change", [{"penalty": 1e11}, {"penalty": 1e12}, {"slip_velocity": 0.01}], ids=str)
+def test_penalty_and_slip_velocity_do_not_set_the_step(runs, change, tmp_path):
+    """Ten and a hundred times the penalty, a tenth of slip_velocity take the parts that they took before."""
+    found = disc(tmp_path, **OBLIQUE | EXPLICIT | change)
+    assert parts(found) == pytest.approx(parts(runs["explicit"]), rel=0.05)
+    assert found.summary["impulse"] == pytest.approx(runs["explicit"].summary["impulse"], rel=0.01)
+    conserves(found, 2e-3)
+
+
+def test_records_follow_the_accuracy(runs):
+    """Steps are recorded as often as an implicit run would take them, whatever the parts; their forces add up to the impulse."""
+    found = runs["explicit"]
+    assert found.summary["steps"] < 1.5 * runs["implicit"].summary["steps"] and parts(found) > 5 * found.summary["steps"]
+    assert (found.history["dt"] * found.history["normal_force"]).sum() == pytest.approx(found.summary["impulse"], rel=1e-12)
+
+
+def test_a_step_that_is_given_is_parted(runs, tmp_path):
+    """`dt` is the step that is recorded; contact instants are those of its parts, and hardly change with it."""
+    found = disc(tmp_path, **OBLIQUE | EXPLICIT | {"dt": 2e-5})
+    for name in ("contact_start", "contact_time"):
+        assert found.summary[name] == pytest.approx(runs["explicit"].summary[name], rel=0.005, abs=1e-7), name
+
+
+@pytest.mark.parametrize("name, settings", [("two-discs", {}), ("disc-corner", {}), ("ball", {"end_time": 2e-3}), ("ball-axisymmetric", {})], ids=str)
+def test_every_kind_of_scene_conserves(tmp_path, name, settings):
+    """Rows that turn with two bodies are iterated until momenta are exact; so they are at several obstacles, in space and of revolution."""
+    conserves(run.run(scene.load(name), settings | EXPLICIT | {"accuracy": 0.2}, tmp_path / "out"), 5e-3)
+
+
+def test_kernels_do_what_the_scripts_say(tmp_path):
+    """Friction in parts, with kernels and without, up to round-off."""
+    few = OBLIQUE | EXPLICIT | {"end_time": 2e-4}
+    ours, theirs = disc(tmp_path / "with", **few), disc(tmp_path / "without", **few | {"without": "kernels"})
+    for name in ("impulse", "friction_work"):
+        assert ours.summary[name] == pytest.approx(theirs.summary[name], rel=1e-7), name
