@@ -207,24 +207,20 @@ def _peers(case: Case, others: list[tuple], best: pd.Series, force: tuple[np.nda
     rows = []
     for program, form, factor, dt in in_turn("others", others):
         sizes = sized(factor)
-        history = out / f"{case.scene}-{program}-{form}-{factor:g}-{dt:g}.csv"
-        history.parent.mkdir(parents=True, exist_ok=True)
-        row = {"program": f"{program}, {form}", "family": f"{program}, {form}", "setting": _words(sizes | {"dt": dt}), "exit": 1}
+        history = _history(out, f"{case.scene}-{program}-{form}-{factor:g}-{dt:g}")
+        row = {"program": f"{program}, {form}", "family": f"{program}, {form}", "setting": _words(sizes | {"dt": dt})}
         if program == "textbook":
             found, reason = _textbook(sizes, dt, out), ""
         else:
             found, reason = peers.run(program, form, sizes["mesh_size"], sizes["contact_mesh_size"], dt, LIMIT, scene=case.scene,
                                       history=str(history), **case.base)
-        if found:
-            row |= {"exit": 0, "dofs": found["dofs"], "steps": found["steps"], "seconds": found["cpu_seconds"]}
-            row |= {f"{answer}_error": 100 * abs(found[answer] / best[answer] - 1) for answer in ("impulse", "rebound_vy", "contact_time")
-                    if answer in found}
-            if history.exists():
-                t, values = np.loadtxt(history, delimiter=",", skiprows=1).T
-                row["force_error"] = 100 * distance(force, (t - dt / 2, values))
-                if (same := study.place(folder, sizes | {"dt": dt})) in ours:
-                    row["force_from_ours"] = 100 * distance((t - dt / 2, values), _force(same))
-        rows.append(row | {"message": reason})
+        row |= _other(found, reason, best, {answer: answer for answer in ("impulse", "rebound_vy", "contact_time")})
+        if found and history.exists():
+            t, values = np.loadtxt(history, delimiter=",", skiprows=1).T
+            row["force_error"] = 100 * distance(force, (t - dt / 2, values))
+            if (same := study.place(folder, sizes | {"dt": dt})) in ours:
+                row["force_from_ours"] = 100 * distance((t - dt / 2, values), _force(same))
+        rows.append(row)
     return pd.DataFrame(rows)
 
 
@@ -232,16 +228,26 @@ def _two_bodies(case: Case, best: pd.Series, force: tuple[np.ndarray, np.ndarray
     """The same rows for NGSolve's disc on a block, a row a refinement of its own mesh; one with the reason where there is no answer."""
     rows = []
     for refine in in_turn("NGSolve", REFINEMENTS_QUICK if quick else REFINEMENTS):
-        history = out / f"two-bodies-{refine:g}.csv"
-        history.parent.mkdir(parents=True, exist_ok=True)
+        history = _history(out, f"two-bodies-{refine:g}")
         found, reason = peers.two_bodies(LIMIT, refine=refine, history=str(history), **case.base)
-        row = {"program": "ngsolve", "family": "ngsolve, central differences", "setting": f"refine {refine:g}", "exit": 1, "message": reason}
+        rows.append({"program": "ngsolve", "family": "ngsolve, central differences", "setting": f"refine {refine:g}"} | _other(found, reason, best, NGSOLVE))
         if found:
-            t, values = np.loadtxt(history, delimiter=",", skiprows=1, usecols=(0, 1)).T
-            row |= {"exit": 0, "dofs": found["dofs"], "steps": found["steps"], "seconds": found["cpu_seconds"], "force_error": 100 * distance(force, (t, values))}
-            row |= {f"{answer}_error": 100 * abs(found[NGSOLVE[answer]] / best[answer] - 1) for answer in case.answers}
-        rows.append(row)
+            rows[-1]["force_error"] = 100 * distance(force, tuple(np.loadtxt(history, delimiter=",", skiprows=1, usecols=(0, 1)).T))
     return pd.DataFrame(rows)
+
+
+def _history(out: Path, name: str) -> Path:
+    """Where another program is to write its force history."""
+    out.mkdir(parents=True, exist_ok=True)
+    return out / f"{name}.csv"
+
+
+def _other(found: dict | None, reason: str, best: pd.Series, answers: dict[str, str]) -> dict:
+    """Of what another program found, which calls our answers so: size, seconds and errors [%]; or the reason why there is nothing."""
+    if not found:
+        return {"exit": 1, "message": reason}
+    return {"exit": 0, "message": reason, "dofs": found["dofs"], "steps": found["steps"], "seconds": found["cpu_seconds"]} | {
+        f"{ours}_error": 100 * abs(found[theirs] / best[ours] - 1) for ours, theirs in answers.items() if theirs in found}
 
 
 def _textbook(sizes: study.Point, dt: float, out: Path) -> dict:

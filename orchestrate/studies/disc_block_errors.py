@@ -8,7 +8,6 @@ import pandas as pd
 
 from ..output import estimate
 from ..input.parameters import Value, whole
-from ..places import shown
 from ..progress import in_turn
 from ..output.results import read_scene
 from . import peers
@@ -43,13 +42,9 @@ def main(argv: list[str]) -> int:
     options = parser.parse_args(argv)
     cases, out = CASES[:max(1, options.cases)], options.out
     table = compare(cases, tuple(options.accuracy), out)
-    study.save(table, out / "disc-block-errors.csv")
     others, reason = ask_peer([case for case in PEER_CASES if case in cases])
     study.save(others, out / "disc-block-peers.csv")
-    text = report(table, others, reason)
-    print(f"{text}\n{shown(out)}/disc-block-errors.csv")
-    study.page(options.page, "A disc on a free block, with error bars", ["disc-block-errors", *argv], text)
-    return 1 if violations(table) else 0
+    return study.finish(options, table, report(table, others, reason), not violations(table), argv, "A disc on a free block, with error bars")
 
 
 def compare(cases: list[study.Point], accuracies: tuple[float, ...], out: Path) -> pd.DataFrame:

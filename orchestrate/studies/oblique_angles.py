@@ -20,7 +20,6 @@ from verification.rigid_disc import STIFF
 
 from ..output import estimate
 from ..failure import BadInput
-from ..places import shown
 from ..progress import in_turn
 from ..report.figures import BLACK, BLUE, DASHED, GREEN, ORANGE, STYLE, save
 from ..output.results import read_scene
@@ -62,12 +61,8 @@ def main(argv: list[str]) -> int:
     out = options.out
     cases = in_turn("oblique-angles", itertools.product(bodies, kinds))
     table = judge(pd.concat([impacts(body, kind, friction[0], angles, out) for body, kind in cases], ignore_index=True))
-    study.save(table, out / "oblique-angles.csv")
     draw(table, out / "oblique-angles.png")
-    text = report(table)
-    print(f"{text}\n{shown(out)}/oblique-angles.{{csv,png}}")
-    study.page(options.page, "Disc and ball over the angle of incidence", ["oblique-angles", *argv], text)
-    return 0 if holds(table) else 1
+    return study.finish(options, table, report(table), holds(table), argv, "Disc and ball over the angle of incidence", "{csv,png}")
 
 
 def numbers(name: str, text: str, low: float, high: float) -> list[float]:

@@ -10,7 +10,6 @@ import pandas as pd
 from .. import run
 from ..freefem import freefem
 from ..failure import Failure
-from ..places import shown
 from ..output.results import read_history, read_json, read_scene, write_json
 from ..sweeps import study
 
@@ -31,11 +30,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--laws", metavar="LAW", nargs="+", default=LAWS, choices=LAWS, help="of the bodies (default: all)")
     options = parser.parse_args(argv)
     table = compare(options.laws, options.out)
-    study.save(table, options.out / "pairing.csv")
-    text = report(table)
-    print(f"{text}\n{shown(options.out)}/pairing.csv")
-    study.page(options.page, "Closest points and pairs of points", ["pairing-comparison", *argv], text)
-    return 0 if holds(table) else 1
+    return study.finish(options, table, report(table), holds(table), argv, "Closest points and pairs of points")
 
 
 def solve(folder: Path, flags: dict) -> dict:

@@ -11,7 +11,6 @@ from .. import run, scene
 from ..output import estimate
 from ..failure import Failure, TooLong
 from ..input.parameters import Value, whole
-from ..places import shown
 from ..output.results import read_answers
 from . import draws
 from ..sweeps import study
@@ -37,13 +36,10 @@ def main(argv: list[str]) -> int:
     count, of = max(1, options.scenes), options.of or "disc-normal"
     drawn = [(of, point) for point in draws.draw(options.seed, count, options.hard, of)] if options.hard or options.of else draws.mixture(options.seed, count)
     table = compare(drawn, options.out)
-    study.save(table, options.out / "promise.csv")
     good = silent(table) == 0 if options.hard else kept(table) and covered(table)
     text = report(table) + f"; {'the requirement' if options.hard else 'the promise'} {'is kept' if good else 'IS NOT KEPT'}"
-    print(f"{text}\n{shown(options.out)}/promise.csv")
     title = ("Hard scenes" if options.hard else "Whether accuracy means what it says") + (f" of {options.of}" if options.of else "")
-    study.page(options.page, title, ["promise", *argv], text)
-    return 0 if good else 1
+    return study.finish(options, table, text, good, argv, title)
 
 
 def compare(drawn: list[Drawn], out: Path) -> pd.DataFrame:

@@ -12,7 +12,6 @@ from matplotlib.image import AxesImage
 from matplotlib.patches import Rectangle
 
 from ..failure import Unreadable
-from ..places import shown
 from ..report.figures import LAWS, SMALL, STYLE, save
 from ..output.results import read_history
 from ..sweeps import study
@@ -40,11 +39,8 @@ def main(argv: list[str]) -> int:
     rows["order"] = as_told(rows)
     rows["quiet"] = rows.work_last <= QUIET
     rows["time"] = (rows.contact_time / PAPER[0] - 1).abs() <= PAPER[1]
-    study.save(rows, out / "stick-slip.csv")
     draw(rows, axes, out / "stick-slip.png")
-    print(report(rows))
-    print(f"\n{shown(out)}/stick-slip.{{csv,png}}")
-    return 0
+    return study.finish(options, rows, report(rows) + "\n", True, files="{csv,png}")
 
 
 def grid(axes: dict[str, tuple[float, ...]]) -> list[study.Point]:

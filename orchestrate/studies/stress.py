@@ -2,12 +2,10 @@
 
 import itertools
 import random
-from pathlib import Path
 
 import pandas as pd
 
 from ..input.parameters import whole
-from ..places import shown
 from ..sweeps import study
 
 AXES = {"law": ("svk", "neohookean"), "nu": (0.0, 0.3, 0.45, 0.49), "speed": (0.5, 4.0, 10.0), "penalty": (1e9, 1e10, 1e12),
@@ -30,10 +28,7 @@ def main(argv: list[str]) -> int:
     rows = study.study(points, options.out, BASE, LIMIT)
     rows = rows.reindex(columns=rows.columns.union(READ, sort=False))   # also where every run crashed
     rows["outcome"] = rows.apply(outcome, axis=1)
-    study.save(rows, options.out / "stress.csv")
-    print(report(rows))
-    print(f"\n{shown(options.out)}/stress.csv")
-    return 0 if holds(rows).all() else 1
+    return study.finish(options, rows, report(rows) + "\n", holds(rows).all())
 
 
 def outcome(row: pd.Series) -> str:

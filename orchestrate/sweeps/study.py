@@ -26,7 +26,7 @@ from ..output import estimate as estimates
 from ..failure import BadInput, Busy, Failure, TooLong, Unreadable
 from ..input.parameters import Value
 from ..output.folder import result_folder
-from ..places import COMMAND, RESULTS
+from ..places import COMMAND, RESULTS, shown
 from ..progress import Line, forward
 from ..output.results import read_json
 
@@ -199,12 +199,21 @@ def _failed_before(wanted: scene.Scene, folder: Path) -> dict | None:
 
 
 def command(name: str, doc: str, page: bool = False, folder: str = "") -> argparse.ArgumentParser:
-    """The command line of a study: --out, its result folder, checked; --page where what it prints may become a page of docs/."""
+    """The command line of a study: --out, its result folder, checked; --page where what it prints may become a page of docs/. For finish()."""
     parser = argparse.ArgumentParser(prog=f"{COMMAND} {name}", description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", metavar="DIR", type=lambda text: result_folder(Path(text)), default=str(RESULTS / (folder or name)), help="the result folder")
     if page:
         parser.add_argument("--page", metavar="FILE", type=Path, help="also write what is printed as a page")
+    parser.set_defaults(command=name, table=folder or name)
     return parser
+
+
+def finish(options: argparse.Namespace, rows: pd.DataFrame, text: str, good: bool, argv: list[str] | None = None, title: str = "", files: str = "csv") -> int:
+    """The end of a study: saves its table, prints what it says and where its `files` are, and writes the page where one is asked for; the exit code."""
+    save(rows, options.out / f"{options.table}.csv")
+    print(f"{text}\n{shown(options.out)}/{options.table}.{files}")
+    page(getattr(options, "page", None), title, [options.command, *(argv or [])], text)
+    return 0 if good else 1
 
 
 def warned(warnings: Iterable[str]) -> str:
