@@ -95,16 +95,11 @@ def disc(radius: float, mesh_size: float, contact_mesh_size: float, half: bool, 
         field = gmsh.model.mesh.field
         field.setAsBackgroundMesh(graded(field, "CurvesList", contact_arcs, (contact, bulk), math.ceil(2 * arc / contact)))
         gmsh.model.mesh.generate(2)
-        tags, coordinates, _ = gmsh.model.mesh.getNodes()
-        _, triangle_tags = gmsh.model.mesh.getElementsByType(2)
+        points, triangles, used = elements_of(gmsh.model, (2,), {2: 3}, "triangle", "triangles")      # gmsh also keeps the centre of the arcs
         pieces = [(label, gmsh.model.mesh.getElementsByType(1, curve)[1].reshape(-1, 2))
                   for label, curves in ((FREE, arcs), (AXIS, axis)) for curve in curves]
 
-    # Number the vertices that a triangle uses from 0 (gmsh also keeps the centre of the arcs).
-    used, triangles = np.unique(triangle_tags, return_inverse=True)
-    row = np.empty(int(tags.max()) + 1, dtype=int)
-    row[tags] = np.arange(len(tags))
-    points = coordinates.reshape(-1, 3)[row[used], :2]
+    points = points[:, :2]
     edges = np.searchsorted(used, np.vstack([nodes for _, nodes in pieces]))
     labels = np.concatenate([np.full(len(nodes), label) for label, nodes in pieces])
 
@@ -112,7 +107,7 @@ def disc(radius: float, mesh_size: float, contact_mesh_size: float, half: bool, 
     points[circle] /= np.linalg.norm(points[circle], axis=1, keepdims=True)
     points[np.unique(edges[labels == AXIS]), 0] = 0.0
     points = radius * (points + (0.0, 1.0))
-    return Mesh(points, counter_clockwise(points, triangles.reshape(-1, 3)), edges, labels, region=OWN)
+    return Mesh(points, counter_clockwise(points, triangles), edges, labels, region=OWN)
 
 
 @cache
@@ -183,6 +178,25 @@ def graded(field, kind: str, sources: Sequence[int], sizes: tuple[float, float],
     for name, value in dict(InField=distance, SizeMin=least, SizeMax=most, DistMin=flat, DistMax=flat + max(most - least, 1e-9 * most) / GROWTH).items():
         field.setNumber(size, name, value)
     return size
+
+
+def elements_of(model, dimensions: Sequence[int], nodes: dict[int, int], one: str, many: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Vertices (n, 3) and elements (t, corners) of a model of gmsh, those of `nodes` (gmsh's types: how many, corners first), and gmsh's numbers of the vertices;
+    BadInput where there are none, or others."""
+    kinds = [kind for dimension in dimensions for kind in model.mesh.getElementTypes(dimension)]
+    for kind in kinds:
+        if kind not in nodes:
+            raise BadInput(f"it has elements '{model.mesh.getElementProperties(kind)[0]}' (accepted: {many} of {' or '.join(map(str, nodes.values()))} nodes)")
+    if not kinds:
+        raise BadInput(f"it has no {many}")
+    corners = [model.mesh.getElementsByType(kind)[1].reshape(-1, nodes[kind])[:, :min(nodes.values())] for kind in kinds]
+    used, elements = np.unique(np.vstack(corners), return_inverse=True)
+    tags, coordinates, _ = model.mesh.getNodes()
+    row = np.full(int(max(tags.max(), used.max())) + 1, -1)
+    row[tags] = np.arange(len(tags))
+    if (row[used] < 0).any():
+        raise BadInput(f"a {one} names node {used[row[used] < 0][0]}, which is not there")
+    return coordinates.reshape(-1, 3)[row[used]], elements.reshape(-1, min(nodes.values())), used
 
 
 def counter_clockwise(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:

@@ -162,22 +162,8 @@ def _grade(gmsh, sizes: Sizes) -> None:
 
 def cells_of(model) -> tuple[np.ndarray, np.ndarray]:
     """Vertices (n, 3) and tetrahedra (t, 4) of a model of gmsh, of those of second order the corners; BadInput for other elements."""
-    tags, coordinates, _ = model.mesh.getNodes()
-    kinds = {4: 4, 11: 10}
-    found = []
-    for kind in model.mesh.getElementTypes(3):
-        if kind not in kinds:
-            raise BadInput(f"it has elements '{model.mesh.getElementProperties(kind)[0]}' (accepted: tetrahedra of 4 or 10 nodes)")
-        found.append(model.mesh.getElementsByType(kind)[1].reshape(-1, kinds[kind])[:, :4])
-    if not found:
-        raise BadInput("it has no tetrahedra")
-    used, cells = np.unique(np.vstack(found), return_inverse=True)
-    row = np.full(int(max(tags.max(), used.max())) + 1, -1)
-    row[tags] = np.arange(len(tags))
-    if (row[used] < 0).any():
-        raise BadInput(f"a tetrahedron names node {used[row[used] < 0][0]}, which is not there")
-    points = coordinates.reshape(-1, 3)[row[used]]
-    return points, right_handed(points, cells.reshape(-1, 4))
+    points, cells, _ = mesh.elements_of(model, (3,), {4: 4, 11: 10}, "tetrahedron", "tetrahedra")
+    return points, right_handed(points, cells)
 
 
 def expected_cells(volume: float, sizes: Sizes) -> float:

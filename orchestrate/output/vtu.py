@@ -90,21 +90,27 @@ def _split(cells: bytes, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray
     """Of so many quadratic triangles the functions (points of a cell, 6), the row of each point among those of all cells, and the straight triangles."""
     corners = np.frombuffer(cells, dtype=int).reshape(count, 6)[:, :3]
     n = int(np.clip(np.sqrt(MOST / max(1, count)), 2, FINEST))
-    lattice = [(i, j) for j in range(n + 1) for i in range(n + 1 - j)]
-    place = {each: k for k, each in enumerate(lattice)}
-    b, c = np.array(lattice).T / n
-    a = 1 - b - c
-    values = np.stack([a * (2 * a - 1), b * (2 * b - 1), c * (2 * c - 1), 4 * a * b, 4 * b * c, 4 * c * a], axis=1)        # (points of a cell, 6)
+    places, values, triangles = lattice(n)
     # a point of a side is one for both neighbours: it is known by its corners and their shares
-    shares = np.rint(n * np.stack([a, b, c], axis=1)).astype(int)[None].repeat(count, axis=0)                          # (cells, points, 3)
+    shares = np.rint(n * places).astype(int)[None].repeat(count, axis=0)                          # (cells, points, 3)
     owners = np.where(shares > 0, corners[:, None, :], -1)
     order = np.argsort(owners, axis=2)
     known = np.concatenate([np.take_along_axis(each, order, axis=2) for each in (owners, shares)], axis=2).reshape(-1, 6)
     _, first, which = np.unique(known, axis=0, return_index=True, return_inverse=True)
-    up = [(place[i, j], place[i + 1, j], place[i, j + 1]) for i, j in lattice if i + j < n]
-    down = [(place[i + 1, j], place[i + 1, j + 1], place[i, j + 1]) for i, j in lattice if i + j < n - 1]
-    triangles = which.reshape(count, -1)[:, np.array(up + down)].reshape(-1, 3)
-    return values, first, triangles
+    return values, first, which.reshape(count, -1)[:, triangles].reshape(-1, 3)
+
+
+def lattice(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """A triangle as n * n straight ones: their corners (points, 3), as shares of its own, the values (points, 6) there of the quadratic functions of its
+    corners and the middles of 01, 12, 20, and the triangles (n * n, 3)."""
+    points = [(i, j) for j in range(n + 1) for i in range(n + 1 - j)]
+    place = {each: k for k, each in enumerate(points)}
+    b, c = np.array(points).T / n
+    a = 1 - b - c
+    values = np.stack([a * (2 * a - 1), b * (2 * b - 1), c * (2 * c - 1), 4 * a * b, 4 * b * c, 4 * c * a], axis=1)
+    up = [(place[i, j], place[i + 1, j], place[i, j + 1]) for i, j in points if i + j < n]
+    down = [(place[i + 1, j], place[i + 1, j + 1], place[i, j + 1]) for i, j in points if i + j < n - 1]
+    return np.stack([a, b, c], axis=1), values, np.array(up + down)
 
 
 def _in_plane(tetrahedra: np.ndarray, on_plane: np.ndarray, points: np.ndarray) -> np.ndarray:

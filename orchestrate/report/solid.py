@@ -66,13 +66,8 @@ def skin(points: np.ndarray, tetrahedra: np.ndarray) -> Skin:
     faces = tetrahedra[:, vtu.FACES].reshape(-1, 6)
     _, first, count = np.unique(np.sort(faces[:, :3], axis=1), axis=0, return_index=True, return_counts=True)
     faces = faces[first[count == 1]]
-    number = {place: k for k, place in enumerate((i, j) for i in range(FINE + 1) for j in range(FINE + 1 - i))}
-    r, s = np.array(list(number)).T / FINE
-    q = 1 - r - s
-    shape = np.stack([q * (2 * q - 1), r * (2 * r - 1), s * (2 * s - 1), 4 * q * r, 4 * r * s, 4 * s * q], axis=1)
-    pieces = [(number[i, j], number[i + 1, j], number[i, j + 1]) for i, j in number if i + j < FINE]
-    pieces += [(number[i + 1, j], number[i + 1, j + 1], number[i, j + 1]) for i, j in number if i + j < FINE - 1]
-    triangles = (np.array(pieces) + len(shape) * np.arange(len(faces))[:, None, None]).reshape(-1, 3)
+    _, shape, pieces = vtu.lattice(FINE)
+    triangles = (pieces + len(shape) * np.arange(len(faces))[:, None, None]).reshape(-1, 3)
     every = Skin(np.repeat(faces, len(shape), axis=0), np.tile(shape, (len(faces), 1)), triangles)
     rounded = np.round(every.at(points) / (1e-7 * np.ptp(points, axis=0).max())).astype(np.int64)
     _, kept, row = np.unique(rounded, axis=0, return_index=True, return_inverse=True)
