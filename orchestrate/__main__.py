@@ -59,11 +59,11 @@ def _parser() -> argparse.ArgumentParser:
 
     command = commands.add_parser("run", help="run a scene, or reuse its finished result")
     command.add_argument("scene", metavar="SCENE", help="a built-in scene (see list) or the path of a TOML file")
-    command.add_argument("--set", metavar="NAME=VALUE", nargs="+", action="extend", default=[], help="set a parameter (see parameters); of a scene of bodies "
-                         "any entry: body.2.young=1e6")
+    command.add_argument("--set", metavar="NAME=VALUE", nargs="+", action="extend", default=[], help="set a parameter (see parameters); of "
+                         "a scene of bodies any entry: body.2.young=1e6")
     command.add_argument("--out", metavar="DIR", type=Path, help="the result folder (default: results/SCENE)")
-    command.add_argument("--mesh", metavar="FILE", type=Path, help="a mesh of a body of your own, FreeFEM's or gmsh's .msh; labels 1: may touch, 2: symmetry axis, "
-                         "others: free, never touch")
+    command.add_argument("--mesh", metavar="FILE", type=Path, help="a mesh of a body of your own, FreeFEM's or gmsh's .msh; labels 1: may "
+                         "touch, 2: symmetry axis, others: free, never touch")
     command.add_argument("--checkpoint-every", metavar="STEPS",
                          help="make a checkpoint every so many steps; a run that is killed goes on from the last when called again")
     command.add_argument("--force", action="store_true", help="run again, from the start, even if the result is there")

@@ -68,8 +68,8 @@ def taken(model) -> mesh.Mesh:
         labelled = {frozenset((number.get(a, -1), number.get(b, -1))): label for a, b, label in curves}
         labels = np.array([labelled.get(frozenset(edge), OTHER) for edge in edges.tolist()], dtype=int)
         if not (labels == mesh.FREE).any():
-            raise BadInput(f"none of its physical curves ({_names(model)}) has the name 'contact', or without a name the number {mesh.FREE}, on its boundary: nothing "
-                           "of it could touch (accepted: such a one, or no physical curve)")
+            raise BadInput(f"none of its physical curves ({_names(model)}) has the name 'contact', or without a name the number "
+                           f"{mesh.FREE}, on its boundary: nothing of it could touch (accepted: such a one, or no physical curve)")
     return mesh.Mesh(points, triangles, edges, labels)
 
 

@@ -1,4 +1,5 @@
-"""Meshes of tetrahedra: of balls, boxes and cylinders by gmsh, or parts of them on one side of planes of symmetry; written in Medit's format, as FreeFEM reads it.
+"""Meshes of tetrahedra: of balls, boxes and cylinders by gmsh, or parts of them on one side of planes of symmetry; written in Medit's
+format, as FreeFEM reads it.
 
 Labels of boundary faces: 1 may touch, 2 on the plane x = 0 of what is computed by symmetry, 3 on its plane z = 0, 4 never touches.
 """
@@ -44,8 +45,8 @@ class Curved:
 
 @dataclass(frozen=True)
 class SolidMesh:
-    """points (n, 3) in m, tetrahedra (t, 4) of positive volume, faces (f, 3) of the boundary seen counter-clockwise from outside, their labels (f,); the
-    spheres and cylinders that faces lie on."""
+    """points (n, 3) in m, tetrahedra (t, 4) of positive volume, faces (f, 3) of the boundary seen counter-clockwise from outside, their
+    labels (f,); the spheres and cylinders that faces lie on."""
 
     points: np.ndarray
     cells: np.ndarray
@@ -88,8 +89,8 @@ def unknowns(cells: np.ndarray, degree: int) -> int:
 # ---- meshes of shapes
 
 def mesh_shape(kind: str, lengths: np.ndarray, rotation: np.ndarray, folded: tuple[int, ...], sizes: Sizes, scale: float) -> SolidMesh:
-    """The mesh of a ball (radius), box (extents) or cylinder (radius, height, its axis y) about the origin, turned: only what lies on the positive
-    side of the planes across the axes `folded`. `scale` [m] is about its size: gmsh's tolerances are absolute."""
+    """The mesh of a ball (radius), box (extents) or cylinder (radius, height, its axis y) about the origin, turned: only what lies on the
+    positive side of the planes across the axes `folded`. `scale` [m] is about its size: gmsh's tolerances are absolute."""
     bulk = min(sizes.bulk, LARGEST * lengths[0]) if kind == "ball" else sizes.bulk
     inside = Sizes(*(np.round(size / scale, mesh.DIGITS) for size in (bulk, min(bulk, sizes.contact), sizes.near, sizes.slack)))
     sides = np.round(lengths / scale, 12)        # its corners are exact to as much
@@ -131,8 +132,8 @@ def mesh_shape(kind: str, lengths: np.ndarray, rotation: np.ndarray, folded: tup
 
 
 def generate(build: Callable, sizes: Sizes, turn: int, look: Callable | None = None) -> tuple[np.ndarray, np.ndarray]:
-    """Points and tetrahedra of what `build` puts into gmsh, also shown to `look`; on curved surfaces `turn` elements a full turn at least. Sizes of
-    0 are open: `build` sets the largest."""
+    """Points and tetrahedra of what `build` puts into gmsh, also shown to `look`; on curved surfaces `turn` elements a full turn at least.
+    Sizes of 0 are open: `build` sets the largest."""
     with mesh.gmsh_session() as gmsh:
         build(gmsh)
         for name, value in {"FromPoints": 0, "ExtendFromBoundary": 0, "FromCurvature": turn}.items():
@@ -167,7 +168,8 @@ def cells_of(model) -> tuple[np.ndarray, np.ndarray]:
 
 
 def expected_cells(volume: float, sizes: Sizes) -> float:
-    """About how many tetrahedra a body gets: those of its bulk, and around where it touches, in layers whose area grows with the distance."""
+    """About how many tetrahedra a body gets: those of its bulk, and around where it touches, in layers whose area grows with the
+    distance."""
     bulk = volume / (FILL * sizes.bulk**3)
     if not len(sizes.near) or sizes.contact >= sizes.bulk:
         return bulk
@@ -181,7 +183,8 @@ def expected_cells(volume: float, sizes: Sizes) -> float:
 def stack(meshes: list[SolidMesh], centres: np.ndarray) -> tuple[SolidMesh, np.ndarray]:
     """All bodies as one mesh, and the body (t,) of each tetrahedron."""
     first = np.cumsum([0, *(len(one.points) for one in meshes)])
-    together = SolidMesh(np.vstack([one.points + centre for one, centre in zip(meshes, centres)]), np.vstack([one.cells + k for one, k in zip(meshes, first)]),
+    together = SolidMesh(np.vstack([one.points + centre for one, centre in zip(meshes, centres)]),
+                         np.vstack([one.cells + k for one, k in zip(meshes, first)]),
                          np.vstack([one.faces + k for one, k in zip(meshes, first)]), np.concatenate([one.labels for one in meshes]))
     return together, np.repeat(np.arange(len(meshes)), [len(one.cells) for one in meshes])
 

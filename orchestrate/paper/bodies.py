@@ -12,7 +12,8 @@ LIKE_FOR_LIKE = "same-penalty/" + ACCELERATIONS                           # the 
 STEPS, SOLID, SOLID_MAP = "conservation", "ball", "calibrate-ball-3d"
 SAME = 0.005                # by which two runs of one ball may differ besides their estimated errors, as two programs in V12
 # names of its answers: (of their errors, unit)
-SOLID_NUMBERS = {"impulse": ("impulse", "N s"), "rebound_vy": ("rebound", "m/s"), "thresholded_contact_time": ("thresholded_contact_time", "s")}
+SOLID_NUMBERS = {"impulse": ("impulse", "N s"), "rebound_vy": ("rebound", "m/s"),
+                 "thresholded_contact_time": ("thresholded_contact_time", "s")}
 
 
 def lost(*names: str):
@@ -23,8 +24,8 @@ def lost(*names: str):
 ON_BLOCK = {"runs": " ".join(BLOCK.values()), "lost": lost(BLOCK["svk"])}
 
 
-@states("Section 3.2", "a disc at 10 m/s on a free block: the disc is reflected", figures="disc-block/velocity disc-block-neohookean/velocity",
-        laws="Upwards after the contact, {}.", **ON_BLOCK)
+@states("Section 3.2", "a disc at 10 m/s on a free block: the disc is reflected",
+        figures="disc-block/velocity disc-block-neohookean/velocity", laws="Upwards after the contact, {}.", **ON_BLOCK)
 def rebounds(results: Results, law: str) -> tuple[bool, str]:
     """With a law: where its velocity upwards after the contact is more than the estimated error of it."""
     (_, disc), _, error = _velocities(results, BLOCK[law])
@@ -33,21 +34,21 @@ def rebounds(results: Results, law: str) -> tuple[bool, str]:
 
 @states("Section 3.2", "the block is directed downwards", figures="disc-block/shapes", laws="Upwards after the contact, {}.", **ON_BLOCK)
 def downwards(results: Results, law: str) -> tuple[bool, str]:
-    """With a law: where momentum is kept and the block's velocity lies between those of bodies that stay together (restitution e = 0) and of
-    an elastic impact (e = 1): -m v/(m + M) and twice that."""
+    """With a law: where momentum is kept and the block's velocity lies between those of bodies that stay together (restitution e = 0) and
+    of an elastic impact (e = 1): -m v/(m + M) and twice that."""
     (start, disc), block, error = _velocities(results, BLOCK[law])
     end = results.summary(BLOCK[law])
     m, M = end["mass_1"], end["mass_2"]
     together = m * start / (m + M)
     missing = abs((m * disc + M * block) / (m * start) - 1)
     return missing < MOMENTUM and 2 * together < block < together, (
-        f"{block:.4f} ± {m / M * error:.1g} m/s, e = {(block - disc) / start:.3f} (between {together:.3f} for e = 0 and {2 * together:.3f} m/s for "
-        f"e = 1; momentum kept to {missing:.0e})")
+        f"{block:.4f} ± {m / M * error:.1g} m/s, e = {(block - disc) / start:.3f} (between {together:.3f} for e = 0 and "
+        f"{2 * together:.3f} m/s for e = 1; momentum kept to {missing:.0e})")
 
 
-@states("Section 3.2, figure 9a", "the variation of the disc's energy, drawn and not described; judged here: in the contact the disc gives energy to the "
-        "block, after it each keeps its own", figures="disc-block/energies", laws="After the contact, of the energy at the start, {}. After the contact "
-        "kinetic and elastic energy of each go on to change into each other.", **ON_BLOCK)
+@states("Section 3.2, figure 9a", "the variation of the disc's energy, drawn and not described; judged here: in the contact the disc gives "
+        "energy to the block, after it each keeps its own", figures="disc-block/energies", laws="After the contact, of the energy at the "
+        "start, {}. After the contact kinetic and elastic energy of each go on to change into each other.", **ON_BLOCK)
 def passes(results: Results, law: str) -> tuple[bool, str]:
     """With a law: where the disc ends with less than at the start and the block with more, and each keeps kinetic and elastic energy
     together to 1e-9 of the start's in the flight after the last touch."""
@@ -57,8 +58,8 @@ def passes(results: Results, law: str) -> tuple[bool, str]:
     after = max(np.ptp(own[flight]) if len(own[flight]) > 1 else np.inf for own in (disc, block)) / 100
     shares = [100 * end[f"vibration_energy_{b}"] / end["energy_initial"] for b in (1, 2)]
     return disc[-1] < disc[0] and block[-1] > block[0] and after < CONSTANT, (
-        f"the disc keeps {disc[-1]:.1f} % ({shares[0]:.1f} % as vibration), the block has {block[-1]:.1f} % ({shares[1]:.1f} %), each constant to "
-        f"{after:.0e}; in the contact the disc was down to {disc.min():.1f} %, at {1e3 * history['t'][disc.argmin()]:.0f} ms")
+        f"the disc keeps {disc[-1]:.1f} % ({shares[0]:.1f} % as vibration), the block has {block[-1]:.1f} % ({shares[1]:.1f} %), each "
+        f"constant to {after:.0e}; in the contact the disc was down to {disc.min():.1f} %, at {1e3 * history['t'][disc.argmin()]:.0f} ms")
 
 
 @states("Section 3.2, figure 9b", "the total energy of disc and block is constant", figures="disc-block/energies", exact=True,
@@ -71,7 +72,8 @@ def total_energy(results: Results, law: str) -> tuple[bool, str]:
 
 
 def _velocities(results: Results, name: str) -> tuple[tuple[float, float], float, float]:
-    """Upward velocities [m/s] of the disc before and after, of the block after, and the estimated error of the disc's; nan if it is not known."""
+    """Upward velocities [m/s] of the disc before and after, of the block after, and the estimated error of the disc's; nan if it is not
+    known."""
     history, estimated = results.history(name), results.summary(name)["estimated_error"]
     start = history["vy_1"][0]
     return (start, history["vy_1"][-1]), history["vy_2"][-1], abs(start) * (estimated["rebound"] if estimated else np.nan)
@@ -79,8 +81,8 @@ def _velocities(results: Results, name: str) -> tuple[tuple[float, float], float
 
 @states("Sections 3.2, 3.3", "that the energy is constant tests the numerical convergence and the steps", STEPS)
 def converges(results: Results) -> tuple[str, str, Lost]:
-    """Agrees where with both schemes the drift of the energy falls with every smaller step, at least as its square root; partly where it does
-    with BDF2 alone: energy-momentum conserves at any step, also where its answer has not converged."""
+    """Agrees where with both schemes the drift of the energy falls with every smaller step, at least as its square root; partly where it
+    does with BDF2 alone: energy-momentum conserves at any step, also where its answer has not converged."""
     rows, tells, words = finished(results, STEPS), {}, []
     for scheme, group in rows.groupby("integrator", sort=False):
         group = group.sort_values("dt", ascending=False)
@@ -90,9 +92,10 @@ def converges(results: Results) -> tuple[str, str, Lost]:
         words.append(f"{scheme}: drift {drift[0]:.0e} to {drift[-1]:.0e} (order {order:.1f}), rebound {group.rebound_vy.iloc[0]:.3f} to "
                      f"{group.rebound_vy.iloc[-1]:.3f} m/s")
     bdf2, own = (tells.get(scheme, False) for scheme in ("bdf2", "energy-momentum"))
-    said = "" if own else "A scheme that conserves at any step says nothing of convergence by it: error bars here are from refined meshes and steps."
-    return graded(bdf2 and own, bdf2), (f"from the step {1e6 * rows.dt.max():g} to {1e6 * rows.dt.min():g} μs on one mesh; {'; '.join(words)}. {said}"
-                                        ), list(rows.ellipticity_lost_time)
+    said = "" if own else ("A scheme that conserves at any step says nothing of convergence by it: error bars here are from refined meshes "
+                           "and steps.")
+    said = f"from the step {1e6 * rows.dt.max():g} to {1e6 * rows.dt.min():g} μs on one mesh; {'; '.join(words)}. {said}"
+    return graded(bdf2 and own, bdf2), said, list(rows.ellipticity_lost_time)
 
 
 @states("Section 3.3, figure 10", "normal impact of the ball, SVK, without friction: the energy is constant", f"{BALL} {BALL_NEO} {DISC}",
@@ -100,15 +103,16 @@ def converges(results: Results) -> tuple[str, str, Lost]:
 def conserves(results: Results) -> tuple[str, str]:
     """Agrees below 1e-9 of the energy at the start, with SVK."""
     ball, neo, disc = (results.summary(name)["energy_drift"] for name in (BALL, BALL_NEO, DISC))
-    return graded(ball < CONSTANT), f"constant to {ball:.0e} over the whole run (the neo-Hookean ball to {neo:.0e}, the SVK disc to {disc:.0e})."
+    return graded(ball < CONSTANT), (
+        f"constant to {ball:.0e} over the whole run (the neo-Hookean ball to {neo:.0e}, the SVK disc to {disc:.0e}).")
 
 
-@states("Section 3.3", "the approach extends to three-dimensional bodies, and contact is modelled in an identical way", f"{SOLID} {BALL_NEO} {SOLID_MAP}",
-        f"{SOLID}/shapes {SOLID}/force")
+@states("Section 3.3", "the approach extends to three-dimensional bodies, and contact is modelled in an identical way",
+        f"{SOLID} {BALL_NEO} {SOLID_MAP}", f"{SOLID}/shapes {SOLID}/force")
 def in_space(results: Results) -> tuple[str, str]:
-    """Agrees where impulse, rebound (over the speed) and the time above 1 % of the peak of the neo-Hookean ball in three dimensions are those of the
-    body of revolution, to 0.5 % and both estimated errors, and every run in three dimensions, those with SVK on coarse meshes too, keeps its energy to
-    1e-9; partly where the energy alone is kept."""
+    """Agrees where impulse, rebound (over the speed) and the time above 1 % of the peak of the neo-Hookean ball in three dimensions are
+    those of the body of revolution, to 0.5 % and both estimated errors, and every run in three dimensions, those with SVK on coarse meshes
+    too, keeps its energy to 1e-9; partly where the energy alone is kept."""
     solid, plane = results.summary(SOLID), results.summary(BALL_NEO)
     coarse, words, same = finished(results, SOLID_MAP), [], []
     for name, (key, unit) in SOLID_NUMBERS.items():
@@ -139,7 +143,8 @@ def longest(results: Results) -> tuple[str, str]:
 @states("Sections 3.1, 3.3, figure 11", "the contact force is the integral of the acceleration times the density, A_CM its mean; "
         "the accelerations of disc SVK, disc neo-Hookean and ball SVK", f"{DISC} {DISC_NEO} {BALL}", exact=True, **BESIDE)
 def accelerations(results: Results) -> tuple[str, str]:
-    """Agrees where in all three runs and every step the contact force is the change of momentum over the step to 1e-8 of the largest force."""
+    """Agrees where in all three runs and every step the contact force is the change of momentum over the step to 1e-8 of the largest
+    force."""
     apart, words = [], []
     for name in (DISC, DISC_NEO, BALL):
         history = results.history(name)

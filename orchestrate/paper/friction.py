@@ -1,6 +1,7 @@
 """Figures 3 to 6a and the oblique impact of section 3.1: friction laws, angles, forces, energies, sliding and sticking.
 
-The histories are those of the sweep friction-jump, with both laws on two meshes, with mu_e = 0.7 and, as the control, with mu_e = mu_d = 0.5.
+The histories are those of the sweep friction-jump, with both laws on two meshes, with mu_e = 0.7 and, as the control, with mu_e = mu_d =
+0.5.
 """
 
 from collections.abc import Callable
@@ -37,8 +38,8 @@ def impact(results: Results, law: str, static: float = STATIC, sweep: str = JUMP
 
 # ---- the laws
 
-@states("Figure 3, equations (12), (13)", "the regularisations φ¹, φ², φ³ with ε = 0.1, φ³ with v/(2ε) between −ε and ε, and the law with μ_e = 0.7 "
-        "below ε and μ_d = 0.5 above", figures=TABULATED)
+@states("Figure 3, equations (12), (13)", "the regularisations φ¹, φ², φ³ with ε = 0.1, φ³ with v/(2ε) between −ε and ε, and the law with "
+        "μ_e = 0.7 below ε and μ_d = 0.5 above", figures=TABULATED)
 def friction_laws(results: Results) -> tuple[str, str]:
     """Agrees where every tabulated curve is its formula, φ³ in the form linear-printed, to 1e-9."""
     laws = results.friction_laws()
@@ -56,7 +57,8 @@ def adopted(results: Results) -> tuple[str, str]:
     printed, used = (_apart(results.friction_laws(), "b", "linear", _steps(slope)) for slope in (1 / 2, 1))
     return graded(printed < EXACT), (
         f"two laws (friction-laws/laws.csv): the one that runs use deviates from (13) as printed by up to {printed:.3f}, and from v/ε by "
-        f"{used:.0e}. As printed φ³ jumps from 0.5 to 1 at |v| = ε, v/ε is continuous; the printed one is there as regularization = linear-printed.")
+        f"{used:.0e}. As printed φ³ jumps from 0.5 to 1 at |v| = ε, v/ε is continuous; the printed one is there as regularization = "
+        f"linear-printed.")
 
 
 def _steps(slope: float, beyond: float = 1.0) -> Callable[[np.ndarray], np.ndarray]:
@@ -65,7 +67,8 @@ def _steps(slope: float, beyond: float = 1.0) -> Callable[[np.ndarray], np.ndarr
 
 
 def _apart(laws: pd.DataFrame, panel: str, law: str, formula: Callable) -> float:
-    """Largest deviation of a tabulated curve, with the jump, from a formula of the velocity; |v| = ε counts as sliding, as in the program."""
+    """Largest deviation of a tabulated curve, with the jump, from a formula of the velocity; |v| = ε counts as sliding, as in the
+    program."""
     curve = laws[(laws.panel == panel) & (laws.law == law) & (laws.transition == "jump")]
     v = np.where((curve.side == "stick") | (np.abs(curve.v) >= EPSILON), curve.v, np.sign(curve.v) * EPSILON)
     return float(np.abs(curve.ratio - formula(v)).max())
@@ -74,14 +77,16 @@ def _apart(laws: pd.DataFrame, panel: str, law: str, formula: Callable) -> float
 # ---- figures 4 and 5
 
 @states("Section 3.1, figure 4b", "the angles of incidence and reflection are different", f"{JUMP} oblique", lost=lost,
-        figures="disc-oblique-svk/flight disc-oblique/flight", laws=f"from the plane {ANGLE:g}° in; out, {{}}. (The bar of SVK is between two coarse meshes.)")
+        figures="disc-oblique-svk/flight disc-oblique/flight",
+        laws=f"from the plane {ANGLE:g}° in; out, {{}}. (The bar of SVK is between two coarse meshes.)")
 def angles(results: Results, law: str) -> tuple[bool, str]:
     """With a law: where on finished runs they differ by more than a degree and the error bar; neo-Hookean for every ν."""
     rows = finished(results, JUMP if law == "svk" else "oblique")
     rows = rows[(rows.law == law) & (rows.friction_static == STATIC)] if law == "svk" else rows
     found = [_angle(rows, k) for k in range(len(rows))]
     return bool(found) and all(abs(out - ANGLE) > APART + error for out, error in found), ", ".join(
-        f"{out:.1f} ± {error:.1g}°" + (f" (ν = {nu:g})" if law != "svk" else "") for (out, error), nu in zip(found, rows.get("nu", [np.nan] * len(rows))))
+        f"{out:.1f} ± {error:.1g}°" + (f" (ν = {nu:g})" if law != "svk" else "")
+        for (out, error), nu in zip(found, rows.get("nu", [np.nan] * len(rows))))
 
 
 def _angle(rows: pd.DataFrame, k: int) -> tuple[float, float]:
@@ -99,11 +104,13 @@ def oscillates(results: Results, law: str) -> tuple[bool, str]:
     return min(counts) > 1, f"{' and '.join(map(str, counts))} maxima"
 
 
-@states("Section 3.1, figure 5a", "the oscillations are due to the multiple reflections of the impact waves on the disc's boundary", JUMP, lost=lost)
+@states("Section 3.1, figure 5a", "the oscillations are due to the multiple reflections of the impact waves on the disc's boundary",
+        JUMP, lost=lost)
 def reflected(results: Results) -> tuple[str, str]:
-    """By the spectrum of the force less its slow push, beside the natural modes of the disc (modes.csv): what waves between its boundaries make up.
-    With SVK, of the peaks that both meshes have: partly where some, agrees where all lie nearer to a mode with 1 % of the vibration than the contact
-    time tells frequencies apart, 1/(2T); but not decided where most of the frequencies do, as then any peak would; not where none does."""
+    """By the spectrum of the force less its slow push, beside the natural modes of the disc (modes.csv): what waves between its boundaries
+    make up. With SVK, of the peaks that both meshes have: partly where some, agrees where all lie nearer to a mode with 1 % of the
+    vibration than the contact time tells frequencies apart, 1/(2T); but not decided where most of the frequencies do, as then any peak
+    would; not where none does."""
     found, words = {}, []
     for law in LAWS:
         both = zip(impact(results, law), results.modes(JUMP, law=law, friction_static=STATIC))
@@ -111,9 +118,9 @@ def reflected(results: Results) -> tuple[str, str]:
         common = [peak for peak in peaks[0] if any(abs(peak - other) < max(width) for other in peaks[1])]
         near = [peak for peak in common if all(np.abs(each - peak).min(initial=np.inf) < width[0] for each in modes)]
         found[law] = common, near, max(chance)
-        words.append(f"{LAWS[law]}: peaks of both meshes at {', '.join(f'{peak:.0f}' for peak in common) or 'no frequency'} Hz, {len(near)} of "
-                     f"{len(common)} within {width[0]:.0f} Hz of such a mode, as are {100 * max(chance):.0f} % of all frequencies from "
-                     f"{min(each.min() for each in modes):.0f} to {max(each.max() for each in modes):.0f} Hz")
+        words.append(f"{LAWS[law]}: peaks of both meshes at {', '.join(f'{peak:.0f}' for peak in common) or 'no frequency'} Hz, "
+                     f"{len(near)} of {len(common)} within {width[0]:.0f} Hz of such a mode, as are {100 * max(chance):.0f} % of all "
+                     f"frequencies from {min(each.min() for each in modes):.0f} to {max(each.max() for each in modes):.0f} Hz")
     common, near, chance = found["svk"]
     verdict = OPEN if near and chance > 0.5 else graded(bool(near) and len(near) == len(common), bool(near))
     said = " The modes lie nearer to each other than an impact of this length tells apart." if verdict == OPEN else ""
@@ -121,9 +128,9 @@ def reflected(results: Results) -> tuple[str, str]:
 
 
 def _oscillation(history: History, modes: np.recarray) -> tuple[np.ndarray, np.ndarray, float, float]:
-    """Of the normal force less the half sine and the sine that fit it best: peaks of its spectrum [Hz] from the lowest to the highest mode, a quarter
-    of the largest or more; the modes with 1 % of the vibration; half of what the contact time tells apart; the share of all frequencies that is as near
-    to such a mode."""
+    """Of the normal force less the half sine and the sine that fit it best: peaks of its spectrum [Hz] from the lowest to the highest mode,
+    a quarter of the largest or more; the modes with 1 % of the vibration; half of what the contact time tells apart; the share of all
+    frequencies that is as near to such a mode."""
     steps = touching(history)
     t, dt, force = (history[name][steps] for name in ("t", "dt", "normal_force"))
     start, length = t[0] - dt[0], t[-1] - t[0] + dt[0]
@@ -138,46 +145,52 @@ def _oscillation(history: History, modes: np.recarray) -> tuple[np.ndarray, np.n
     return peaks, strong, width, float((np.abs(frequencies[:, None] - strong).min(axis=1) < width).mean())
 
 
-@states("Section 3.1, figure 5b", "an instability born from the alternation of static and dynamic friction", JUMP, f"{JUMP} disc-oblique-svk/rolling", lost)
+@states("Section 3.1, figure 5b", "an instability born from the alternation of static and dynamic friction", JUMP,
+        f"{JUMP} disc-oblique-svk/rolling", lost)
 def alternates(results: Results) -> tuple[str, str]:
-    """With SVK: agrees where the whole load changes its coefficient more than twice and, by more than mesh and step change it, more often than
-    with equal coefficients, where nothing jumps; partly where it does so no more often than this control."""
+    """With SVK: agrees where the whole load changes its coefficient more than twice and, by more than mesh and step change it, more often
+    than with equal coefficients, where nothing jumps; partly where it does so no more often than this control."""
     found, words = {}, []
     for law in LAWS:
         jump, control = ([load_changes(history) for history in impact(results, law, static)] for static in (STATIC, DYNAMIC))
         found[law] = min(jump) > 2, min(jump) - max(control) > max(np.ptp(jump), np.ptp(control))
-        words.append(f"{LAWS[law]}: {' and '.join(f'{n:.1f}' for n in jump)} times, in the control {' and '.join(f'{n:.1f}' for n in control)}")
+        words.append(f"{LAWS[law]}: {' and '.join(f'{n:.1f}' for n in jump)} times, in the control "
+                     f"{' and '.join(f'{n:.1f}' for n in control)}")
     alternate, more = found["svk"]
-    said = "" if more else (" The points alternate between sliding and sticking, but the jump of the coefficient is not what makes them: equal "
-                            "coefficients do the same.")
+    said = "" if more else (" The points alternate between sliding and sticking, but the jump of the coefficient is not what makes "
+                            "them: equal coefficients do the same.")
     return graded(alternate and more, alternate), (
         f"how many times the whole load changes between sliding and sticking, on two meshes; {'; '.join(words)}.{said}")
 
 
-@states("Section 3.1, figure 5b", "the instability is characterised by a discontinuity in the acceleration due to the sudden change in the type of friction",
+@states("Section 3.1, figure 5b",
+        "the instability is characterised by a discontinuity in the acceleration due to the sudden change in the type of friction",
         STEPS, lost=lambda results: lost(results, STEPS))
 def discontinuous(results: Results) -> tuple[str, str]:
-    """With SVK, on the acceleration of the centre along the plane (friction force over mass) with steps of 20 and 5 μs: it jumps where its largest
-    changes from step to step (mean of five) fall by less than the square root of the steps, while those of the acceleration across the plane fall by
-    more. Agrees where it jumps, and by at least half of what μ_e exceeds μ_d by more than with equal coefficients; partly where it jumps with equal
-    coefficients alike; not where it does not."""
+    """With SVK, on the acceleration of the centre along the plane (friction force over mass) with steps of 20 and 5 μs: it jumps where its
+    largest changes from step to step (mean of five) fall by less than the square root of the steps, while those of the acceleration across
+    the plane fall by more. Agrees where it jumps, and by at least half of what μ_e exceeds μ_d by more than with equal coefficients; partly
+    where it jumps with equal coefficients alike; not where it does not."""
     found, words = {}, []
     for law in LAWS:
         jump, control = ([_changes(history) for history in impact(results, law, static, STEPS)] for static in (STATIC, DYNAMIC))
         (along, across), (ratio, _) = (_orders(*each) for each in (jump, control))
         excess = min(mine[0] / other[0] for mine, other in zip(jump, control))
         found[law] = along < 0.5 < across, excess > (1 + STATIC / DYNAMIC) / 2
-        words.append(f"{LAWS[law]}: {' to '.join(f'{change:.0f}' for change, _ in jump)} m/s² along the plane (as the step to the power {along:.2f}; "
-                     f"across it {across:.2f}), with equal coefficients {' to '.join(f'{change:.0f}' for change, _ in control)} ({ratio:.2f})")
+        words.append(f"{LAWS[law]}: {' to '.join(f'{change:.0f}' for change, _ in jump)} m/s² along the plane (as the step to the power "
+                     f"{along:.2f}; across it {across:.2f}), with equal coefficients "
+                     f"{' to '.join(f'{change:.0f}' for change, _ in control)} ({ratio:.2f})")
     jumps, more = found["svk"]
     said = "" if more or not jumps else " Equal coefficients, where nothing changes suddenly but the direction, do the same."
     return graded(jumps and more, jumps), f"largest changes of the acceleration in a step; {'; '.join(words)}.{said}"
 
 
 def _changes(history: History) -> tuple[float, float]:
-    """The mean of the five largest changes from step to step in the contact of the acceleration of the centre along and across the plane [m/s2]."""
+    """The mean of the five largest changes from step to step in the contact of the acceleration of the centre along and across the plane
+    [m/s2]."""
     steps, mass = touching(history), history["momentum_y"][0] / history["vy"][0]
-    return tuple(float(np.sort(np.abs(np.diff(history[name][steps])))[-5:].mean() / abs(mass)) for name in ("friction_force", "normal_force"))
+    return tuple(float(np.sort(np.abs(np.diff(history[name][steps])))[-5:].mean() / abs(mass))
+                 for name in ("friction_force", "normal_force"))
 
 
 def _orders(coarse: tuple[float, float], fine: tuple[float, float]) -> list[float]:
@@ -195,8 +208,8 @@ def load_changes(history: History) -> float:
 
 # ---- energies, figure 6a
 
-@states("Section 3.1, figure 6a", "the energy is constant before and after the contact, and falls in it by friction", JUMP, ENERGIES, lost, exact=True,
-        laws="before the contact the flight is exact; {}.")
+@states("Section 3.1, figure 6a", "the energy is constant before and after the contact, and falls in it by friction", JUMP, ENERGIES,
+        lost, exact=True, laws="before the contact the flight is exact; {}.")
 def energy(results: Results, law: str) -> tuple[bool, str]:
     """With a law, on both meshes: where the total changes by less than 1e-9 of its start after the last touch, never grows in the contact,
     and falls over it."""
@@ -212,11 +225,12 @@ def _losses(history: History) -> tuple[float, float, float]:
     return float(after), max(0.0, float(np.diff(energies).max())), float(1 - energies[-1])
 
 
-@states("Section 3.1, figure 6a", "the elastic energy is null before the contact and in it fluctuates together with the kinetic energy", JUMP, ENERGIES, lost)
+@states("Section 3.1, figure 6a", "the elastic energy is null before the contact and in it fluctuates together with the kinetic energy",
+        JUMP, ENERGIES, lost)
 def elastic(results: Results) -> tuple[str, str]:
     """With SVK, on both meshes: agrees where it is null to 1e-9 of the total at the start, its changes in the contact mirror those of the
-    kinetic energy (correlation below -0.9), and it has several maxima that stand out by more than 1 % of the total; partly where it rises and
-    falls once."""
+    kinetic energy (correlation below -0.9), and it has several maxima that stand out by more than 1 % of the total; partly where it rises
+    and falls once."""
     found, words = {}, []
     for law in LAWS:
         before, mirror, most, counts = zip(*map(_exchange, impact(results, law)))
@@ -229,8 +243,8 @@ def elastic(results: Results) -> tuple[str, str]:
 
 
 def _exchange(history: History) -> tuple[float, float, float, int]:
-    """Of the elastic energy: its share of the total before the contact, the correlation of its changes in a step with those of the kinetic energy, its
-    largest share, and the maxima that stand out by more than 1 % of the total."""
+    """Of the elastic energy: its share of the total before the contact, the correlation of its changes in a step with those of the kinetic
+    energy, its largest share, and the maxima that stand out by more than 1 % of the total."""
     steps, start = touching(history), total(history)[0]
     mirror = np.corrcoef(*(np.diff(history[name])[steps[1:] - 1] for name in ("kinetic", "elastic")))[0, 1]
     return (float(abs(history["elastic"][:max(steps[0], 1)]).max() / start), float(mirror), float(history["elastic"].max() / start),
@@ -245,27 +259,28 @@ def _searched(results: Results) -> list[Path]:
             *results.folders("disc-oblique-svk", "disc-oblique")]
 
 
-@states("Section 3.1", "the disc slides first and sticks in about the last third of the contact, in which the energy is constant again", _searched,
-        "stick-slip/stick-slip.png")
+@states("Section 3.1", "the disc slides first and sticks in about the last third of the contact, in which the energy is constant again",
+        _searched, "stick-slip/stick-slip.png")
 def sliding_first(results: Results) -> tuple[str, str, Lost]:
-    """Over the search of ε, k, ν with SVK, at 60° (the paper calls normal incidence π/2) and at 30° from the plane: agrees where all runs of one angle
-    do both, partly where some of any do. Constant energy: at most 5 % of the friction work in the last third."""
+    """Over the search of ε, k, ν with SVK, at 60° (the paper calls normal incidence π/2) and at 30° from the plane: agrees where all runs
+    of one angle do both, partly where some of any do. Constant energy: at most 5 % of the friction work in the last third."""
     every = results.stick_slip()
     every = every[every.exit == 0]
     told, counts = [], {}
     for (angle, law), rows in every.groupby(["angle", "law"], sort=False):
         order, both = int(rows["order"].sum()), int((rows["order"] & rows["quiet"]).sum())
         counts |= {angle: (both, len(rows))} if law == "svk" else {}
-        told.append(f"{angle:g}°, {LAWS[law]}: {order} of {len(rows)} runs, {both} of them with at most {100 * stick_slip.QUIET:g} % of the friction "
-                    "work in the last third")
+        told.append(f"{angle:g}°, {LAWS[law]}: {order} of {len(rows)} runs, {both} of them with at most {100 * stick_slip.QUIET:g} % of "
+                    f"the friction work in the last third")
     restitution = {name: results.summary(name)["rebound_vy"] / _normal() for name in ("disc-oblique-svk", "disc-oblique")}
     shares = " and ".join(f"{slip_share(e):.2f} with the e = {e:.3f} of {name}" for name, e in restitution.items())
     met = [angle for angle, (both, _) in counts.items() if both]
     explained = "" if ANGLE in met else ", which explains it: the disc sticks long before two thirds, and slips back at the end"
     only = f" With SVK the order appears only at {FLAT:g}° from the plane, which is π/3 from the normal." if met == [FLAT] else ""
     return graded(any(both == runs for both, runs in counts.values()), bool(met)), (
-        f"slides first and sticks last: {'; '.join(told)}. The slip of a rigid disc ends at the share v_t/(3 μ_d (1 + e) v_n) of the normal impulse, "
-        f"{shares}{explained}. At {FLAT:g}° from the plane it would end at {slip_share(restitution['disc-oblique'], FLAT):.2f}.{only}"
+        f"slides first and sticks last: {'; '.join(told)}. The slip of a rigid disc ends at the share v_t/(3 μ_d (1 + e) v_n) of the "
+        f"normal impulse, {shares}{explained}. At {FLAT:g}° from the plane it would end at "
+        f"{slip_share(restitution['disc-oblique'], FLAT):.2f}.{only}"
     ), list(every[every.law == "svk"].ellipticity_lost_time)
 
 
@@ -274,7 +289,8 @@ def _normal(angle: float = ANGLE) -> float:
 
 
 def slip_share(e: float, angle: float = ANGLE) -> float:
-    """The share of the normal impulse at which a rigid disc stops to slide: with I = m R²/2 each unit of friction impulse takes 3/m of its slip."""
+    """The share of the normal impulse at which a rigid disc stops to slide: with I = m R²/2 each unit of friction impulse takes 3/m of its
+    slip."""
     return SPEED * np.cos(np.radians(angle)) / (3 * DYNAMIC * (1 + e) * _normal(angle))
 
 
@@ -289,7 +305,8 @@ def rolls(results: Results) -> tuple[str, str]:
         return all(abs(rim - centre) < 0.05 * abs(centre) for centre, rim in means), " and ".join(
             f"v_x = {centre:.2f}, −ω R = {rim:.2f} m/s" for centre, rim in means)
     own = results.summary("disc-rolling")["rebound_vx"] / results.scene("disc-rolling")["speed"]
-    return of_both(of, results, "means over the last third, on two meshes; {}. (Set down on the plane, in a scene of our own that the verdict does not "
+    return of_both(of, results,
+                   "means over the last third, on two meshes; {}. (Set down on the plane, in a scene of our own that the verdict does not "
                    f"rest on, it comes to roll at {own:.3f} v₀; rigid: 2/3.)")
 
 

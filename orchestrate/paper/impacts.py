@@ -28,10 +28,12 @@ def stepped(results: Results) -> tuple[str, str]:
     return graded(falls and rises, falls), words + ("" if rises else " The rises are not told from the errors.")
 
 
-@states("Section 3.1 and conclusions", "the steps of figure 6b are related to the number of wave reflections: each has one less", f"{SVK} disc-normal")
+@states("Section 3.1 and conclusions", "the steps of figure 6b are related to the number of wave reflections: each has one less",
+        f"{SVK} disc-normal")
 def reflections(results: Results) -> tuple[str, str]:
     """Not decided where no ν has a rise beyond twice its error bar: there is no step to explain. Else agrees where for every ν there are as
-    many as the number of transits 2R/c in the contact falls through whole numbers, with the pressure or the shear waves of small strains."""
+    many as the number of transits 2R/c in the contact falls through whole numbers, with the pressure or the shear waves of small
+    strains."""
     used, words, as_many, steps, fewer = results.scene("disc-normal"), [], [], 0, 0
     for nu, group in results.table(SVK).groupby("nu"):
         trend = sweep_figures.steps_against(group[group.speed < _end(group)], "speed", "contact_time")
@@ -72,8 +74,8 @@ def longer_at_high_speed(results: Results) -> tuple[str, str]:
     since, (distance, _) = when(lost(10)(results)[-1], "ellipticity lost"), _distance(results, 10)
     thresholded = [1e3 * _of(rows, law, 10, "thresholded_contact_time")[0] for law in ("svk", "neohookean")]
     return graded(svk - neo > of_svk + of_neo), (
-        f"SVK {1e3 * svk:.3f} ± {1e3 * of_svk:.3f} ms, {since}; neo-Hookean {1e3 * neo:.3f} ± {1e3 * of_neo:.3f} ms (above 1 % of the peak force "
-        f"{thresholded[0]:.3f} and {thresholded[1]:.3f} ms); the histories differ by {100 * distance:.0f} % in L2.")
+        f"SVK {1e3 * svk:.3f} ± {1e3 * of_svk:.3f} ms, {since}; neo-Hookean {1e3 * neo:.3f} ± {1e3 * of_neo:.3f} ms (above 1 % of the "
+        f"peak force {thresholded[0]:.3f} and {thresholded[1]:.3f} ms); the histories differ by {100 * distance:.0f} % in L2.")
 
 
 @states("Figure 8", "normal impact, neo-Hookean: the contact time falls monotonically with the speed", NEO)
@@ -89,23 +91,26 @@ def monotone(results: Results) -> tuple[str, str]:
 
 @states("Section 3.1", "the neo-Hookean law demands larger computational times", FORCES, lost=lost(1, 10))
 def slower(results: Results) -> tuple[str, str]:
-    """By counts, which do not scatter with the machine: at 1 and 10 m/s, on both meshes, at the same accuracy. A pair of runs says so where of steps,
-    Newton iterations and factorisations some is over 10 % more than with SVK and none as much less. Agrees where all pairs do, partly where some do."""
+    """By counts, which do not scatter with the machine: at 1 and 10 m/s, on both meshes, at the same accuracy. A pair of runs says so where
+    of steps, Newton iterations and factorisations some is over 10 % more than with SVK and none as much less. Agrees where all pairs do,
+    partly where some do."""
     more, words, seconds = [], [], []
     for speed in (1, 10):
         for neo, svk in zip(*(results.summaries(FORCES, law=law, speed=speed) for law in ("neohookean", "svk"))):
             ratios = [neo[name] / svk[name] for name in COUNTS]
             more.append(max(ratios) > 1.1 and min(ratios) > 1 / 1.1)
-            words.append(f"{speed:g} m/s, {svk['dofs']} dofs: " + ", ".join(f"{neo[name]} to {svk[name]} {said}" for name, said in COUNTS.items()))
+            words.append(f"{speed:g} m/s, {svk['dofs']} dofs: "
+                         + ", ".join(f"{neo[name]} to {svk[name]} {said}" for name, said in COUNTS.items()))
             seconds.append(f"{neo['cpu_seconds'] / svk['cpu_seconds']:.2f}")
-    return graded(all(more), any(more)), (f"neo-Hookean to SVK, {'; '.join(words)}. (Processor times, which scatter with the machine and do not decide: "
-                                          f"{', '.join(seconds)} of those with SVK.)")
+    return graded(all(more), any(more)), (f"neo-Hookean to SVK, {'; '.join(words)}. (Processor times, which scatter with the machine and "
+                                          f"do not decide: {', '.join(seconds)} of those with SVK.)")
 
 
-@states("Conclusions", "as the velocities of incidence are higher, the neo-Hookean disc yields a stiffer behaviour", FORCES, lost=lost(1, 10))
+@states("Conclusions", "as the velocities of incidence are higher, the neo-Hookean disc yields a stiffer behaviour", FORCES,
+        lost=lost(1, 10))
 def stiffer(results: Results) -> tuple[str, str]:
-    """Agrees where at 10 m/s its peak force is higher and its contact shorter, by more than both error bars, and both by a larger share than
-    at 1 m/s."""
+    """Agrees where at 10 m/s its peak force is higher and its contact shorter, by more than both error bars, and both by a larger share
+    than at 1 m/s."""
     rows, good, words = finished(results, FORCES), [], []
     if len(rows) < 4:
         return DIFFERS, "one of the runs failed."
@@ -115,20 +120,22 @@ def stiffer(results: Results) -> tuple[str, str]:
             (svk, of_svk), (neo, of_neo) = (_of(rows, law, speed, name) for law in ("svk", "neohookean"))
             shares[speed] = sign * (neo - svk) / svk, (of_svk + of_neo) / svk
         good.append(shares[10][0] > shares[10][1] and shares[10][0] > shares[1][0])
-        words.append(f"{what} by " + " and ".join(f"{100 * share:.1f} ± {100 * error:.1f} % at {speed} m/s" for speed, (share, error) in shares.items()))
+        words.append(f"{what} by "
+                     + " and ".join(f"{100 * share:.1f} ± {100 * error:.1f} % at {speed} m/s" for speed, (share, error) in shares.items()))
     return graded(all(good)), f"than with SVK, {'; '.join(words)}; SVK at 10 m/s: {when(lost(10)(results)[-1], 'ellipticity lost')}."
 
 
 @states("Conclusions", "vibro-impact can be reproduced", f"{SVK} {NEO}")
 def vibro_impact(results: Results) -> tuple[str, str, Lost]:
-    """Agrees where some impact of figures 6b and 8 touches more than once on both meshes, so that the vibrating disc strikes again; not decided
-    where some do on one mesh only, as then the mesh changes it."""
+    """Agrees where some impact of figures 6b and 8 touches more than once on both meshes, so that the vibrating disc strikes again; not
+    decided where some do on one mesh only, as then the mesh changes it."""
     rows = pd.concat([finished(results, name).assign(of=name) for name in (SVK, NEO)])
     both = rows[rows.contact_intervals - rows.contact_intervals_error > 1]
     once = int((rows.contact_intervals + rows.contact_intervals_error > 1).sum()) - len(both)
     where = ", ".join(f"{row.of.removeprefix('contact-time-')}, ν = {row.nu:g}, {row.speed:g} m/s" for row in both.itertuples())
-    said = f"of {len(rows)} impacts {len(both)} touch more than once on both meshes" + f" ({where})" * bool(where) + f", {once} on one of them only."
-    return AGREES if len(both) else OPEN if once else DIFFERS, said, list(both[LOST]) if both[LOST].notna().all() else []
+    verdict, where = AGREES if len(both) else OPEN if once else DIFFERS, f" ({where})" * bool(where)
+    said = f"of {len(rows)} impacts {len(both)} touch more than once on both meshes{where}, {once} on one of them only."
+    return verdict, said, list(both[LOST]) if both[LOST].notna().all() else []
 
 
 def _of(rows: pd.DataFrame, law: str, speed: float, column: str) -> tuple[float, float]:
@@ -150,9 +157,10 @@ def _trends(results: Results, name: str) -> tuple[list[sweep_figures.Trend | Non
         trend, above = (sweep_figures.steps_against(kept, "speed", column) for column in ("contact_time", "thresholded_contact_time"))
         trends.append(trend)
         words.append(f"ν = {nu:g}: too few runs finished" if not (trend and above) else
-                     f"ν = {nu:g}: {1e3 * trend.first:.3f} to {1e3 * trend.last:.3f} ms (± {1e3 * trend.typical:.3f} ms rms), {trend.against} of "
-                     f"{trend.steps} steps rise, {trend.beyond} of them by more than their error bar, {trend.established} by more than twice "
-                     f"(of the time above 1 % of the peak force {above.beyond} and {above.established})")
+                     f"ν = {nu:g}: {1e3 * trend.first:.3f} to {1e3 * trend.last:.3f} ms (± {1e3 * trend.typical:.3f} ms rms), "
+                     f"{trend.against} of {trend.steps} steps rise, {trend.beyond} of them by more than their error bar, "
+                     f"{trend.established} by more than twice (of the time above 1 % of the peak force {above.beyond} and "
+                     f"{above.established})")
         if np.isfinite(end):
             words[-1] += f"; judged below {end:g} m/s, where ellipticity is lost"
     return trends, "; ".join(words) + "."

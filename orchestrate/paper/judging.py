@@ -1,11 +1,11 @@
 """What the statements of the paper are judged with: the verdicts, the results that `make paper` leaves, error bars.
 
-Every verdict follows from numbers by the rule in the docstring of its statement (limits, friction, impacts, pairs, bodies,
-times). Section 3 is told of the paper's law, St. Venant-Kirchhoff (5), except where it names (6): with it a verdict is decided; the neo-Hookean
-answer, which converges, stands beside it.
+Every verdict follows from numbers by the rule in the docstring of its statement (limits, friction, impacts, pairs, bodies, times). Section
+3 is told of the paper's law, St. Venant-Kirchhoff (5), except where it names (6): with it a verdict is decided; the neo-Hookean answer,
+which converges, stands beside it.
 
-Where that law loses ellipticity in a run that decides, its answer depends on the mesh, and "agrees" becomes "partly" (`_on_any_mesh`), whatever the
-statement is; but not of what every step keeps exactly, on any mesh: the discrete energy and momentum.
+Where that law loses ellipticity in a run that decides, its answer depends on the mesh, and "agrees" becomes "partly" (`_on_any_mesh`),
+whatever the statement is; but not of what every step keeps exactly, on any mesh: the discrete energy and momentum.
 """
 
 from collections.abc import Callable
@@ -132,9 +132,9 @@ def states(item: str, text: str, runs: str | Callable[[Results], list[Path]] = "
            lost: Callable[[Results], Lost] = lambda results: [], exact: bool = False, laws: str = "") -> Callable:
     """Registers how a statement of the paper is judged. The rule gives the verdict and our number in words, and may give `lost`.
 
-    runs: the runs and sweeps that it rests on; figures: as Results.drawn() names them, those of its sweeps where none are given; lost: of the runs
-    that decide; exact: it is about what every step keeps exactly, on any mesh; laws: the rule is about one law, which it takes, and gives whether it
-    holds, and words, which stand for {} in these.
+    runs: the runs and sweeps that it rests on; figures: as Results.drawn() names them, those of its sweeps where none are given; lost: of
+    the runs that decide; exact: it is about what every step keeps exactly, on any mesh; laws: the rule is about one law, which it takes,
+    and gives whether it holds, and words, which stand for {} in these.
     """
     def register(rule: Callable) -> Callable[[Results], Finding]:
         @wraps(rule)
@@ -151,8 +151,8 @@ def states(item: str, text: str, runs: str | Callable[[Results], list[Path]] = "
 
 
 def _on_any_mesh(ours: str, lost: Lost, exact: bool) -> tuple[str, str]:
-    """The rule of all statements on St. Venant-Kirchhoff: "agrees" becomes "partly" where a run that decides lost ellipticity, as another mesh
-    may decide otherwise; not where the statement is `exact`."""
+    """The rule of all statements on St. Venant-Kirchhoff: "agrees" becomes "partly" where a run that decides lost ellipticity, as another
+    mesh may decide otherwise; not where the statement is `exact`."""
     if not (times := [time for time in lost if known(time)]):
         return AGREES, ours
     since = f"SVK loses ellipticity from {1e3 * min(times):.2f} ms on"
@@ -167,8 +167,8 @@ def graded(agrees: bool, partly: bool = False) -> str:
 
 
 def of_both(rule: Callable[[Results, str], tuple[bool, str]], results: Results, around: str) -> tuple[str, str]:
-    """(verdict, words) of what holds of a law: agrees with both, partly with the paper's alone, not where the paper's does not; `rule` gives
-    (holds, words) of "svk" and "neohookean"."""
+    """(verdict, words) of what holds of a law: agrees with both, partly with the paper's alone, not where the paper's does not; `rule`
+    gives (holds, words) of "svk" and "neohookean"."""
     found = {law: rule(results, law) for law in LAWS}
     paper, other = (holds for holds, _ in found.values())
     return graded(paper and other, paper), around.format("; ".join(f"{LAWS[law]}: {words}" for law, (_, words) in found.items()))

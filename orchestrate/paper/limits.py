@@ -15,7 +15,8 @@ FORMULAS = {"sqrt": "φ¹", "tanh": "φ²", "linear": "φ³"}
 @states("Section 2.1, equation (6)", "if J = 1 a neo-Hookean incompressible solid is modelled", figures="",
         runs=lambda results: results.folders("disc-normal-neohookean", *[INCOMPRESSIBLE] * results.has(INCOMPRESSIBLE)))
 def incompressible(results: Results) -> tuple[str, str]:
-    """Agrees where a run with law = incompressible keeps J = 1 to 1e-3; not met while there is no such run: a compressible law is no answer to it."""
+    """Agrees where a run with law = incompressible keeps J = 1 to 1e-3; not met while there is no such run: a compressible law is no answer
+    to it."""
     nearest = results.summary("disc-normal-neohookean")["min_jacobian"]
     beside = f"The compressible neo-Hookean disc (ν = 0.45, 8 m/s) goes down to J = {nearest:.3f}."
     if not results.has(INCOMPRESSIBLE):
@@ -24,9 +25,11 @@ def incompressible(results: Results) -> tuple[str, str]:
     return graded(off < ISOCHORIC), f"the run with law = incompressible keeps J = 1 to {off:.0e}. {beside}"
 
 
-@states("Section 2.2, equations (7), (10)", "for a sufficiently large k the regularised contact (10) approximates Signorini's condition (7)", STIFFNESS)
+@states("Section 2.2, equations (7), (10)",
+        "for a sufficiently large k the regularised contact (10) approximates Signorini's condition (7)", STIFFNESS)
 def stiff_limit(results: Results) -> tuple[str, str, Lost]:
-    """With a law, for every ν, over k on the disc at 8 m/s: where the largest penetration falls with every larger k and the rebound settles."""
+    """With a law, for every ν, over k on the disc at 8 m/s: where the largest penetration falls with every larger k and the rebound
+    settles."""
     rows = finished(results, STIFFNESS)
 
     def of(_: Results, law: str) -> tuple[bool, str]:
@@ -34,27 +37,30 @@ def stiff_limit(results: Results) -> tuple[str, str, Lost]:
         if not groups:
             return False, "no run"
         depths = [group.max_penetration.to_numpy() for group in groups]
-        good = [len(group) > 2 and bool((np.diff(depth) < 0).all()) and settles(group, "rebound_vy") for group, depth in zip(groups, depths)]
+        good = [len(group) > 2 and bool((np.diff(depth) < 0).all()) and settles(group, "rebound_vy")
+                for group, depth in zip(groups, depths)]
         first, last = (max(depth[end] for depth in depths) for end in (0, -1))
         ends = "; ".join(dict.fromkeys(_changes(group, "rebound_vy") for group in (groups[0], groups[-1])))
-        return all(good), f"for {sum(good)} of {len(good)} ν, penetration from up to {1e3 * first:.2g} down to {1e3 * last:.2g} mm, rebound {ends} m/s"
-    return *of_both(of, results, "largest penetration, and what each larger k still changes of the rebound with the first and the last ν, from k = "
-                    f"{rows.penalty.min():.0e} to {rows.penalty.max():.0e} Pa/m; {{}}."), list(rows[rows.law == "svk"].ellipticity_lost_time)
+        return all(good), (
+            f"for {sum(good)} of {len(good)} ν, penetration from up to {1e3 * first:.2g} down to {1e3 * last:.2g} mm, rebound {ends} m/s")
+    around = ("largest penetration, and what each larger k still changes of the rebound with the first and the last ν, from k = "
+              f"{rows.penalty.min():.0e} to {rows.penalty.max():.0e} Pa/m; {{}}.")
+    return *of_both(of, results, around), list(rows[rows.law == "svk"].ellipticity_lost_time)
 
 
 @states("Section 2.3, equation (12)", "for ε → 0 φ^1, φ^2, φ^3 tend to the step, and a sufficiently small ε serves", SLIP,
         f"{SLIP} friction-laws/friction-laws.png")
 def slip_limit(results: Results) -> tuple[str, str]:
-    """Agrees where every tabulated φ rises and reaches 0.95 at 4 ε (they hang on v/ε alone), and on the oblique neo-Hookean impact, which converges,
-    rebound and friction work settle as ε falls; partly where the functions do alone."""
+    """Agrees where every tabulated φ rises and reaches 0.95 at 4 ε (they hang on v/ε alone), and on the oblique neo-Hookean impact, which
+    converges, rebound and friction work settle as ε falls; partly where the functions do alone."""
     laws, rows = results.friction_laws(), finished(results, SLIP).sort_values("slip_velocity", ascending=False)
     reach = {words: _rises(laws[(laws.panel == "b") & (laws.law == law) & (laws.v >= 0)]) for law, words in FORMULAS.items()}
     runs = len(rows) > 2 and all(settles(rows, name) for name in ("rebound_vx", "friction_work"))
     functions = min(reach.values()) >= 0.95
     return graded(functions and runs, functions), (
-        f"at the largest tabulated v, {', '.join(f'{words} = {value:.3f}' for words, value in reach.items())} (friction-laws/laws.csv). What each "
-        f"smaller ε, {rows.slip_velocity.max():g} to {rows.slip_velocity.min():g} m/s, still changes: of the velocity along the plane "
-        f"{_changes(rows, 'rebound_vx')} m/s, of the friction work {_changes(rows, 'friction_work')} J/m.")
+        f"at the largest tabulated v, {', '.join(f'{words} = {value:.3f}' for words, value in reach.items())} (friction-laws/laws.csv). "
+        f"What each smaller ε, {rows.slip_velocity.max():g} to {rows.slip_velocity.min():g} m/s, still changes: of the velocity along "
+        f"the plane {_changes(rows, 'rebound_vx')} m/s, of the friction work {_changes(rows, 'friction_work')} J/m.")
 
 
 def settles(rows: pd.DataFrame, name: str) -> bool:

@@ -1,4 +1,5 @@
-"""Section 3.2: closest points (9), what they cost, and contact without a search for them, (14), (15): the disc on the block, on two meshes (pairing)."""
+"""Section 3.2: closest points (9), what they cost, and contact without a search for them, (14), (15): the disc on the block, on two meshes
+(pairing)."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -34,27 +35,28 @@ def separation(results: Results) -> float:
 
 @states("Section 3.2, equation (9)", "the minimum distance is found at each instant at the cost of CPU time", runs(element), PAIRS, lost)
 def search_costs(results: Results) -> tuple[str, str]:
-    """By shares of each run, which scatter less than seconds: agrees where the search for closest points takes more than a tenth of the processor time
-    on both meshes, partly where on one."""
+    """By shares of each run, which scatter less than seconds: agrees where the search for closest points takes more than a tenth of the
+    processor time on both meshes, partly where on one."""
     words = {"closest-point": "closest points (9)"} | {pairing: f"(14), (15) {how}" for pairing, how in PRINTED.items()}
     ends = {pairing: results.summaries(PAIRS, pairing=pairing, pairing_range="auto") for pairing in words}
     shares = {pairing: [end["phase_seconds"]["search"] / end["cpu_seconds"] for end in each] for pairing, each in ends.items()}
     dear = [share > DEAR for share in shares["closest-point"]]
     told = "; ".join(f"{words[pairing]} {' and '.join(f'{100 * share:.0f} %' for share in found)} of "
                      f"{' and '.join(format(end['cpu_seconds'], '.1f') for end in ends[pairing])} s" for pairing, found in shares.items())
-    return graded(all(dear), any(dear)), (f"the search's share of the processor time, on two meshes: {told}. More than {100 * DEAR:g} % is asked; boxes "
-                                          "leave few edges to a point.")
+    return graded(all(dear), any(dear)), (f"the search's share of the processor time, on two meshes: {told}. More than {100 * DEAR:g} % is "
+                                          f"asked; boxes leave few edges to a point.")
 
 
-@states("Section 3.2, equations (14), (15)", "a sum over all points nearer than ε takes the place of the closest points", runs(element), PAIRS, lost)
+@states("Section 3.2, equations (14), (15)", "a sum over all points nearer than ε takes the place of the closest points", runs(element),
+        PAIRS, lost)
 def sum_of_points(results: Results) -> tuple[str, str]:
-    """As printed, on two meshes: agrees where rebounds and impulse are those of closest points to 1 % and the bodies touch as often; partly where the
-    answers are alone, as printed or with a repulsion that vanishes at ε."""
+    """As printed, on two meshes: agrees where rebounds and impulse are those of closest points to 1 % and the bodies touch as often; partly
+    where the answers are alone, as printed or with a repulsion that vanishes at ε."""
     return _beside_closest(results, element(results), "ε an element where the bodies touch")
 
 
-@states("Section 3.2, equation (15)", "with ε of the order of the separation of the points and a large k a point meets a single one of the other body, "
-        "and nothing has to be sought", runs(element, separation), PAIRS, lost)
+@states("Section 3.2, equation (15)", "with ε of the order of the separation of the points and a large k a point meets a single one of the "
+        "other body, and nothing has to be sought", runs(element, separation), PAIRS, lost)
 def single_point(results: Results) -> tuple[str, str]:
     """As (14), (15) with that ε: judged by the answers, not by the number of points."""
     return _beside_closest(results, separation(results), "ε the separation of the points")
@@ -71,11 +73,11 @@ def _beside_closest(results: Results, width: str | float, words: str) -> tuple[s
         slip = any("slip through" in said for end in ends for said in end["warnings"])
         same[pairing] = max(apart) <= SAME and not slip
         as_often[pairing] = all(end["contact_intervals"] <= near["contact_intervals"] for end, near in zip(ends, nearest))
-        told.append(f"{how} {' and '.join(f'{100 * each:.1f} %' for each in apart)} off, touching {_touches(ends)} times, peak force {peaks} times that "
-                    "of closest points" + ", points slip through between each other" * slip)
+        told.append(f"{how} {' and '.join(f'{100 * each:.1f} %' for each in apart)} off, touching {_touches(ends)} times, peak force "
+                    f"{peaks} times that of closest points" + ", points slip through between each other" * slip)
     return graded(same["pairwise-printed"] and as_often["pairwise-printed"], any(same.values())), (
-        f"{words}, on two meshes (closest points touch {_touches(nearest)} times): {'; '.join(told)}. As printed the force jumps to its largest where "
-        "points come within ε.")
+        f"{words}, on two meshes (closest points touch {_touches(nearest)} times): {'; '.join(told)}. As printed the force jumps to its "
+        f"largest where points come within ε.")
 
 
 def _touches(ends: list[dict]) -> str:

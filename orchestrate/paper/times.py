@@ -1,7 +1,8 @@
-"""Sections 3.1 and 3.3: the contact times that the paper prints, each over maps of the nu and k that it does not state, and all of them at once.
+"""Sections 3.1 and 3.3: the contact times that the paper prints, each over maps of the nu and k that it does not state, and all of them at
+once.
 
-A map is a sweep over nu and k, for those that lose ellipticity on several coarse meshes; what lies between its runs is interpolated in the logarithm of k.
-Runs with det F <= 0 are no answers.
+A map is a sweep over nu and k, for those that lose ellipticity on several coarse meshes; what lies between its runs is interpolated in the
+logarithm of k. Runs with det F <= 0 are no answers.
 """
 
 from dataclasses import dataclass
@@ -32,8 +33,9 @@ def oblique_time(results: Results) -> tuple[str, str]:
     other = _met(_whole(rows[(rows.exit == 0) & (rows.angle == OTHER)]), OBLIQUE_MAP)
     found = {nu: bar(neo, "contact_time", nu=nu) for nu in neo.nu}
     converged = ", ".join(f"{1e3 * time:.2f} ± {1e3 * error:.2f} ms (ν = {nu:g})" for nu, (time, error) in found.items())
-    return _over_meshes(OBLIQUE_MAP, rows[rows.angle == ANGLE], f"At {OTHER:g}° from the plane it is met on {_where(other)}. (The run of disc-oblique-svk: "
-                        f"{both_times(results.summary('disc-oblique-svk'))}; the neo-Hookean disc, another law, converges to {converged}.)")
+    return _over_meshes(OBLIQUE_MAP, rows[rows.angle == ANGLE], f"At {OTHER:g}° from the plane it is met on {_where(other)}. (The run of "
+                        f"disc-oblique-svk: {both_times(results.summary('disc-oblique-svk'))}; the neo-Hookean disc, another law, "
+                        f"converges to {converged}.)")
 
 
 @states("Section 3.3", "the 2D disc at 8 m/s: contact time 0.0048 s", f"{DISC_MAP} {DISC}", f"{DISC_MAP} {DISC}/force")
@@ -52,14 +54,15 @@ def disc_time(results: Results) -> tuple[str, str]:
 @states("Section 3.3, figure 10", "ball, SVK, 8 m/s: contact time 0.00603 s, as the paper may have run it: as a body of revolution",
         f"{BALL_MAP} {BALL} {BALL_NEO}", f"{BALL_MAP} {BALL}/force")
 def ball_time(results: Results) -> tuple[str, str]:
-    """Over a map of (ν, k) on coarse meshes, as the paper states none of these: agrees where some (ν, k) meets it, to half a unit of its last digit, on
-    every mesh with ellipticity kept; partly where one meets it on some mesh only, or with ellipticity lost; else not. Runs with det F ≤ 0 are no
-    answers."""
-    return _over_meshes(BALL_MAP, results.table(BALL_MAP), f"(The run of {BALL}: {both_times(results.summary(BALL))}; the neo-Hookean ball, another law, "
-                        f"converges to {both_times(results.summary(BALL_NEO))}.)")
+    """Over a map of (ν, k) on coarse meshes, as the paper states none of these: agrees where some (ν, k) meets it, to half a unit of its
+    last digit, on every mesh with ellipticity kept; partly where one meets it on some mesh only, or with ellipticity lost; else not. Runs
+    with det F ≤ 0 are no answers."""
+    return _over_meshes(BALL_MAP, results.table(BALL_MAP), f"(The run of {BALL}: {both_times(results.summary(BALL))}; the neo-Hookean "
+                        f"ball, another law, converges to {both_times(results.summary(BALL_NEO))}.)")
 
 
-@states("Section 3.3, figure 10", "ball, SVK, 8 m/s: contact time 0.00603 s, as the paper may have run it: in three dimensions", f"{SOLID_MAP} ball")
+@states("Section 3.3, figure 10", "ball, SVK, 8 m/s: contact time 0.00603 s, as the paper may have run it: in three dimensions",
+        f"{SOLID_MAP} ball")
 def ball_time_3d(results: Results) -> tuple[str, str]:
     """As the ball's time as a body of revolution, on meshes of tetrahedra."""
     return _over_meshes(SOLID_MAP, results.table(SOLID_MAP), "(The neo-Hookean ball in three dimensions, another law, gives "
@@ -79,8 +82,8 @@ def _over_meshes(name: str, every: pd.DataFrame, beside: str) -> tuple[str, str]
         for row in rows[(rows.nu == nearest.nu) & (rows.penalty == nearest.penalty)].itertuples())
     everywhere = "ν = " + ", ".join(f"{nu:g}" for nu in independent) if independent else "no ν and k: the number is not mesh-independent"
     return graded(bool(independent), bool(met)), (
-        f"of {len(rows)} runs over ν, k and mesh {len(rows) - len(whole)} invert elements (det F ≤ 0). Between the others it is met on {_where(met)}; "
-        f"with ellipticity kept on {_where(sound)}; so on all meshes for {everywhere}{same}. {beside}")
+        f"of {len(rows)} runs over ν, k and mesh {len(rows) - len(whole)} invert elements (det F ≤ 0). Between the others it is met on "
+        f"{_where(met)}; with ellipticity kept on {_where(sound)}; so on all meshes for {everywhere}{same}. {beside}")
 
 
 def _whole(rows: pd.DataFrame) -> pd.DataFrame:
@@ -91,7 +94,8 @@ def _whole(rows: pd.DataFrame) -> pd.DataFrame:
 def _met(rows: pd.DataFrame, name: str) -> dict[tuple[float, float], Ranges]:
     """For each (mesh size, ν) of a map that meets the paper's contact time, the ranges of k that do."""
     figure = loaded(name).figure
-    return {(h, nu): ranges for h, group in rows.groupby("mesh_size", sort=False) for nu, ranges in sweep_figures.level_set(figure, group).items() if ranges}
+    return {(h, nu): ranges for h, group in rows.groupby("mesh_size", sort=False)
+            for nu, ranges in sweep_figures.level_set(figure, group).items() if ranges}
 
 
 def _together(each: list[Ranges]) -> bool:
@@ -116,12 +120,12 @@ def _each(met: dict[float, Ranges]) -> str:
 
 # ---- all numbers, all maps
 
-@states("Sections 3.1, 3.3", "one material and one contact for all: with the same ν and k 4.8 ms of the disc, 4.5 ms of the oblique disc, 6.03 ms of the "
-        "ball", " ".join(EVERY))
+@states("Sections 3.1, 3.3", "one material and one contact for all: with the same ν and k 4.8 ms of the disc, 4.5 ms of the oblique disc, "
+        "6.03 ms of the ball", " ".join(EVERY))
 def at_once(results: Results) -> tuple[str, str]:
-    """On the ν that all maps have, with SVK, the angle from the plane or the normal. A number is met where it lies, to half a unit of its last digit,
-    within the error bar of the runs, or, on coarse meshes, between them. Agrees where some (ν, k) meets all three with ellipticity kept; partly where
-    one does whatever is lost; else not."""
+    """On the ν that all maps have, with SVK, the angle from the plane or the normal. A number is met where it lies, to half a unit of its
+    last digit, within the error bar of the runs, or, on coarse meshes, between them. Agrees where some (ν, k) meets all three with
+    ellipticity kept; partly where one does whatever is lost; else not."""
     whole, sound = ({angle: _joint(results, angle, kept) for angle in (ANGLE, OTHER)} for kept in (False, True))
     met, kept = ({angle: {each.nu: each.met for each in maps if each.met} for angle, maps in found.items()} for found in (whole, sound))
     words = []
@@ -132,14 +136,16 @@ def at_once(results: Results) -> tuple[str, str]:
             if nearest else ""))
     each = {name: _alone(results, name, ANGLE) for name in MAPS}
     alone = ". ".join(f"{name}: {_each(found) or 'nowhere'}" for name, found in each.items())
-    pairs = ". ".join(f"{first} and {second}: {_each(_common(each[first], each[second])) or 'nowhere'}" for first, second in combinations(MAPS, 2))
+    pairs = ". ".join(f"{first} and {second}: {_each(_common(each[first], each[second])) or 'nowhere'}"
+                      for first, second in combinations(MAPS, 2))
     return graded(any(kept.values()), any(met.values())), (
         f"{'. '.join(words)}. Two at once, oblique at {ANGLE:g}° [Pa/m]: {pairs}. Each alone: {alone}.")
 
 
 @dataclass(frozen=True)
 class Together:
-    """Of a ν of all maps: the ranges of k [Pa/m] that meet all numbers; the k that misses them by least, by what share of one, and the times there."""
+    """Of a ν of all maps: the ranges of k [Pa/m] that meet all numbers; the k that misses them by least, by what share of one, and the
+    times there."""
 
     nu: float
     met: Ranges
@@ -175,7 +181,8 @@ def _alone(results: Results, name: str, angle: float) -> dict[float, Ranges]:
 
 def _common(one: dict[float, Ranges], other: dict[float, Ranges]) -> dict[float, Ranges]:
     """What two numbers share of their ranges of k, for each ν."""
-    found = {nu: [(max(a, c), min(b, d)) for (a, b), (c, d) in product(one[nu], other[nu]) if max(a, c) <= min(b, d)] for nu in one if nu in other}
+    found = {nu: [(max(a, c), min(b, d)) for (a, b), (c, d) in product(one[nu], other[nu]) if max(a, c) <= min(b, d)] for nu in one
+             if nu in other}
     return {nu: ranges for nu, ranges in found.items() if ranges}
 
 
@@ -191,8 +198,8 @@ def _bounds(k: np.ndarray, each: pd.DataFrame) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _between(results: Results, number: str, angle: float, kept: bool) -> dict[float, pd.DataFrame]:
-    """For each ν of the maps of a number with two k or more: low and high, the smallest and the largest contact time of the runs on all meshes, error bars
-    included, by k."""
+    """For each ν of the maps of a number with two k or more: low and high, the smallest and the largest contact time of the runs on all
+    meshes, error bars included, by k."""
     parts = []
     for name in MAPS[number]:
         rows = finished(results, name)
@@ -215,8 +222,8 @@ def _ranges(k: np.ndarray, miss: np.ndarray) -> Ranges:
 @states("Section 3.3", "the contact time is always larger of the ball when the laws are similar", laws="{}.",
         runs=f"{DISC_MAP} {BALL_MAP} {SOLID_MAP} {DISC} {BALL} {DISC_NEO} {BALL_NEO}", lost=lost(DISC, BALL))
 def always_longer(results: Results, law: str) -> tuple[bool, str]:
-    """With a law for both: where the ball's is longer than the disc's at 8 m/s, by contact_time and by the time above 1 % of the peak force; with SVK
-    for every ν and k that the maps of both have, too."""
+    """With a law for both: where the ball's is longer than the disc's at 8 m/s, by contact_time and by the time above 1 % of the peak
+    force; with SVK for every ν and k that the maps of both have, too."""
     disc, ball = (results.summary(name) for name in ((DISC, BALL) if law == "svk" else (DISC_NEO, BALL_NEO)))
     longer = all(ball[key] > disc[key] for key in ("contact_time", "thresholded_contact_time"))
     words = f"ball {both_times(ball)}, disc {both_times(disc)}"
@@ -228,7 +235,8 @@ def always_longer(results: Results, law: str) -> tuple[bool, str]:
 
 
 def _least_excess(results: Results) -> dict[float, float]:
-    """For each ν of the maps of disc and ball by how much the ball's contact is longer at least, over their k, error bars and meshes [s]."""
+    """For each ν of the maps of disc and ball by how much the ball's contact is longer at least, over their k, error bars and meshes
+    [s]."""
     disc, ball = (_between(results, name, ANGLE, False) for name in ("disc", "ball"))
     found = {}
     for nu in sorted(set(disc) & set(ball)):

@@ -1,5 +1,5 @@
-"""Other programs on the same disc or ball, or the same two bodies, and a plain textbook script of FreeFEM (verification/peers/): found where
-they are installed, run one process at a time.
+"""Other programs on the same disc or ball, or the same two bodies, and a plain textbook script of FreeFEM (verification/peers/): found
+where they are installed, run one process at a time.
 
 NGSolve: `pip install ngsolve==6.2.2608`, in this Python or in the one that $NGSOLVE_PYTHON names. GetFEM: Debian's python3-getfem,
 in /usr/bin/python3 or in $GETFEM_PYTHON. Nothing else needs them.
@@ -26,7 +26,8 @@ INSTALL = {"ngsolve": "pip install ngsolve==6.2.2608", "getfem": "apt-get instal
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 RADIUS = 0.05               # m, of disc-normal and the peers' default
 TEXTBOOK = "../verification/peers/textbook"
-BODIES = {"disc-normal": "disc", "ball-axisymmetric": "ball", "ball": "ball_3d"}    # our scenes, and the script <program>_<body>.py beside each
+# our scenes, and the script <program>_<body>.py beside each
+BODIES = {"disc-normal": "disc", "ball-axisymmetric": "ball", "ball": "ball_3d"}
 
 
 @cache
@@ -45,8 +46,8 @@ def run(program: str, form: str, mesh_size: float, contact_mesh_size: float, dt:
         **flags: Value) -> tuple[dict | None, str]:
     """(what the peer prints, "") or (None, the reason there is nothing).
 
-    program: ngsolve or (the disc alone) getfem; form: plain, tuned or (NGSolve) newmark or tuned-realcompile; sizes [m], step dt [s], limit [s]; scene: of BODIES.
-    Further flags by the names of the peers: law, nu, speed, penalty, young, density, tolerance, history.
+    program: ngsolve or (the disc alone) getfem; form: plain, tuned or (NGSolve) newmark or tuned-realcompile; sizes [m], step dt [s], limit
+    [s]; scene: of BODIES. Further flags by the names of the peers: law, nu, speed, penalty, young, density, tolerance, history.
     """
     flags |= {"form": form, "dt": dt, "mesh_size": mesh_size, "contact_mesh_size": contact_mesh_size}
     with tempfile.TemporaryDirectory() as folder:
@@ -72,7 +73,8 @@ def _printed(program: str, script: str, folder: str, limit: float, flags: dict[s
     words = [word for name, value in flags.items() for word in (f"--{name.replace('_', '-')}", str(value))]
     try:
         done = subprocess.run([python, ROOT / "verification/peers" / script, *words], env=os.environ | ONE_THREAD, cwd=folder,
-                              capture_output=True, text=True, timeout=limit, preexec_fn=partial(freefem.die_with_parent, os.getpid(), SIGKILL))
+                              capture_output=True, text=True, timeout=limit,
+                              preexec_fn=partial(freefem.die_with_parent, os.getpid(), SIGKILL))
     except subprocess.TimeoutExpired:
         return None, f"no end after {limit:g} s: killed"
     said, complaint = done.stdout.strip().splitlines(), done.stderr.strip().splitlines()
