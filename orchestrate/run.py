@@ -41,7 +41,7 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | Non
     """Runs `scene` with some parameters overridden in the folder `out` (default results/<scene>), or reuses it.
 
     Raises Failure with the exit code of the run contract. `force` runs again, from the start, even if the folder is up to date; else a run
-    that was killed goes on from its last checkpoint. `progress`: whether a line shows how far it is (None: on a terminal and in a notebook).
+    that was killed goes on from its last checkpoint. `progress`: whether a line shows how far it is (None: on a terminal, in a notebook).
     With `estimate` a second, coarser run estimates the error, and finer ones follow until it is below the accuracy (estimate.py).
     """
     started = time.monotonic()
