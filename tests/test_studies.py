@@ -10,7 +10,7 @@ import pytest
 
 from orchestrate import run
 from orchestrate.output import results
-from orchestrate.studies import stress
+from orchestrate.studies import pairing_comparison, stress
 from orchestrate.sweeps import study
 from test_cli import is_alive, start, wait_for
 
@@ -140,6 +140,23 @@ def test_stress_holds_on_real_runs(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(stress, "AXES", {"law": ("svk", "neohookean"), "nu": (0.49,), "speed": (10.0,), "penalty": (1e12,),
                                          "exponent": (1.0, 2.0), "dt": (1e-4,)})
     assert stress.main(["--out", str(tmp_path)]) == 0, capsys.readouterr().out
+
+
+def test_pairs_are_held_against_closest_points_of_the_same_penalty(monkeypatch, tmp_path):
+    """A row a run, differences from closest points with the same k in per cent; one that fails is a row that says why, and fails the requirement."""
+    def runs(points, *_, **__):
+        return pd.DataFrame([{"exit": 0, "message": "", "warnings": "", "rebound_vy_1": 5 + (point["pairing"] == "pairwise") * 0.05, "energy_drift": 1e-12,
+                              "rebound_vy_2": -0.5, "impulse_y_1": 2e4, "thresholded_contact_time": 0.05} | point for point in points])
+    monkeypatch.setattr(study, "study", runs)
+    monkeypatch.setattr(pairing_comparison, "read_scene", lambda folder: {"pairing_range": 0.1, "penalty": 1e9, "contact_mesh_size": 0.1})
+    monkeypatch.setattr(pairing_comparison, "read_history", lambda folder: {"momentum_y": pd.Series([-1.0, -1.0])})
+    monkeypatch.setattr(study, "place", lambda *_: tmp_path)
+    for name in ("scene.toml", "history.csv"):
+        (tmp_path / name).touch()
+    table = pairing_comparison.compare(["neohookean"], tmp_path)
+    assert table.pairing.value_counts().to_dict() == {"pairwise": 11, "closest-point": 4, "pairwise-printed": 2} and pairing_comparison.holds(table)
+    assert table["differ [%]"][table.pairing == "pairwise"].tolist() == pytest.approx([0.5] * 11) and (table[table.pairing != "pairwise"]["differ [%]"] == 0).all()
+    assert not pairing_comparison.holds(table.assign(outcome="step"))
 
 
 def test_pages_say_what_measured_them(tmp_path):
