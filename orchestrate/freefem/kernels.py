@@ -1,5 +1,4 @@
-"""The compiled kernels of edp/kernels: built for the FreeFem++ at hand, where it can be, as a plugin that the scripts find by
-themselves."""
+"""The compiled kernels of edp/kernels: built for the FreeFem++ at hand, where it can be, as a plugin that the scripts find."""
 
 import contextlib
 import fcntl

@@ -87,8 +87,7 @@ SIDES = {9: lambda a, b: (a < b) * 1.0, 10: lambda a, b: (a >= b) * 1.0, 16: lam
 
 
 def run(code: tuple[float, ...], points: np.ndarray, sides: dict | None = None) -> tuple[np.ndarray, np.ndarray]:
-    """D (n,) and its gradient (n, axes) at points (n, axes). `sides`: what min, max and abs take, of each of their places; put in where
-    they are not yet."""
+    """D (n,) and its gradient (n, axes) at points (n, axes). `sides`: what min, max and abs take in each place; put in where missing."""
     stack, entries, sides, eye = [], enumerate(code), {} if sides is None else sides, np.eye(points.shape[1])
     for e, op in entries:
         if op < 4:

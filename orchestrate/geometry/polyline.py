@@ -88,8 +88,7 @@ def sides_of(numbers: tuple[float, ...]) -> Sides:
 
 
 def radius_at(point: np.ndarray, within: float, numbers: tuple[float, ...]) -> float:
-    """The rounding [m] where a convex corner is as near to a point (2,) as any of the chain, or by `within` [m] less; infinite where none
-    is."""
+    """The rounding [m] where a convex corner is as near to a point (2,) as any of the chain, or by `within` [m] less; else infinite."""
     sides = sides_of(numbers)
     before, after = (np.roll(sides.along, 1, axis=0), sides.along) if sides.closed else (sides.along[:-1], sides.along[1:])
     turn = np.arctan2(-cross(before, after), np.sum(before * after, axis=1))       # clockwise: the solid is to the right

@@ -10,8 +10,7 @@ PRINCIPAL = 1e-9             # of spin and angular momentum, how far they may be
 
 
 def turned(moments: np.ndarray, start: np.ndarray, spin: np.ndarray, t: float) -> np.ndarray:
-    """The matrix (3, 3) of a body at time t >= 0 [s], `start` and `spin` (3,) [rad/s] at 0; `moments` (3, 3): of inertia, in the body's
-    axes."""
+    """The matrix (3, 3) of a body at time t >= 0 [s], `start` and `spin` (3,) [rad/s] at 0; `moments` (3, 3): of inertia in its axes."""
     if _principal(moments, start, spin):
         return rotation(spin * t) @ start
     return _motion(moments.tobytes(), start.tobytes(), spin.tobytes()).at(t)

@@ -102,8 +102,7 @@ def decisive(values: dict[str, Value]) -> dict[str, Value]:
 
 
 def check(given: dict[str, Value], script: str = "") -> dict[str, Value]:
-    """The given parameters (of one script, or of all), checked and converted; BadInput names the first one that is unknown or not
-    accepted."""
+    """The given parameters (of one script, or of all), checked and converted; BadInput names the first that is unknown or not accepted."""
     for name in given:
         if name in names() and script:
             taken(name, script)

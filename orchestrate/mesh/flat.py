@@ -131,8 +131,7 @@ def _may_be_read(path: Path) -> bool:
 
 
 def mesh_outline(found: mesh.Mesh) -> Outline:
-    """The boundary of a mesh as loops, that of the largest area first; edges on circles are arcs, and a loop on one circle is that
-    circle."""
+    """The boundary of a mesh as loops, that of the largest area first; edges on circles are arcs, a loop on one circle is that circle."""
     hub = {tuple(sorted(edge)): at for edge, at in zip(found.edges.tolist(), found.hubs)}
     following = dict(mesh.boundary(found.triangles).tolist())
     loops = []

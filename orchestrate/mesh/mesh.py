@@ -225,8 +225,7 @@ def boundary(cells: np.ndarray) -> np.ndarray:
 
 
 def pieces(points: int, elements: np.ndarray) -> np.ndarray:
-    """The piece (points,) that each point belongs to, by the lowest number of a point in it: elements (n, corners) hang together by common
-    points."""
+    """The piece (points,) that each point belongs to, by its lowest number: elements (n, corners) hang together by common points."""
     piece = np.arange(points)
     while True:
         least = piece[elements].min(axis=1)
@@ -245,8 +244,7 @@ def is_outer(points: np.ndarray, sides: np.ndarray) -> np.ndarray:
 
 
 def write(mesh: Mesh, path: Path, regions: np.ndarray | None = None) -> None:
-    """Writes FreeFEM's 2D .msh: counts; x y label; v1 v2 v3 region; v1 v2 label; vertices count from 1. `regions` (t,): where they are
-    several."""
+    """Writes FreeFEM's 2D .msh: counts; x y label; v1 v2 v3 region; v1 v2 label; vertices count from 1. `regions` (t,): if several."""
     point_labels = np.zeros(len(mesh.points), dtype=int)
     for label in np.unique(mesh.labels)[::-1]:     # where two meet, the contact's
         point_labels[mesh.edges[mesh.labels == label]] = label

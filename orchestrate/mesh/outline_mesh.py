@@ -1,5 +1,4 @@
-"""Meshes inside closed curves in the plane, by gmsh: the ends of their pieces are vertices, elements are as small as is asked along
-them."""
+"""Meshes inside closed curves in the plane, by gmsh: the ends of their pieces are vertices, elements as small as is asked along them."""
 
 from collections.abc import Callable
 

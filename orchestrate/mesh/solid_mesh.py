@@ -168,8 +168,7 @@ def cells_of(model) -> tuple[np.ndarray, np.ndarray]:
 
 
 def expected_cells(volume: float, sizes: Sizes) -> float:
-    """About how many tetrahedra a body gets: those of its bulk, and around where it touches, in layers whose area grows with the
-    distance."""
+    """About how many tetrahedra a body gets: of its bulk, and around where it touches in layers whose area grows with the distance."""
     bulk = volume / (FILL * sizes.bulk**3)
     if not len(sizes.near) or sizes.contact >= sizes.bulk:
         return bulk

@@ -121,8 +121,7 @@ def lattice(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def _in_plane(tetrahedra: np.ndarray, on_plane: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """The faces (f, 6) of quadratic tetrahedra (t, 10) all of whose nodes are marked in `on_plane`, each once, counter-clockwise in x,
-    y."""
+    """The faces (f, 6) of quadratic tetrahedra (t, 10) of which all nodes are marked in `on_plane`, each once, counter-clockwise."""
     faces = tetrahedra[:, FACES].reshape(-1, 6)
     faces = faces[on_plane[faces].all(axis=1)]
     faces = faces[np.unique(np.sort(faces[:, :3], axis=1), axis=0, return_index=True)[1]]

@@ -72,8 +72,7 @@ def total_energy(results: Results, law: str) -> tuple[bool, str]:
 
 
 def _velocities(results: Results, name: str) -> tuple[tuple[float, float], float, float]:
-    """Upward velocities [m/s] of the disc before and after, of the block after, and the estimated error of the disc's; nan if it is not
-    known."""
+    """Upward velocities [m/s] of the disc before and after, of the block after, and the estimated error of the disc's, or nan."""
     history, estimated = results.history(name), results.summary(name)["estimated_error"]
     start = history["vy_1"][0]
     return (start, history["vy_1"][-1]), history["vy_2"][-1], abs(start) * (estimated["rebound"] if estimated else np.nan)
@@ -143,8 +142,7 @@ def longest(results: Results) -> tuple[str, str]:
 @states("Sections 3.1, 3.3, figure 11", "the contact force is the integral of the acceleration times the density, A_CM its mean; "
         "the accelerations of disc SVK, disc neo-Hookean and ball SVK", f"{DISC} {DISC_NEO} {BALL}", exact=True, **BESIDE)
 def accelerations(results: Results) -> tuple[str, str]:
-    """Agrees where in all three runs and every step the contact force is the change of momentum over the step to 1e-8 of the largest
-    force."""
+    """Agrees where in every step of all three runs the contact force is the change of momentum over it to 1e-8 of the largest force."""
     apart, words = [], []
     for name in (DISC, DISC_NEO, BALL):
         history = results.history(name)

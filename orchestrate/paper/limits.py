@@ -28,8 +28,7 @@ def incompressible(results: Results) -> tuple[str, str]:
 @states("Section 2.2, equations (7), (10)",
         "for a sufficiently large k the regularised contact (10) approximates Signorini's condition (7)", STIFFNESS)
 def stiff_limit(results: Results) -> tuple[str, str, Lost]:
-    """With a law, for every ν, over k on the disc at 8 m/s: where the largest penetration falls with every larger k and the rebound
-    settles."""
+    """With a law, for every ν, over k on the disc at 8 m/s: where the largest penetration falls with k and the rebound settles."""
     rows = finished(results, STIFFNESS)
 
     def of(_: Results, law: str) -> tuple[bool, str]:

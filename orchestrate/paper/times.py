@@ -235,8 +235,7 @@ def always_longer(results: Results, law: str) -> tuple[bool, str]:
 
 
 def _least_excess(results: Results) -> dict[float, float]:
-    """For each ν of the maps of disc and ball by how much the ball's contact is longer at least, over their k, error bars and meshes
-    [s]."""
+    """For each ν of the maps of disc and ball by how much [s] the ball's contact is longer at least, over k, error bars and meshes."""
     disc, ball = (_between(results, name, ANGLE, False) for name in ("disc", "ball"))
     found = {}
     for nu in sorted(set(disc) & set(ball)):

@@ -1,5 +1,4 @@
-"""The contact of a run along the outlines of its bodies: pressure at instants and over time, and with friction where it sticks and
-slides."""
+"""The contact of a run along the outlines of its bodies: pressure at instants and over time, with friction where it sticks and slides."""
 
 from pathlib import Path
 
@@ -89,8 +88,7 @@ def _columns(**columns: np.ndarray) -> np.recarray:
 
 
 def _section(points: np.recarray, half: bool) -> tuple[np.recarray, str, dict[str, str]]:
-    """Along the outline: t, s [m], pressure, projected_pressure, state (SLIP: -1, 0, 1); of a body in three dimensions near the plane z =
-    0."""
+    """Along the outline: t, s [m], pressure, projected_pressure, state (SLIP: -1, 0, 1); in three dimensions near the plane z = 0."""
     if "Z" in points.dtype.names:
         away = np.abs(points.Z)
         points = points[away <= max(0.15 * away.max(), away.min())]
@@ -186,8 +184,7 @@ def _maps(figure: plt.Figure, points: np.recarray, rubs: bool, symmetry: str, se
 
 
 def _in_plane(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Of places (n, 3) [m] the distances from their centre along the two directions in which they spread most, the second the one nearer to
-    z."""
+    """Of places (n, 3) [m] the distances from their centre along the two directions in which they spread most, the second nearer to z."""
     places = places - places.mean(axis=0)
     two = np.linalg.svd(places, full_matrices=False)[2][:2]
     two = two[np.argsort(np.abs(two[:, 2]))]

@@ -337,8 +337,7 @@ def _rigid_rolling(t: np.ndarray, scene: dict[str, Value]) -> tuple[np.ndarray, 
 
 @dataclass(frozen=True)
 class Pose:
-    """The body at time t [s]: centre of mass (2,), closed outline (n, 2) and a material diameter (m, 2), marked at its first
-    point, in m."""
+    """The body at time t [s]: centre of mass (2,), closed outline (n, 2) and a material diameter (m, 2), marked at its first point."""
 
     t: float
     centre: np.ndarray

@@ -83,8 +83,7 @@ def write(film: Path, result: RunResult, frames: int) -> None:
 
 
 class GifWriter(PillowWriter):
-    """One palette for all frames, so that no colour changes from frame to frame: `colours` (at most 256, 3), or those of SAMPLES of the
-    frames."""
+    """One palette for all frames, so that no colour changes: `colours` (at most 256, 3), or those of SAMPLES of the frames."""
 
     colours: np.ndarray | None = None
 

@@ -84,8 +84,7 @@ def rows(per_metre: bool) -> list[Quantity]:
 
 
 def draw(result: RunResult) -> None:
-    """The figures of the run into its folder, unless they are there; a picture is no reason to lose a run: what hinders it is a line on
-    stderr."""
+    """The figures of the run into its folder, unless they are there; a picture is no reason to lose a run: what hinders it is said."""
     if result.reused and (result.folder / "figures/energies.png").exists():
         return
     try:

@@ -95,8 +95,7 @@ def whole(solid: vtu.Solid, axes: tuple[int, ...]) -> vtu.Solid:
 
 
 def in_front(solid: vtu.Solid, axes: tuple[int, ...]) -> np.ndarray:
-    """Which tetrahedra (t,) are taken away to look into the body: those before the plane z = 0, of a quarter's mirror images one
-    quarter."""
+    """Which tetrahedra (t,) are taken away to look into the body: those before z = 0, of a quarter's mirror images one."""
     middle = solid.points[solid.tetrahedra[:, :4]].mean(axis=1)
     return (middle[:, 2] > 0) & ((middle[:, 0] > 0) | (0 not in axes))
 

@@ -1,5 +1,4 @@
-"""The vibration that an impact leaves: the energy in each natural mode (modes.csv), beside the spectrum of the force that has excited
-it."""
+"""The vibration that an impact leaves: the energy in each natural mode (modes.csv), beside the spectrum of the force."""
 
 from pathlib import Path
 

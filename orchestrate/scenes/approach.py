@@ -66,8 +66,7 @@ def _fall(scene: Scene) -> np.ndarray:
 
 
 def _in_turn(scene: Scene, one: Meeting) -> list[Meeting]:
-    """A meeting, and in the plane those of the same two that follow, where rigid bodies without friction are turned by it: other corners
-    strike."""
+    """A meeting, and in the plane those of the same two that follow, where it turns rigid bodies without friction: other corners strike."""
     found = [one]
     while scene.dimension is PLANE_STRAIN and len(found) <= MORE and math.isfinite(one.time):
         scene = _rebound(scene, one)
@@ -79,8 +78,7 @@ def _in_turn(scene: Scene, one: Meeting) -> list[Meeting]:
 
 
 def _rebound(scene: Scene, one: Meeting) -> Scene | None:
-    """The bodies of a meeting a little later, when they have parted and nothing pulls them on. None where the hit does not turn
-    them."""
+    """The bodies of a meeting a little later, when they have parted and nothing pulls them on. None where it does not turn them."""
     n = one.normal
     point = _middle(one)
     fall = _fall(scene) * one.time
@@ -111,8 +109,7 @@ def _rebound(scene: Scene, one: Meeting) -> Scene | None:
 
 
 def _middle(one: Meeting) -> np.ndarray:
-    """Where the two bodies of a meeting touch; of a face that lies on another the middle, so that a body that is set down flat is not
-    turned."""
+    """Where the two bodies of a meeting touch; of a face on another the middle, so that a body set down flat is not turned."""
     points = np.vstack([shape.points for shape in one.outlines if isinstance(shape, Outline)])
     off = np.max([abs(shape.gap(points)) for shape in one.outlines], axis=0)
     along = (points - points[off.argmin()]) @ one.normal

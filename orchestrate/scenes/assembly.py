@@ -115,8 +115,7 @@ def _sections(scene: Scene, sizes: list[Sizes | None]) -> tuple[mesh.Mesh, np.nd
 
 
 def _solids(scene: Scene, sizes: list[Sizes | None]) -> tuple[solid_mesh.SolidMesh, np.ndarray, np.ndarray, list[tuple]]:
-    """The same in three dimensions: bodies turned as they are at the start, one above the other; half or a quarter of them where that is
-    enough."""
+    """The same in three dimensions: bodies turned as they are at the start, one above the other; half or a quarter where that is enough."""
     folded = FOLDED[copies(scene)]
     meshes = [solids.mesh_of(body, one, folded) for body, one in zip(scene.bodies, sizes)]
     count = sum(solid_mesh.unknowns(one.cells, scene.values["degree"]) for one in meshes)
@@ -146,8 +145,7 @@ class Asker:
         return self.rule(self.disc(bodies, radius, slides) | more)
 
     def small(self, first: int, second: int) -> float:
-        """The radius [m] of an obstacle where a body meets it, if that is less than half of the body's own, 0 at a sharp corner; else
-        infinite."""
+        """The radius [m] of an obstacle where a body meets it, if less than half of the body's own, 0 at a sharp corner; else infinite."""
         for one in self.met:
             if (one.first, one.second) == (first, second) and second < 0 and not one.never:
                 body, obstacle = one.outlines
@@ -201,8 +199,7 @@ def pair_values(pair: Pair, ask: Asker, values: dict[str, Value]) -> dict[str, V
 
 
 def _with_small_obstacles(scene: Scene, ask: "Asker") -> list[Pair]:
-    """The scene's pairs, and those that an open penalty makes differ: a body and an obstacle that is smaller than its contact on a plane
-    would be."""
+    """The scene's pairs, and those that an open penalty makes differ: of a body and an obstacle smaller than its contact on a plane."""
     said = {(pair.first, pair.second) for pair in scene.pairs}
     small = [(one.first, one.second) for one in ask.met if 0 < ask.small(one.first, one.second) < math.inf] if scene.contact[
         "penalty"] == "auto" else []

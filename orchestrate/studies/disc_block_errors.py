@@ -1,5 +1,4 @@
-"""The disc on the free block (paper, section 3.2) with error bars: velocities, energies and contact times over law, nu, stiffness and
-mesh."""
+"""The disc on the free block (paper, section 3.2) with error bars: velocities, energies, contact times over law, nu, stiffness, mesh."""
 
 import itertools
 from collections.abc import Mapping
@@ -52,8 +51,7 @@ def main(argv: list[str]) -> int:
 
 
 def compare(cases: list[study.Point], accuracies: tuple[float, ...], out: Path) -> pd.DataFrame:
-    """A row a case and accuracy, and one of its reference: size, processor seconds, ANSWERS, what the checks look at, and the exit's
-    message."""
+    """A row a case and accuracy, and one of its reference: size, processor seconds, ANSWERS, what the checks look at, the message."""
     points = [case | {"accuracy": accuracy} for case in cases for accuracy in accuracies]
     runs = study.study(points, out, OPEN, LIMIT, "disc-block")
     last = range(len(accuracies) - 1, len(points), len(accuracies))
@@ -82,8 +80,7 @@ def row(run: Mapping[str, Value], accuracy: float | str) -> dict:
 
 def answers(disc: tuple[float, float], block: tuple[float, float], vibration: tuple[float, float], energy: float,
             times: tuple[float, float]) -> dict[str, float]:
-    """ANSWERS, from mass [kg/m] and velocity [m/s] of both bodies, their energies of vibration and that at the start [J/m], both times
-    [s]."""
+    """ANSWERS, from mass [kg/m] and velocity [m/s] of both bodies, their energies of vibration, that at the start [J/m], both times [s]."""
     moves = [mass / 2 * v**2 for mass, v in (disc, block)]
     return dict(zip(ANSWERS, (disc[1], block[1], *(100 * part / energy for part in (*moves, *vibration)), *(1e3 * time for time in times))))
 

@@ -96,8 +96,7 @@ def words(name: str, text: str, known: list[str]) -> list[str]:
 # ---- the runs
 
 def impacts(body: str, kind: str, friction: float, angles: list[float], out: Path) -> pd.DataFrame:
-    """A row an angle: psi_1, and with error bars MEASURED of the run and <name>_error, from a coarser one; without numbers where the run
-    failed."""
+    """A row an angle: psi_1, and with error bars MEASURED of the run and <name>_error, from a coarser one; no numbers where it failed."""
     place, base, name = out / f"{body}-{kind}", BASE | KINDS[kind][body], f"{body}-oblique"
     points = [{"angle": angle, "friction_static": friction, "friction_dynamic": friction} for angle in angles]
     fine = study.study(points, place, base, LIMIT, name)
@@ -130,8 +129,7 @@ def number(ratio: ArrayLike, friction: float) -> ArrayLike:
 
 
 def sliding(psi: ArrayLike, e: ArrayLike, inertia: float) -> np.ndarray:
-    """psi_2 of a body on which friction acts one way all the time: it loses mu (1 + e)(1 + R^2/k^2) v_n of its slip, and so may turn it
-    round."""
+    """psi_2 of a body on which friction acts one way all the time: it loses mu (1 + e)(1 + R^2/k^2) v_n of its slip, and may turn it."""
     return psi - number((1 + inertia) * (1 + np.asarray(e)), 1)
 
 

@@ -137,8 +137,7 @@ def _cells(panel: plt.Axes, here: pd.DataFrame, axes: dict[str, tuple[float, ...
 
 
 def _bars(panel: plt.Axes, column: int, row: int, run: pd.Series) -> None:
-    """The shares of a run in its cell, each a white bar with its number [%] above it, from the lower edge (0 %) up to 0.6 of the cell (100
-    %)."""
+    """The shares of a run in its cell, each a white bar with its number [%] above it, from its lower edge up to 0.6 of it (100 %)."""
     if run.exit:
         panel.text(column, row, "failed", ha="center", va="center", fontsize=SMALL)
         return

@@ -199,8 +199,7 @@ def _failed_before(wanted: scene.Scene, folder: Path) -> dict | None:
 
 
 def command(name: str, doc: str, page: bool = False, folder: str = "") -> argparse.ArgumentParser:
-    """The command line of a study: --out, its result folder, checked; --page where what it prints may become a page of docs/. For
-    finish()."""
+    """The command line of a study: --out, its result folder, checked; --page where what it prints may become a page. For finish()."""
     parser = argparse.ArgumentParser(prog=f"{COMMAND} {name}", description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", metavar="DIR", type=lambda text: result_folder(Path(text)), default=str(RESULTS / (folder or name)),
                         help="the result folder")
