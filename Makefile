@@ -6,7 +6,7 @@ SWEEPS := oblique friction-jump friction-steps slip-limit contact-time-svk law-c
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws $(SWEEPS) stick-slip verify paper movie docs pictures test robustness bench bench-quick textbook skipping costs promise scaling materials disc-block-errors pairing-comparison oblique-angles refine refine-oblique clean
+.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws $(SWEEPS) stick-slip verify paper movie docs pictures test robustness bench bench-quick promise disc-block-errors pairing-comparison oblique-angles clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z0-9-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
@@ -95,25 +95,17 @@ robustness: $(READY) ## the tests that make test leaves out, malformed input and
 
 disc-block-errors: override ARGS += --page docs/disc-block.md
 pairing-comparison: override ARGS += --page docs/pairing.md
-promise scaling materials: override ARGS += --page docs/$@.md
-bench textbook skipping costs promise scaling materials disc-block-errors pairing-comparison refine: $(READY)
+promise: override ARGS += --page docs/$@.md
+bench promise disc-block-errors pairing-comparison: $(READY)
 	@$(PYTHON) -m orchestrate $@ $(ARGS)
 bench: ## run time against error: meshes, steps, integrators, and other programs where installed
 bench-quick: $(READY) ## the same for one case, coarse
 	@$(PYTHON) -m orchestrate bench --quick $(ARGS)
-textbook: ## seconds a step beside a plain textbook script
-skipping: ## what each saving saves, and that it does not change the answer
-costs: ## where the time goes, its floor, and how it grows with the mesh
 promise: ## whether accuracy means what it says, and stated errors hold, over 240 scenes drawn at random
-scaling: ## one impact in many units and materials has one dimensionless answer
-materials: ## twelve materials at three speeds, against a stiffer contact on a finer mesh
 disc-block-errors: ## the disc on the free block (section 3.2) over law, nu, stiffness and mesh, with error bars; NGSolve beside it
 pairing-comparison: ## closest point against pairs of points (14), (15): rebound, energy and time over epsilon and k
 oblique-angles: $(READY) ## disc and ball over the angle of incidence, beside rigid and elastic theory (ARGS="--friction 0.2 --angles 20,40,60")
 	@$(PYTHON) -m orchestrate $@ $(or $(ARGS),--page docs/$@.md)
-refine: ## refine mesh and step, report the observed convergence
-refine-oblique: $(READY) ## the same for the oblique disc, with the slip velocity down to 0.01 m/s
-	@$(PYTHON) -m orchestrate refine disc-oblique $(ARGS)
 
 clean: ## remove all results (keeps .venv)
 	@find results -mindepth 1 ! -name README.md -delete

@@ -33,7 +33,8 @@ def load_run(folder: str | Path) -> Run:
 
     from .output import results
     folder = Path(folder)
-    scene, summary = (pd.Series(dict(_entries(of)), dtype=object, name=folder.name) for of in (results.read_scene(folder), results.read_summary(folder)))
+    scene, summary = (pd.Series(dict(_entries(of)), dtype=object, name=folder.name)
+                      for of in (results.read_scene(folder), results.read_summary(folder)))
     return Run(scene, summary, pd.DataFrame(results.read_history(folder)))
 
 

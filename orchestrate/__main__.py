@@ -14,9 +14,8 @@ from .places import COMMAND, from_source, shown
 
 # the commands with a module of their own, which has a main(argv), by its package
 PACKAGES = {"sweeps": ("sweep",), "report": ("friction-laws", "compare", "movie", "pages"), "paper": ("paper",),
-            "studies": ("verify", "stick-slip", "oblique-angles", "stress", "bench", "textbook", "skipping", "costs", "promise", "refine", "scaling", "materials",
-                        "pairing-comparison", "disc-block-errors")}
-FROM_SOURCE = ("verify", "pages", "paper", "bench", "textbook", "oblique-angles")   # these need the source folder
+            "studies": ("verify", "stick-slip", "oblique-angles", "stress", "bench", "promise", "pairing-comparison", "disc-block-errors")}
+FROM_SOURCE = ("verify", "pages", "paper", "bench", "oblique-angles")   # these need the source folder
 OWN_MAIN = {name: f"{package}.{name.replace('-', '_')}" for package, names in PACKAGES.items() for name in names}
 
 
@@ -60,11 +59,11 @@ def _parser() -> argparse.ArgumentParser:
 
     command = commands.add_parser("run", help="run a scene, or reuse its finished result")
     command.add_argument("scene", metavar="SCENE", help="a built-in scene (see list) or the path of a TOML file")
-    command.add_argument("--set", metavar="NAME=VALUE", nargs="+", action="extend", default=[], help="set a parameter (see parameters); of a scene of bodies "
-                         "any entry: body.2.young=1e6")
+    command.add_argument("--set", metavar="NAME=VALUE", nargs="+", action="extend", default=[], help="set a parameter (see parameters); of "
+                         "a scene of bodies any entry: body.2.young=1e6")
     command.add_argument("--out", metavar="DIR", type=Path, help="the result folder (default: results/SCENE)")
-    command.add_argument("--mesh", metavar="FILE", type=Path, help="a mesh of a body of your own, FreeFEM's or gmsh's .msh; labels 1: may touch, 2: symmetry axis, "
-                         "others: free, never touch")
+    command.add_argument("--mesh", metavar="FILE", type=Path, help="a mesh of a body of your own, FreeFEM's or gmsh's .msh; labels 1: may "
+                         "touch, 2: symmetry axis, others: free, never touch")
     command.add_argument("--checkpoint-every", metavar="STEPS",
                          help="make a checkpoint every so many steps; a run that is killed goes on from the last when called again")
     command.add_argument("--force", action="store_true", help="run again, from the start, even if the result is there")

@@ -7,7 +7,8 @@ from pathlib import Path
 from .failure import NotInstalled
 
 PACKAGE = Path(__file__).resolve().parent                             # the Python side: scenes, sweeps, probe.edp
-ROOT = PACKAGE if (PACKAGE / "edp").is_dir() else PACKAGE.parent      # the folder that edp/ lies in: the package where it is installed, else the source folder
+# the folder that edp/ lies in: the package where it is installed, else the source folder
+ROOT = PACKAGE if (PACKAGE / "edp").is_dir() else PACKAGE.parent
 RESULTS = Path("results")                                             # below the working folder
 INSTALLED = ROOT == PACKAGE                                           # without the source folder, its verification/ and Makefile
 COMMAND = "ffimpact" if __package__ == "ffimpact" else f"python -m {__package__}"

@@ -1,7 +1,7 @@
 """Progress: one line on a terminal or in a notebook: what is being done, the share of it that is done, the time left.
 
-Work in parts has one line. What its parts say of themselves, each a line of its own where it stands alone, goes into that one: those of a part in this
-process (part, in_turn), and those of a process beside others (forward, in study.side_by_side).
+Work in parts has one line. What its parts say of themselves, each a line of its own where it stands alone, goes into that one: those of a
+part in this process (part, in_turn), and those of a process beside others (forward, in study.side_by_side).
 """
 
 import contextlib
@@ -28,7 +28,8 @@ def in_notebook() -> bool:
 
 
 class Line:
-    """Progress of the work `name` in parts of these costs, in any unit. `watched`: whether it is shown; None: on a terminal and in a notebook."""
+    """Progress of the work `name` in parts of these costs, in any unit. `watched`: whether it is shown; None: on a terminal and in a
+    notebook."""
 
     def __init__(self, name: str, costs: Mapping[Hashable, float], watched: bool | None = None, words: str = ""):
         self.name, self.costs, self.shares = name, dict(costs), dict.fromkeys(costs, 0.0)

@@ -40,10 +40,9 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | Non
         mesh_file: Path | None = None, force: bool = False, progress: bool | None = None, estimate: bool = True) -> RunResult:
     """Runs `scene` with some parameters overridden in the folder `out` (default results/<scene>), or reuses it.
 
-    Raises Failure with the exit code of the run contract. `force` runs again, from the start, even if the folder is up to date. With a checkpoint_every > 0
-    a run that is killed goes on from its last checkpoint when it is asked for again. `progress` says whether a line shows how far it is (None: on a terminal
-    and in a notebook). With `estimate` a second, coarser run, beside it where there are two cores, estimates the error, and finer ones follow until it is
-    below the accuracy (estimate.py).
+    Raises Failure with the exit code of the run contract. `force` runs again, from the start, even if the folder is up to date; else a run
+    that was killed goes on from its last checkpoint. `progress`: whether a line shows how far it is (None: on a terminal, in a notebook).
+    With `estimate` a second, coarser run estimates the error, and finer ones follow until it is below the accuracy (estimate.py).
     """
     started = time.monotonic()
     scene = scene.override(overrides or {})
@@ -64,7 +63,7 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | Non
         provenance = {"script": scene.script, "version": __version__, "code": code_hash(), "freefem": program.version,
                       "gmsh": _gmsh(scene, mesh_file)}
         asked_for = {"asked": scene.asked, "estimate": estimate and _hash(ESTIMATING)}
-        asked = asked_for | provenance | {"mesh": _sha256(mesh_file) if mesh_file else None}
+        asked = asked_for | provenance | {"mesh": mesh_file and _sha256(mesh_file)}
         if force or unfinished(stage) != asked:
             clear(stage)
             write_json(stage / "checkpoint.json", asked)
@@ -72,11 +71,12 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | Non
         try:
             with Solver(program, scene, mesh_file, foreign, stage, lock, line, pair=estimate) as solve:
                 solve({}, stage)
-                found = estimates.settle(stage, scene.values | scene.sizes, solve.own_mesh, solve, read_answers, scene.scaled) if estimate else {}
+                settled = stage, scene.values | scene.sizes, solve.own_mesh, solve, read_answers, scene.scaled
+                found = estimates.settle(*settled) if estimate else {}
         except Failure as failure:
             if checkpoints(stage):   # a script that comes to its end, good or bad, removes it
                 failure.folder = stage
-            elif not isinstance(failure, TooLong) and failure.code not in (BadInput("").code, Unreadable("").code):   # these leave nothing behind
+            elif failure.code not in {kind("").code for kind in (TooLong, BadInput, Unreadable)}:   # these leave nothing behind
                 failure.folder = failed_beside(folder) if finished else folder
                 _keep_failed(stage, failure, scene, provenance | asked_for)
                 _put(stage, failure.folder, scene, mesh_file)
@@ -131,7 +131,8 @@ def reusable(scene: Scene, folder: Path, mesh_file: Path | None = None, estimate
     else None; Unreadable if it is not ours."""
     summary = finished_in(folder, force=False)
     same = (summary and (folder / "history.csv").exists() and summary.get("provenance", {}).get("code") == code_hash()
-            and (summary["provenance"].get("estimate") == _hash(ESTIMATING) or not estimate) and read_scene(folder) and _same_scene(folder, scene, mesh_file))
+            and (summary["provenance"].get("estimate") == _hash(ESTIMATING) or not estimate) and read_scene(folder)
+            and _same_scene(folder, scene, mesh_file))
     if same:
         check_files(folder)
     return RunResult(folder, summary, reused=True) if same else None
@@ -139,7 +140,8 @@ def reusable(scene: Scene, folder: Path, mesh_file: Path | None = None, estimate
 
 def code_hash() -> str:
     """sha256 over what decides a result besides the scene: the FreeFEM scripts, their kernels and what makes meshes and scene.dat."""
-    return _hash(sorted(imported(ENTRANCE) - HARMLESS), sorted(path for path in (ROOT / "edp").rglob("*") if path.suffix in (".edp", ".idp", ".hpp", ".cpp")))
+    return _hash(sorted(imported(ENTRANCE) - HARMLESS),
+                 sorted(path for path in (ROOT / "edp").rglob("*") if path.suffix in (".edp", ".idp", ".hpp", ".cpp")))
 
 
 @cache
@@ -148,7 +150,8 @@ def imported(name: str, package: Path = PACKAGE) -> set[str]:
     found, open_ones = set(), {name}
     while open_ones:
         found.add(module := open_ones.pop())
-        for dots, source, listed in re.findall(r"(?m)^\s*from (\.+)([\w.]*) import (\([^)]*\)|.*)", (package / f"{module}.py").read_text("utf-8")):
+        for dots, source, listed in re.findall(r"(?m)^\s*from (\.+)([\w.]*) import (\([^)]*\)|.*)",
+                                               (package / f"{module}.py").read_text("utf-8")):
             room = Path(module).parents[len(dots) - 1] / source.replace(".", "/")
             names = {str(room), *(str(room / name) for name in re.findall(r"\w+", listed))}
             open_ones |= {name for name in names if (package / f"{name}.py").exists()} - found

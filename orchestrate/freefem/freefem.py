@@ -25,8 +25,8 @@ PROBE = PACKAGE / "probe.edp"
 CLOCK = ROOT / "edp/clock.c"
 SAYS = re.compile(r"progress (\S+) t=(\S+) steps=(\S+)(?: unknowns=(\S+) apart=(\S+))?$")
 UNREAD = 2**20                           # bytes that a process can say while nobody reads; then it waits
-WAYS = ("apt-get install freefem++ libfreefem++; conda install -c conda-forge freefem; a package of https://github.com/FreeFem/FreeFem-sources/releases; "
-        "or set FREEFEM to where it is")
+WAYS = ("apt-get install freefem++ libfreefem++; conda install -c conda-forge freefem; a package of "
+        "https://github.com/FreeFem/FreeFem-sources/releases; or set FREEFEM to where it is")
 HOW = f"install it: {WAYS}" if INSTALLED else f"run: make setup   (or: {WAYS})"
 
 
@@ -93,8 +93,8 @@ def _blas_kernels() -> dict[str, str]:
 
 
 def _quick_clock(environment: Mapping[str, str]) -> dict[str, str]:
-    """The preloaded clock() of edp/clock.c, built where it is missing or older; nothing without a compiler, a folder to write in, or on a path that
-    LD_PRELOAD cannot name."""
+    """The preloaded clock() of edp/clock.c, built where it is missing or older; nothing without a compiler, a folder to write in, or on a
+    path that LD_PRELOAD cannot name."""
     library = CLOCK.with_name("libclock.so")
     if re.search(r"[\s:]", str(library)):
         return {}
@@ -130,8 +130,8 @@ class Process:
     errors: TextIO
 
     def end(self, progress: Progress | None = None) -> tuple[int, str]:
-        """Its exit code, negative for a signal, and the script's line for the user, or "". Lines "progress <share> t=<time> steps=<n> ..." go to
-        `progress` as well."""
+        """Its exit code, negative for a signal, and the script's line for the user, or "". Lines "progress <share> t=<time> steps=<n> ..."
+        go to `progress` as well."""
         for line in self.child.stdout:
             self.log.write(line)
             if progress and (match := SAYS.match(line)):
@@ -166,7 +166,8 @@ def start(freefem: FreeFem, script: str, flags: list[str], log: Path, lock: int 
                 child.communicate()   # to the end of its own children, too
 
 
-def run(freefem: FreeFem, script: str, flags: list[str], log: Path, progress: Progress | None = None, lock: int | None = None) -> tuple[int, str]:
+def run(freefem: FreeFem, script: str, flags: list[str], log: Path, progress: Progress | None = None,
+        lock: int | None = None) -> tuple[int, str]:
     """Runs edp/<script>.edp to its end; see start() and Process.end()."""
     with start(freefem, script, flags, log, lock) as process:
         return process.end(progress)

@@ -1,4 +1,4 @@
-"""The compiled kernels of edp/kernels: built for the FreeFem++ at hand, where it can be, as a plugin that the scripts find by themselves."""
+"""The compiled kernels of edp/kernels: built for the FreeFem++ at hand, where it can be, as a plugin that the scripts find."""
 
 import contextlib
 import fcntl
@@ -18,15 +18,16 @@ LIBRARIES = ("-lcholmod", "-lumfpack")
 
 
 def build(command: str, version: str, environment: Mapping[str, str]) -> bool:
-    """Whether the scripts find a plugin made of the sources as they stand for this FreeFem++. It is built where there is none, by the ff-c++ beside
-    that; where that fails, for want of a compiler, of headers or of a folder to write in, the scripts run without."""
+    """Whether the scripts find a plugin made of the sources as they stand for this FreeFem++. It is built where there is none, by the
+    ff-c++ beside that; where that fails, for want of a compiler, of headers or of a folder to write in, the scripts run without."""
     maker = Path(command).resolve().with_name("ff-c++")
     if not maker.exists() or re.search(r'["\\\n]', str(BUILT)):
         return False
     sources = sorted(SOURCES.iterdir())
     made_of = [version, str(maker), str(maker.stat().st_mtime_ns), *(path.read_text() for path in sources)]
     plugin = BUILT / f"kernels-{hashlib.sha256(chr(0).join(made_of).encode()).hexdigest()[:12]}.so"
-    way = "../" * 40 + str(plugin.with_suffix("")).lstrip("/")     # FreeFEM puts its own folders before any name: from each of them up to the root
+    # FreeFEM puts its own folders before any name: from each of them up to the root
+    way = "../" * 40 + str(plugin.with_suffix("")).lstrip("/")
     loading = f'load "{way}"\nmacro kernelsBuilt(){_interface()}//\n'
     if _built(plugin, loading):
         return True

@@ -1,11 +1,12 @@
-"""Obstacles by a signed distance, an expression of x, y (and z) [m]: positive outside, 0 on the surface, any smooth one that is not constant there.
+"""Obstacles by a signed distance, an expression of x, y (and z) [m]: positive outside, 0 on the surface, any smooth one that is not
+constant there.
 
     [[obstacle]]
     kind = "implicit"
     distance = "y - 0.002*sin(200*x)"    # numbers, x, y, z, + - * / ^ (a number), sin cos sqrt exp abs, min and max of two, parentheses
 
-It becomes a program of numbers for a stack, which FreeFEM runs (edp/core/contact/shapes.idp: what they mean, and how the gap comes from it);
-`gap` does the same.
+It becomes a program of numbers for a stack, which FreeFEM runs (edp/core/contact/shapes.idp: what they mean, and how the gap comes from
+it); `gap` does the same.
 """
 
 import ast
@@ -36,7 +37,8 @@ def program(path: str, text: object, axes: int) -> tuple[float, ...]:
     """The program of an expression. BadInput, naming path.distance."""
     accepted = f"(accepted: {ACCEPTED.format(axes=', '.join('xyz'[:axes]))})"
     if not isinstance(text, str) or not text.strip():
-        raise BadInput(f"{path}.distance: '{brief(text)}' is no expression {accepted}" if text is not None else f"{path}.distance: is missing {accepted}")
+        raise BadInput(f"{path}.distance: '{brief(text)}' is no expression {accepted}" if text is not None
+                       else f"{path}.distance: is missing {accepted}")
     if len(text) > LONGEST:
         raise BadInput(f"{path}.distance: {len(text)} characters (accepted: up to {LONGEST})")
     try:
@@ -71,18 +73,21 @@ def _tokens(node: ast.AST, axes: int) -> list[float]:
     raise Stop(ast.unparse(node))
 
 
-# Of every operation on a (and b): its value and its derivatives by a and b. `side` is what min, max and abs take: 1 where it is a, or the sign of a.
+# Of every operation on a (and b): its value and its derivatives by a and b. `side` is what min, max and abs take: 1 where it is a, or the
+# sign of a.
 OPERATIONS = {
-    4: lambda a, b, side: (a + b, 1, 1), 5: lambda a, b, side: (a - b, 1, -1), 6: lambda a, b, side: (a * b, b, a), 7: lambda a, b, side: (a / b, 1 / b, -a / b**2),
+    4: lambda a, b, side: (a + b, 1, 1), 5: lambda a, b, side: (a - b, 1, -1), 6: lambda a, b, side: (a * b, b, a),
+    7: lambda a, b, side: (a / b, 1 / b, -a / b**2),
     8: lambda a, b, side: (a**b, np.where(b == 0, 0, b * a**np.where(b == 0, 1, b - 1)), 0),
-    9: lambda a, b, side: (np.where(side, a, b), side, 1 - side), 10: lambda a, b, side: (np.where(side, a, b), side, 1 - side), 11: lambda a, b, side: (-a, -1, 0),
-    12: lambda a, b, side: (np.sin(a), np.cos(a), 0), 13: lambda a, b, side: (np.cos(a), -np.sin(a), 0), 14: lambda a, b, side: (np.sqrt(a), 0.5 / np.sqrt(a), 0),
-    15: lambda a, b, side: (np.exp(a), np.exp(a), 0), 16: lambda a, b, side: (a * side, side, 0)}
+    9: lambda a, b, side: (np.where(side, a, b), side, 1 - side), 10: lambda a, b, side: (np.where(side, a, b), side, 1 - side),
+    11: lambda a, b, side: (-a, -1, 0), 12: lambda a, b, side: (np.sin(a), np.cos(a), 0), 13: lambda a, b, side: (np.cos(a), -np.sin(a), 0),
+    14: lambda a, b, side: (np.sqrt(a), 0.5 / np.sqrt(a), 0), 15: lambda a, b, side: (np.exp(a), np.exp(a), 0),
+    16: lambda a, b, side: (a * side, side, 0)}
 SIDES = {9: lambda a, b: (a < b) * 1.0, 10: lambda a, b: (a >= b) * 1.0, 16: lambda a, b: np.where(a < 0, -1.0, 1.0)}
 
 
 def run(code: tuple[float, ...], points: np.ndarray, sides: dict | None = None) -> tuple[np.ndarray, np.ndarray]:
-    """D (n,) and its gradient (n, axes) at points (n, axes). `sides`: what min, max and abs take, of each of their places; put in where they are not yet."""
+    """D (n,) and its gradient (n, axes) at points (n, axes). `sides`: what min, max and abs take in each place; put in where missing."""
     stack, entries, sides, eye = [], enumerate(code), {} if sides is None else sides, np.eye(points.shape[1])
     for e, op in entries:
         if op < 4:
@@ -112,7 +117,8 @@ def gap(points: np.ndarray, numbers: tuple[float, ...]) -> np.ndarray:
 
 
 def closest(points: np.ndarray, code: list[float], limit: float) -> tuple[np.ndarray, np.ndarray]:
-    """Distances (n,) of points near the surface, and the closest points of it (n, axes): projected on the tangent plane of D there, again and again."""
+    """Distances (n,) of points near the surface, and the closest points of it (n, axes): projected on the tangent plane of D there, again
+    and again."""
     at, sides, distance = points, {}, np.zeros(len(points))
     for _ in range(TURNS):
         value, slope = run(code, at, sides)
@@ -125,9 +131,10 @@ def closest(points: np.ndarray, code: list[float], limit: float) -> tuple[np.nda
     return distance, at
 
 
-def nearest(point: np.ndarray, gap: float, code: list[float], limit: float, disc: tuple[np.ndarray, float] | None) -> tuple[float, np.ndarray]:
-    """Gap and outward normal at a point of a body. If that is a disc or ball, centre and radius, and near, at its lowest point as the normal there sees it:
-    centre - radius n, again and again."""
+def nearest(point: np.ndarray, gap: float, code: list[float], limit: float, disc: tuple[np.ndarray, float]
+            | None) -> tuple[float, np.ndarray]:
+    """Gap and outward normal at a point of a body. If that is a disc or ball, centre and radius, and near, at its lowest point as the
+    normal there sees it: centre - radius n, again and again."""
     value, slope = run(code, point[None])
     if abs(value[0]) >= limit * np.linalg.norm(slope):
         return float(gap), slope[0] / np.linalg.norm(slope)
@@ -142,8 +149,8 @@ def nearest(point: np.ndarray, gap: float, code: list[float], limit: float, disc
 
 
 def settled(path: str, code: tuple[float, ...], centre: np.ndarray, half: float) -> tuple[float, ...]:
-    """The numbers of an obstacle: steepest, limit, program; from points of a box around `centre` (axes,) of the bodies, at first of the half size `half`,
-    so large that it holds some of the surface."""
+    """The numbers of an obstacle: steepest, limit, program; from points of a box around `centre` (axes,) of the bodies, at first of the
+    half size `half`, so large that it holds some of the surface."""
     cube, growth = np.random.default_rng(1).uniform(-1, 1, (SAMPLES, len(centre))), 1
     while True:
         points = centre + growth * half * cube
@@ -151,23 +158,26 @@ def settled(path: str, code: tuple[float, ...], centre: np.ndarray, half: float)
             value, slope = run(code, points)
             if not (np.isfinite(value).all() and np.isfinite(slope).all()):
                 bad = points[np.argmin(np.isfinite(value) & np.isfinite(slope).all(axis=1))]
-                raise BadInput(f"{path}.distance: has no value or no gradient at {_text(bad)} (accepted: an expression that has both wherever bodies may be)")
+                raise BadInput(f"{path}.distance: has no value or no gradient at {_text(bad)} (accepted: an expression that has both "
+                               f"wherever bodies may be)")
         if value.min() < 0 < value.max():
             break
         if growth > FARTHEST:
-            raise BadInput(f"{path}.distance: is 0 nowhere within {growth * half:.3g} m of the bodies (accepted: an expression that is 0 on a surface there)")
+            raise BadInput(f"{path}.distance: is 0 nowhere within {growth * half:.3g} m of the bodies (accepted: an expression that is 0 "
+                           f"on a surface there)")
         growth *= 2
     with np.errstate(all="ignore"):
         size = np.linalg.norm(slope, axis=1)
         on = closest(points[abs(value) < 0.1 * growth * half * size], code, half)[1]
         on = on[(abs(on - centre) <= growth * half).all(axis=1)]
-        bend = np.minimum(*(abs(bending(code, on, step * half)).max(axis=1) for step in (1e-3, 1e-4))).max(initial=0.0)    # not that of a corner, which grows
+        # not that of a corner, which grows
+        bend = np.minimum(*(abs(bending(code, on, step * half)).max(axis=1) for step in (1e-3, 1e-4))).max(initial=0.0)
     return 1.1 * float(size.max()), float(min(half, 1 / max(3 * bend, 1e-300))), *code
 
 
 def bending(code: tuple[float, ...], points: np.ndarray, step: float) -> np.ndarray:
-    """Curvatures (n, axes) of the surface at points of it, 1/m, along each axis projected on it, positive where it bulges out: the change of the normal
-    along the way 2 `step`."""
+    """Curvatures (n, axes) of the surface at points of it, 1/m, along each axis projected on it, positive where it bulges out: the change
+    of the normal along the way 2 `step`."""
     def normals(at: np.ndarray) -> np.ndarray:
         slope = run(code, at)[1]
         return slope / np.linalg.norm(slope, axis=1)[:, None]
@@ -192,7 +202,8 @@ def is_mirrored(code: tuple[float, ...], axis: int, axes: int) -> bool:
     points = np.random.default_rng(2).normal(size=(SAMPLES, axes))
     points *= np.logspace(-4, 2, SAMPLES)[:, None]
     with np.errstate(all="ignore"):
-        return bool(np.allclose(*(run(code, sign * points + (1 - sign) * points * (np.arange(axes) != axis))[0] for sign in (1, -1)), rtol=1e-10, equal_nan=True))
+        return bool(np.allclose(*(run(code, sign * points + (1 - sign) * points * (np.arange(axes) != axis))[0] for sign in (1, -1)),
+                                rtol=1e-10, equal_nan=True))
 
 
 def _text(point: np.ndarray) -> str:

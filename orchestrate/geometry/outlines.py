@@ -50,7 +50,8 @@ class Loop:
     def _arcs(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Pieces along circles: which, the radius vectors of their ends, and the angles [rad] between these, positive counter-clockwise."""
         which = np.flatnonzero(~np.isnan(self.hubs[:, 0])) if self.hubs is not None else np.array([], dtype=int)
-        a, b = (ends[which] - self.hubs[which] if len(which) else np.empty((0, 2)) for ends in (self.corners, np.roll(self.corners, -1, axis=0)))
+        a, b = (ends[which] - self.hubs[which] if len(which) else np.empty((0, 2))
+                for ends in (self.corners, np.roll(self.corners, -1, axis=0)))
         return which, a, b, np.arctan2(cross(a, b), (a * b).sum(axis=1))
 
     def at(self, piece: int, s: np.ndarray) -> np.ndarray:
@@ -96,8 +97,8 @@ class Loop:
 
     @property
     def _segments(self) -> tuple[np.ndarray, np.ndarray]:
-        """Areas between arcs and their chords (arcs,), and first moments (arcs, 2) of these about the hubs: of a sector a x b (a + b)/(3 (1 + cos)), of
-        its triangle a x b (a + b)/6."""
+        """Areas between arcs and their chords (arcs,), and first moments (arcs, 2) of these about the hubs: of a sector a x b (a + b)/(3 (1
+        + cos)), of its triangle a x b (a + b)/6."""
         _, a, b, turn = self._arcs
         square = cross(a, b)
         return (turn * (a**2).sum(axis=1) - square) / 2, (square * (1 / (3 + 3 * np.cos(turn)) - 1 / 6))[:, None] * (a + b)
@@ -139,7 +140,8 @@ def ellipse_loop(a: float, b: float) -> Loop:
 
 
 class Shape:
-    """What an outline in the plane and a solid have in common: `points` on them, signed distances `gap` from them, and, of a disc or ball, `disc`."""
+    """What an outline in the plane and a solid have in common: `points` on them, signed distances `gap` from them, and, of a disc or ball,
+    `disc`."""
 
     points: np.ndarray
     disc: tuple[np.ndarray, float] | None
@@ -310,9 +312,9 @@ def distance_to_polygon(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
 
 
 def folding(corners: np.ndarray, thickness: float, revolved: bool) -> float:
-    """Least of thickness s / w^2 over pairs of sides of a polygon, the body to its left, that see each other across what is empty (pair.idp):
-    s [m] their distance, w the way along the polygon. A wall that closes s bends by some of that; of a ring it is 0.2 thickness / radius.
-    `revolved`: sides of a meridian see none beyond the axis."""
+    """Least of thickness s / w^2 over pairs of sides of a polygon, the body to its left, that see each other across what is empty
+    (pair.idp): s [m] their distance, w the way along the polygon. A wall that closes s bends by some of that; of a ring it is 0.2 thickness
+    / radius. `revolved`: sides of a meridian see none beyond the axis."""
     along = np.roll(corners, -1, axis=0) - corners
     length = np.linalg.norm(along, axis=1)
     if (cross(along, np.roll(along, -1, axis=0)) >= -1e-9 * length * np.roll(length, -1)).all():

@@ -1,8 +1,9 @@
 """Polylines with rounded corners as rigid obstacles: what is accepted, and their signed distance.
 
-A chain of vertices (n, 2) [m], open or closed, has its free side to the LEFT of the direction of travel and the solid to the right: clockwise
-and closed it is a block, counter-clockwise a container. Open, it goes straight on beyond both ends. Its surface lies at the distance
-`rounding` [m] from the chain on the free side: convex corners become arcs of that radius, concave ones stay corners (edp/core/contact/shapes.idp).
+A chain of vertices (n, 2) [m], open or closed, has its free side to the LEFT of the direction of travel and the solid to the right:
+clockwise and closed it is a block, counter-clockwise a container. Open, it goes straight on beyond both ends. Its surface lies at the
+distance `rounding` [m] from the chain on the free side: convex corners become arcs of that radius, concave ones stay corners
+(edp/core/contact/shapes.idp).
 """
 
 import math
@@ -32,7 +33,8 @@ def check(path: str, vertices: np.ndarray, closed: bool, rounding: float) -> Non
     """BadInput, naming path.key, unless the chain is one that has two sides."""
     least = 3 if closed else 2
     if len(vertices) < least:
-        raise BadInput(f"{path}.vertices: {len(vertices)} given (accepted: {least} or more points [x, y]{' of a closed chain' if closed else ''})")
+        raise BadInput(f"{path}.vertices: {len(vertices)} given (accepted: {least} or more points [x, "
+                       f"y]{' of a closed chain' if closed else ''})")
     if not np.isfinite(vertices).all():
         raise BadInput(f"{path}.vertices.{np.argmin(np.isfinite(vertices).all(1)) + 1}: is not finite (accepted: numbers [x, y])")
     if not 0 <= rounding < np.inf:
@@ -48,11 +50,13 @@ def check(path: str, vertices: np.ndarray, closed: bool, rounding: float) -> Non
     back = (np.sum(sides.along * after, axis=1) < 0) & (abs(cross(sides.along, after)) < 1e-9)
     for k in np.flatnonzero(back if closed else back[:-1]):
         j = (k + 1) % len(vertices)
-        raise BadInput(f"{path}.vertices.{j + 1}: the chain turns back on itself at {_text(vertices[j])} (accepted: corners of less than 180 degrees)")
+        raise BadInput(f"{path}.vertices.{j + 1}: the chain turns back on itself at {_text(vertices[j])} (accepted: corners of less than "
+                       f"180 degrees)")
     crossing = _crossing(sides, size)
     if crossing:
         i, j, point = crossing
-        raise BadInput(f"{path}.vertices: side {i + 1} and side {j + 1} meet at {_text(point)} (accepted: a chain that does not cross or touch itself"
+        raise BadInput(f"{path}.vertices: side {i + 1} and side {j + 1} meet at {_text(point)} (accepted: a chain that does not cross or "
+                       f"touch itself"
                        + ("" if closed else "; an open one goes straight on beyond its ends") + ")")
 
 
@@ -84,7 +88,7 @@ def sides_of(numbers: tuple[float, ...]) -> Sides:
 
 
 def radius_at(point: np.ndarray, within: float, numbers: tuple[float, ...]) -> float:
-    """The rounding [m] where a convex corner is as near to a point (2,) as any of the chain, or by `within` [m] less; infinite where none is."""
+    """The rounding [m] where a convex corner is as near to a point (2,) as any of the chain, or by `within` [m] less; else infinite."""
     sides = sides_of(numbers)
     before, after = (np.roll(sides.along, 1, axis=0), sides.along) if sides.closed else (sides.along[:-1], sides.along[1:])
     turn = np.arctan2(-cross(before, after), np.sum(before * after, axis=1))       # clockwise: the solid is to the right

@@ -10,7 +10,7 @@ PRINCIPAL = 1e-9             # of spin and angular momentum, how far they may be
 
 
 def turned(moments: np.ndarray, start: np.ndarray, spin: np.ndarray, t: float) -> np.ndarray:
-    """The matrix (3, 3) of a body at time t >= 0 [s], `start` and `spin` (3,) [rad/s] at 0; `moments` (3, 3): of inertia, in the body's axes."""
+    """The matrix (3, 3) of a body at time t >= 0 [s], `start` and `spin` (3,) [rad/s] at 0; `moments` (3, 3): of inertia in its axes."""
     if _principal(moments, start, spin):
         return rotation(spin * t) @ start
     return _motion(moments.tobytes(), start.tobytes(), spin.tobytes()).at(t)
@@ -46,8 +46,8 @@ def _principal(moments: np.ndarray, start: np.ndarray, spin: np.ndarray) -> bool
 
 
 class _Motion:
-    """The matrices at multiples of a step of a period, as far as they were asked for. After a period the spin is the same to the body again, which has turned
-    as a whole about its angular momentum."""
+    """The matrices at multiples of a step of a period, as far as they were asked for. After a period the spin is the same to the body
+    again, which has turned as a whole about its angular momentum."""
 
     def __init__(self, moments: np.ndarray, start: np.ndarray, spin: np.ndarray):
         self.inverse, self.momentum, self.found = np.linalg.inv(moments), start @ moments @ start.T @ spin, [start]

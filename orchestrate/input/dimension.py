@@ -12,8 +12,8 @@ from .parameters import Parameter
 
 @dataclass(frozen=True)
 class Dimension:
-    """`script` is a file edp/<script>.edp; `axes` the components of a point; `like` the script whose rules of sizes stand for two bodies that
-    meet: those of a disc or of a ball that hits a plane; `cases` the scripts of the paper's bodies."""
+    """`script` is a file edp/<script>.edp; `axes` the components of a point; `like` the script whose rules of sizes stand for two bodies
+    that meet: those of a disc or of a ball that hits a plane; `cases` the scripts of the paper's bodies."""
 
     name: str
     script: str

@@ -12,9 +12,11 @@ from ..places import ROOT as ROOT
 
 Value = float | int | str
 
-# What a scene fixes for others of its entries: where one of those is set and it is not, it is open again, as by default (auto, 0). friction_static alone sets
-# both coefficients; a penalty is of a material, a size and an exponent; a step and meshes are of a size. slip_velocity and end_time stay, with their warnings.
-FOLLOWS = {"friction_dynamic": ("friction_static",), "penalty": ("young", "density", "radius", "exponent"), "dt": ("young", "density", "radius"),
+# What a scene fixes for others of its entries: where one of those is set and it is not, it is open again, as by default (auto, 0).
+# friction_static alone sets both coefficients; a penalty is of a material, a size and an exponent; a step and meshes are of a size.
+# slip_velocity and end_time stay, with their warnings.
+FOLLOWS = {"friction_dynamic": ("friction_static",), "penalty": ("young", "density", "radius", "exponent"),
+           "dt": ("young", "density", "radius"),
            **dict.fromkeys(("mesh_size", "contact_mesh_size", "block_width", "block_height"), ("radius",))}
 
 NOT_DECISIVE = ("checkpoint_every",)   # parameters that do not change the answer
@@ -24,8 +26,8 @@ _NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]+)?|\.[0-9]+)([eE][+-]?[0-9]+)?")
 
 @dataclass(frozen=True)
 class Parameter:
-    """One row of the table. `kind` is real, int, word, numbers (text, separated by commas) or path; `low`/`high` bound numbers, `words` lists the words that are
-    accepted, beside numbers too (auto); `scripts` those that take it."""
+    """One row of the table. `kind` is real, int, word, numbers (text, separated by commas) or path; `low`/`high` bound numbers, `words`
+    lists the words that are accepted, beside numbers too (auto); `scripts` those that take it."""
 
     name: str
     kind: str
@@ -100,8 +102,7 @@ def decisive(values: dict[str, Value]) -> dict[str, Value]:
 
 
 def check(given: dict[str, Value], script: str = "") -> dict[str, Value]:
-    """The given parameters (of one script, or of all), checked and converted; BadInput names the first one that is unknown or not
-    accepted."""
+    """The given parameters (of one script, or of all), checked and converted; BadInput names the first that is unknown or not accepted."""
     for name in given:
         if name in names() and script:
             taken(name, script)

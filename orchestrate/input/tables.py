@@ -17,8 +17,8 @@ SHORTEST = 1e-9              # m
 
 
 class Table:
-    """The entries `given` of the table `path` ("body.2", "" at the top), of which only the keys `accepted` may be there. Every BadInput names
-    path.key, the value and what is accepted."""
+    """The entries `given` of the table `path` ("body.2", "" at the top), of which only the keys `accepted` may be there. Every BadInput
+    names path.key, the value and what is accepted."""
 
     def __init__(self, path: str, given: dict, accepted: Sequence[str]):
         if not isinstance(given, dict):
@@ -126,7 +126,8 @@ def _written(value) -> str:
 
 def _tables(value) -> list[dict]:
     """The tables that a value is or lists."""
-    return [value] if isinstance(value, dict) else value if isinstance(value, list) and value and all(isinstance(one, dict) for one in value) else []
+    listed = [value] if isinstance(value, dict) else value if isinstance(value, list) else []
+    return listed if all(isinstance(one, dict) for one in listed) else []
 
 
 def _at(path: str, key: str) -> str:
@@ -143,7 +144,8 @@ def _placeholder(count: int) -> str:
 
 def _vector(path: str, given, low: float, high: float, count: int = 2) -> np.ndarray:
     if not isinstance(given, list | tuple) or len(given) != count:
-        raise BadInput(f"{path}: '{brief(given)}' is no {_placeholder(count)} (accepted: {('two', 'three')[count - 2]} numbers, each {low:g} to {high:g})")
+        raise BadInput(f"{path}: '{brief(given)}' is no {_placeholder(count)} (accepted: {('two', 'three')[count - 2]} numbers, each "
+                       f"{low:g} to {high:g})")
     return np.array([replace(_real(low, high), name=f"{path}.{k}").check(value) for k, value in enumerate(given, 1)])
 
 

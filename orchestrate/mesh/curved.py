@@ -1,8 +1,8 @@
 """Which faces of a mesh of tetrahedra lie on spheres and cylinders: the rule that outline.idp has in the plane, for meshes of files.
 
-Faces that meet at 30 degrees or less are one surface. It is a sphere or a cylinder where all its corners lie on that, to 1e-9 of the radius, every edge
-spans at most 30 degrees, and the normal of every face is within 30 degrees of that of the sphere or cylinder at its middle; where it bends by less than 30
-degrees in all, and everywhere else, faces are flat.
+Faces that meet at 30 degrees or less are one surface. It is a sphere or a cylinder where all its corners lie on that, to 1e-9 of the
+radius, every edge spans at most 30 degrees, and the normal of every face is within 30 degrees of that of the sphere or cylinder at its
+middle; where it bends by less than 30 degrees in all, and everywhere else, faces are flat.
 """
 
 import math
@@ -62,7 +62,8 @@ def _agrees(one: Curved, corners: np.ndarray, normals: np.ndarray) -> bool:
     chords = np.linalg.norm(arms - np.roll(arms, 1, axis=1), axis=2).max()
     middle = arms.sum(axis=1)
     turned = (middle * normals).sum(axis=1) / np.linalg.norm(middle, axis=1)
-    return bool(chords <= 2 * one.radius * math.sin(WIDEST / 2) * (1 + ON) and min(abs(turned.sum()) / len(turned), abs(turned).min()) >= math.cos(WIDEST))
+    return bool(chords <= 2 * one.radius * math.sin(WIDEST / 2) * (1 + ON)
+                and min(abs(turned.sum()) / len(turned), abs(turned).min()) >= math.cos(WIDEST))
 
 
 def _sphere(points: np.ndarray) -> Curved | None:

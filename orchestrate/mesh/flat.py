@@ -35,7 +35,8 @@ def motion(table: Table) -> dict:
 
 def _velocity(table: Table) -> np.ndarray:
     if "velocity" in table and ("speed" in table or "direction" in table):
-        raise BadInput(f"{table.path}.velocity: '{brief(table.given['velocity'])}' stands beside speed or direction (accepted: velocity, or speed with direction)")
+        raise BadInput(f"{table.path}.velocity: '{brief(table.given['velocity'])}' stands beside speed or direction (accepted: velocity, "
+                       f"or speed with direction)")
     if ("speed" in table) != ("direction" in table):
         missing = "direction" if "speed" in table else "speed"
         raise BadInput(f"{table.path}.{missing}: is missing (accepted: speed [m/s] with direction [deg], counter-clockwise from x)")
@@ -90,7 +91,8 @@ def _polygon(table: Table) -> Outline:
 def check_simple(path: str, corners: np.ndarray) -> None:
     n, same = len(corners), np.argwhere((corners == np.roll(corners, -1, axis=0)).all(axis=1)).ravel()
     if len(same):
-        raise BadInput(f"{path}: vertices {same[0] + 1} and {(same[0] + 1) % n + 1} coincide (accepted: each vertex once, the polygon closes itself)")
+        raise BadInput(f"{path}: vertices {same[0] + 1} and {(same[0] + 1) % n + 1} coincide (accepted: each vertex once, the polygon "
+                       f"closes itself)")
     if sides := self_crossing(corners):
         first, second = (f"from vertex {k + 1} to {(k + 1) % n + 1}" for k in sides)
         raise BadInput(f"{path}: the side {first} meets the side {second} (accepted: a polygon that does not cross or touch itself)")
@@ -99,8 +101,8 @@ def check_simple(path: str, corners: np.ndarray) -> None:
 # ---- mesh files
 
 def mesh_file(table: Table, folder: Path, script: str) -> mesh.Mesh:
-    """The mesh of a body's file, checked as any mesh file of edp/<script>.edp is, which also says what lies on circles: a whole body in the plane, or half
-    a meridian plane."""
+    """The mesh of a body's file, checked as any mesh file of edp/<script>.edp is, which also says what lies on circles: a whole body in the
+    plane, or half a meridian plane."""
     name, file = table.text("file", ""), None
     if "\0" in name or not _may_be_read(folder / name):
         raise BadInput(f"{table.path}.file: {brief(repr(name))} is no file (accepted: FreeFEM's or gmsh's .msh)")
@@ -129,7 +131,7 @@ def _may_be_read(path: Path) -> bool:
 
 
 def mesh_outline(found: mesh.Mesh) -> Outline:
-    """The boundary of a mesh as loops, that of the largest area first; edges on circles are arcs, and a loop on one circle is that circle."""
+    """The boundary of a mesh as loops, that of the largest area first; edges on circles are arcs, a loop on one circle is that circle."""
     hub = {tuple(sorted(edge)): at for edge, at in zip(found.edges.tolist(), found.hubs)}
     following = dict(mesh.boundary(found.triangles).tolist())
     loops = []

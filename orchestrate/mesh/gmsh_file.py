@@ -55,25 +55,11 @@ def read(path: Path) -> mesh.Mesh:
 
 def taken(model) -> mesh.Mesh:
     """The mesh in a model of gmsh: triangles turned counter-clockwise, vertices that no triangle uses left out."""
-    tags, coordinates, _ = model.mesh.getNodes()
-    kinds = [*model.mesh.getElementTypes(2), *model.mesh.getElementTypes(3)]
-    for kind in kinds:
-        if kind not in TRIANGLES:
-            raise BadInput(f"it has elements '{model.mesh.getElementProperties(kind)[0]}' (accepted: triangles of 3 or 6 nodes)")
-    if not kinds:
-        raise BadInput("it has no triangles")
-    corners = np.vstack([model.mesh.getElementsByType(kind)[1].reshape(-1, TRIANGLES[kind])[:, :3] for kind in kinds])
+    points, triangles, used = mesh.elements_of(model, (2, 3), TRIANGLES, "triangle", "triangles")
     curves = _physical_curves(model)
-
-    used, triangles = np.unique(corners, return_inverse=True)
-    row = np.full(int(max(tags.max(), used.max())) + 1, -1)
-    row[tags] = np.arange(len(tags))
-    if (row[used] < 0).any():
-        raise BadInput(f"a triangle names node {used[row[used] < 0][0]}, which is not there")
-    points = coordinates.reshape(-1, 3)[row[used]]
     if np.ptp(points[:, 2]) > 1e-9 * np.ptp(points[:, :2], axis=0).max():
         raise BadInput(f"it is not flat: z from {points[:, 2].min():g} to {points[:, 2].max():g} m (accepted: one z)")
-    points, triangles = points[:, :2], mesh.counter_clockwise(points[:, :2], triangles.reshape(-1, 3))
+    points, triangles = points[:, :2], mesh.counter_clockwise(points[:, :2], triangles)
     edges = mesh.boundary(triangles)
     if curves is None:
         labels = np.where(mesh.is_outer(points, edges), mesh.FREE, OTHER)
@@ -82,8 +68,8 @@ def taken(model) -> mesh.Mesh:
         labelled = {frozenset((number.get(a, -1), number.get(b, -1))): label for a, b, label in curves}
         labels = np.array([labelled.get(frozenset(edge), OTHER) for edge in edges.tolist()], dtype=int)
         if not (labels == mesh.FREE).any():
-            raise BadInput(f"none of its physical curves ({_names(model)}) has the name 'contact', or without a name the number {mesh.FREE}, on its boundary: nothing "
-                           "of it could touch (accepted: such a one, or no physical curve)")
+            raise BadInput(f"none of its physical curves ({_names(model)}) has the name 'contact', or without a name the number "
+                           f"{mesh.FREE}, on its boundary: nothing of it could touch (accepted: such a one, or no physical curve)")
     return mesh.Mesh(points, triangles, edges, labels)
 
 

@@ -24,17 +24,20 @@ from ..failure import BadInput, NotInstalled
 from ..places import INSTALLED, ROOT
 
 FREE, AXIS = 1, 2          # boundary labels
-SIDES = {3: np.array([[0, 1], [1, 2], [2, 0]]), 4: np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])}   # of a triangle; of a tetrahedron, seen from outside
+# of a triangle; of a tetrahedron, seen from outside
+SIDES = {3: np.array([[0, 1], [1, 2], [2, 0]]), 4: np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])}
 LIBRARIES = "apt-get install libglu1-mesa libxcursor1 libxft2 libxinerama1 libgomp1"   # that gmsh's wheel needs, with what they need
 GROWTH = 0.3               # element size gained per length of distance from the contact arc
-DIGITS = 10                # decimals of what gmsh is given, in sizes of the body: round-off settles ties, and the mesh would depend on the unit of length
-OWN = 360                  # the region of the triangles of our own discs, whose outline is a circle however long its edges are (edp/core/input/mesh-file.idp)
+# decimals of what gmsh is given, in sizes of the body: round-off settles ties, and the mesh would depend on the unit of length
+DIGITS = 10
+# the region of the triangles of our own discs, whose outline is a circle however long its edges are (edp/core/input/mesh-file.idp)
+OWN = 360
 
 
 @dataclass(frozen=True)
 class Mesh:
-    """points (n, 2) in m, triangles (t, 3) counter-clockwise, edges (e, 2) of the boundary, their labels (e,); `hubs` (e, 2) are the centres of the
-    circles that the edges of a file lie on, nan of straight ones; `region` is that of all triangles."""
+    """points (n, 2) in m, triangles (t, 3) counter-clockwise, edges (e, 2) of the boundary, their labels (e,); `hubs` (e, 2) are the
+    centres of the circles that the edges of a file lie on, nan of straight ones; `region` is that of all triangles."""
 
     points: np.ndarray
     triangles: np.ndarray
@@ -68,7 +71,8 @@ class Sizes:
 def nearest(points: np.ndarray, others: np.ndarray, chunk: int = 500, most: int = 2000) -> np.ndarray:
     """Distances (n,) to the nearest of the others; of many every few only."""
     others = others[::-(-len(others) // most)]
-    return np.concatenate([np.sqrt(((points[at:at + chunk, None] - others)**2).sum(axis=2).min(axis=1)) for at in range(0, len(points), chunk)])
+    return np.concatenate([np.sqrt(((points[at:at + chunk, None] - others)**2).sum(axis=2).min(axis=1))
+                           for at in range(0, len(points), chunk)])
 
 
 @cache
@@ -83,7 +87,8 @@ def disc(radius: float, mesh_size: float, contact_mesh_size: float, half: bool, 
     The size is contact_mesh_size along the lowest arc of +-contact_arc radians (seen from the centre) and grows
     linearly to mesh_size away from it. Vertices of the circle and of the axis lie on them to rounding.
     """
-    bulk, contact, arc = (round(size, DIGITS) for size in (mesh_size / radius, contact_mesh_size / radius, contact_arc))   # gmsh's tolerances are absolute
+    # gmsh's tolerances are absolute
+    bulk, contact, arc = (round(size, DIGITS) for size in (mesh_size / radius, contact_mesh_size / radius, contact_arc))
     with gmsh_session() as gmsh:
         gmsh.option.setNumber("Mesh.Algorithm", 6)   # frontal Delaunay: the best triangles
         for source in ("FromPoints", "FromCurvature", "ExtendFromBoundary"):
@@ -95,16 +100,12 @@ def disc(radius: float, mesh_size: float, contact_mesh_size: float, half: bool, 
         field = gmsh.model.mesh.field
         field.setAsBackgroundMesh(graded(field, "CurvesList", contact_arcs, (contact, bulk), math.ceil(2 * arc / contact)))
         gmsh.model.mesh.generate(2)
-        tags, coordinates, _ = gmsh.model.mesh.getNodes()
-        _, triangle_tags = gmsh.model.mesh.getElementsByType(2)
+        # gmsh also keeps the centre of the arcs
+        points, triangles, used = elements_of(gmsh.model, (2,), {2: 3}, "triangle", "triangles")
         pieces = [(label, gmsh.model.mesh.getElementsByType(1, curve)[1].reshape(-1, 2))
                   for label, curves in ((FREE, arcs), (AXIS, axis)) for curve in curves]
 
-    # Number the vertices that a triangle uses from 0 (gmsh also keeps the centre of the arcs).
-    used, triangles = np.unique(triangle_tags, return_inverse=True)
-    row = np.empty(int(tags.max()) + 1, dtype=int)
-    row[tags] = np.arange(len(tags))
-    points = coordinates.reshape(-1, 3)[row[used], :2]
+    points = points[:, :2]
     edges = np.searchsorted(used, np.vstack([nodes for _, nodes in pieces]))
     labels = np.concatenate([np.full(len(nodes), label) for label, nodes in pieces])
 
@@ -112,14 +113,15 @@ def disc(radius: float, mesh_size: float, contact_mesh_size: float, half: bool, 
     points[circle] /= np.linalg.norm(points[circle], axis=1, keepdims=True)
     points[np.unique(edges[labels == AXIS]), 0] = 0.0
     points = radius * (points + (0.0, 1.0))
-    return Mesh(points, counter_clockwise(points, triangles.reshape(-1, 3)), edges, labels, region=OWN)
+    return Mesh(points, counter_clockwise(points, triangles), edges, labels, region=OWN)
 
 
 @cache
 def start_gmsh() -> ModuleType:
     """The module gmsh, started once in the life of this program; NotInstalled where a system library is missing.
 
-    For a moment gmsh sets signal handlers back to their defaults: a run starts it before it makes anything that a signal could leave behind.
+    For a moment gmsh sets signal handlers back to their defaults: a run starts it before it makes anything that a signal could leave
+    behind.
     """
     try:
         import gmsh
@@ -135,7 +137,8 @@ def start_gmsh() -> ModuleType:
 
 
 def own_process(module: str, path: Path, *words: Path) -> None:
-    """Runs `python -m module path words`, which lets gmsh read a file: some broken files kill it. BadInput with what it said, or how it ended."""
+    """Runs `python -m module path words`, which lets gmsh read a file: some broken files kill it. BadInput with what it said, or how it
+    ended."""
     child = subprocess.run([sys.executable, "-m", module, str(path), *map(str, words)], cwd=ROOT, stdin=subprocess.DEVNULL,
                            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace")
     if child.returncode == 0 and words[0].exists():     # a script in a geometry may end gmsh
@@ -173,16 +176,37 @@ def _outline(geo, half: bool, contact_arc: float) -> tuple[list[int], list[int]]
 
 
 def graded(field, kind: str, sources: Sequence[int], sizes: tuple[float, float], sampling: int = 0, flat: float = 0.0) -> int:
-    """A field of gmsh: the first of the sizes up to the distance `flat` from the sources (of a kind: PointsList, CurvesList), growing linearly with it to
-    the other. `sampling`: points on a curve."""
+    """A field of gmsh: the first of the sizes up to the distance `flat` from the sources (of a kind: PointsList, CurvesList), growing
+    linearly with it to the other. `sampling`: points on a curve."""
     distance, size = field.add("Distance"), field.add("Threshold")
     field.setNumbers(distance, kind, sources)
     if sampling:
         field.setNumber(distance, "Sampling", sampling)
     least, most = sizes
-    for name, value in dict(InField=distance, SizeMin=least, SizeMax=most, DistMin=flat, DistMax=flat + max(most - least, 1e-9 * most) / GROWTH).items():
+    for name, value in dict(InField=distance, SizeMin=least, SizeMax=most, DistMin=flat,
+                            DistMax=flat + max(most - least, 1e-9 * most) / GROWTH).items():
         field.setNumber(size, name, value)
     return size
+
+
+def elements_of(model, dimensions: Sequence[int], nodes: dict[int, int], one: str, many: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Vertices (n, 3) and elements (t, corners) of a model of gmsh, those of `nodes` (gmsh's types: how many, corners first), and gmsh's
+    numbers of the vertices; BadInput where there are none, or others."""
+    kinds = [kind for dimension in dimensions for kind in model.mesh.getElementTypes(dimension)]
+    for kind in kinds:
+        if kind not in nodes:
+            raise BadInput(f"it has elements '{model.mesh.getElementProperties(kind)[0]}' (accepted: {many} of "
+                           f"{' or '.join(map(str, nodes.values()))} nodes)")
+    if not kinds:
+        raise BadInput(f"it has no {many}")
+    corners = [model.mesh.getElementsByType(kind)[1].reshape(-1, nodes[kind])[:, :min(nodes.values())] for kind in kinds]
+    used, elements = np.unique(np.vstack(corners), return_inverse=True)
+    tags, coordinates, _ = model.mesh.getNodes()
+    row = np.full(int(max(tags.max(), used.max())) + 1, -1)
+    row[tags] = np.arange(len(tags))
+    if (row[used] < 0).any():
+        raise BadInput(f"a {one} names node {used[row[used] < 0][0]}, which is not there")
+    return coordinates.reshape(-1, 3)[row[used]], elements.reshape(-1, min(nodes.values())), used
 
 
 def counter_clockwise(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
@@ -193,14 +217,15 @@ def counter_clockwise(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
 
 
 def boundary(cells: np.ndarray) -> np.ndarray:
-    """The sides (e, 2) of triangles or faces (f, 3) of tetrahedra that belong to one cell, which is to their left, or seen counter-clockwise from outside."""
+    """The sides (e, 2) of triangles or faces (f, 3) of tetrahedra that belong to one cell, which is to their left, or seen
+    counter-clockwise from outside."""
     sides = cells[:, SIDES[cells.shape[1]]].reshape(-1, cells.shape[1] - 1)
     _, first, count = np.unique(np.sort(sides, axis=1), axis=0, return_index=True, return_counts=True)
     return sides[np.sort(first[count == 1])]
 
 
 def pieces(points: int, elements: np.ndarray) -> np.ndarray:
-    """The piece (points,) that each point belongs to, by the lowest number of a point in it: elements (n, corners) hang together by common points."""
+    """The piece (points,) that each point belongs to, by its lowest number: elements (n, corners) hang together by common points."""
     piece = np.arange(points)
     while True:
         least = piece[elements].min(axis=1)
@@ -212,13 +237,14 @@ def pieces(points: int, elements: np.ndarray) -> np.ndarray:
 
 
 def is_outer(points: np.ndarray, sides: np.ndarray) -> np.ndarray:
-    """Which of the sides (f, axes) of a boundary are around a body rather than around a hole: pieces that hang together, with an area or volume above 0."""
+    """Which of the sides (f, axes) of a boundary are around a body rather than around a hole: pieces that hang together, with an area or
+    volume above 0."""
     piece = pieces(len(points), sides)[sides[:, 0]]
     return np.bincount(piece, weights=np.linalg.det(points[sides] - points.mean(axis=0)), minlength=len(points))[piece] > 0
 
 
 def write(mesh: Mesh, path: Path, regions: np.ndarray | None = None) -> None:
-    """Writes FreeFEM's 2D .msh: counts; x y label; v1 v2 v3 region; v1 v2 label; vertices count from 1. `regions` (t,): where they are several."""
+    """Writes FreeFEM's 2D .msh: counts; x y label; v1 v2 v3 region; v1 v2 label; vertices count from 1. `regions` (t,): if several."""
     point_labels = np.zeros(len(mesh.points), dtype=int)
     for label in np.unique(mesh.labels)[::-1]:     # where two meet, the contact's
         point_labels[mesh.edges[mesh.labels == label]] = label

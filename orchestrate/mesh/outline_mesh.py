@@ -1,4 +1,4 @@
-"""Meshes inside closed curves in the plane, by gmsh: the ends of their pieces are vertices, elements are as small as is asked along them."""
+"""Meshes inside closed curves in the plane, by gmsh: the ends of their pieces are vertices, elements as small as is asked along them."""
 
 from collections.abc import Callable
 
@@ -12,13 +12,14 @@ SAMPLED = 0.25               # a step between points at which an element size is
 
 
 def mesh_body(boundary: list[list[tuple[Curve, float, int]]], sizes: Sizes, scale: float) -> mesh.Mesh:
-    """The mesh inside closed curves, of a body about as large as `scale` [m]: the ends of their pieces are vertices, and all vertices of the boundary lie
-    on them to rounding; boundary edges have the body to their left, and the label of their piece."""
+    """The mesh inside closed curves, of a body about as large as `scale` [m]: the ends of their pieces are vertices, and all vertices of
+    the boundary lie on them to rounding; boundary edges have the body to their left, and the label of their piece."""
     pieces = [[nodes_on(curve, largest, sizes) for curve, largest, _ in loop] for loop in boundary]
     labels = [np.repeat([label for *_, label in loop], [len(nodes) for nodes in each]) for loop, each in zip(boundary, pieces)]
     loops = [np.vstack(each) for each in pieces]
     loops = [nodes if k == 0 else nodes[::-1] for k, nodes in enumerate(loops)]     # a hole has one label
-    bulk, inside = round(sizes.bulk / scale, mesh.DIGITS), [np.round(nodes / scale, mesh.DIGITS) for nodes in loops]    # gmsh's tolerances are absolute
+    # gmsh's tolerances are absolute
+    bulk, inside = round(sizes.bulk / scale, mesh.DIGITS), [np.round(nodes / scale, mesh.DIGITS) for nodes in loops]
     with mesh.gmsh_session() as gmsh:
         gmsh.option.setNumber("Mesh.Algorithm", 6)
         for source in ("FromPoints", "FromCurvature", "ExtendFromBoundary"):
@@ -71,7 +72,8 @@ def _grade(field, loops: list[np.ndarray], curves: tuple[list[int], ...], bulk: 
     lines, sources = np.concatenate(curves), []
     for level in np.unique(fineness):
         size = bulk * np.sqrt(0.5)**level
-        sources.append(mesh.graded(field, "CurvesList", lines[fineness == level], (size, bulk), sampling=5))   # points on a line; of 2 gmsh makes none
+        # points on a line; of 2 gmsh makes none
+        sources.append(mesh.graded(field, "CurvesList", lines[fineness == level], (size, bulk), sampling=5))
     least = field.add("Min")
     field.setNumbers(least, "FieldsList", sources)
     field.setAsBackgroundMesh(least)

@@ -1,6 +1,7 @@
 """Bodies of revolution about the axis x = 0: [[body]] tables as their section with a plane through the axis, SI units.
 
-x is the radius, y the axis. The section is symmetric about x = 0: an Outline about the centre of volume, of which the half x >= 0 is meshed.
+x is the radius, y the axis. The section is symmetric about x = 0: an Outline about the centre of volume, of which the half x >= 0 is
+meshed.
 
     [[body]]
     shape = "ball"               # radius
@@ -70,7 +71,8 @@ def _loop(table: Table) -> Loop:
 def closed_over_axis(path: str, right: np.ndarray) -> np.ndarray:
     """The polygon, counter-clockwise, of a chain (n, 2) from the axis to the axis and its mirror image."""
     if right[0, 0] != 0 or right[-1, 0] != 0 or (right[1:-1, 0] <= 0).any():
-        raise BadInput(f"{path}: do not go from the axis to the axis on its right (accepted: x = 0 for the first and the last, x > 0 between)")
+        raise BadInput(f"{path}: do not go from the axis to the axis on its right (accepted: x = 0 for the first and the last, x > 0 "
+                       f"between)")
     corners = np.vstack([right, right[-2:0:-1] * [-1, 1]])
     flat.check_simple(path, corners)
     return corners if right[-1, 1] > right[0, 1] else np.roll(corners[::-1], 1, axis=0)
@@ -120,7 +122,8 @@ def mirrored(path: str, chain: np.ndarray) -> tuple[np.ndarray, bool]:
     whether they close: the mirror image of what is to the left of a chain is to the left of its mirror image travelled backwards."""
     begins, ends = bool(chain[0, 0] == 0), bool(chain[-1, 0] == 0)
     if not (begins or ends) or (chain[begins:len(chain) - ends, 0] <= 0).any():
-        raise BadInput(f"{path}: is no section of a surface of revolution (accepted: x = 0 for the first or the last vertex, x > 0 for the others)")
+        raise BadInput(f"{path}: is no section of a surface of revolution (accepted: x = 0 for the first or the last vertex, x > 0 for "
+                       f"the others)")
     image = chain[::-1] * [-1, 1]
     if begins and ends:
         return np.vstack([chain, image[1:-1]]), True

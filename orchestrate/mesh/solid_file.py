@@ -127,8 +127,8 @@ def _labelled(model, points: np.ndarray, cells: np.ndarray) -> SolidMesh:
 
 
 def _check_surface(points: np.ndarray, faces: np.ndarray) -> None:
-    """BadInput where the body hangs together by an edge or a point alone: a side of boundary faces belongs to two of them, and around a point of the boundary
-    they follow each other in one turn."""
+    """BadInput where the body hangs together by an edge or a point alone: a side of boundary faces belongs to two of them, and around a
+    point of the boundary they follow each other in one turn."""
     corners = np.arange(3 * len(faces)).reshape(-1, 3)
     sides, ends = (of[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2) for of in (faces, corners))
     ends = np.where((sides[:, 0] > sides[:, 1])[:, None], ends[:, ::-1], ends)
@@ -137,9 +137,11 @@ def _check_surface(points: np.ndarray, faces: np.ndarray) -> None:
         return "({:g}, {:g}, {:g})".format(*points[point])
     if (count != 2).any():
         a, b = found[np.argmax(count != 2)]
-        raise BadInput(f"it hangs together by an edge alone, from {place(a)} to {place(b)} (accepted: tetrahedra that hang together by faces)")
+        raise BadInput(f"it hangs together by an edge alone, from {place(a)} to {place(b)} (accepted: tetrahedra that hang together "
+                       f"by faces)")
     first, second = ends[np.argsort(which.ravel(), kind="stable")].reshape(-1, 2, 2).transpose(1, 0, 2)
-    turns = np.unique(np.column_stack([faces.ravel(), pieces(corners.size, np.column_stack([first.ravel(), second.ravel()]))]), axis=0)[:, 0]
+    turns = np.unique(np.column_stack([faces.ravel(), pieces(corners.size, np.column_stack([first.ravel(), second.ravel()]))]),
+                      axis=0)[:, 0]
     if len(twice := turns[1:][turns[1:] == turns[:-1]]):
         raise BadInput(f"it hangs together by a point alone, {place(twice[0])} (accepted: tetrahedra that hang together by faces)")
 
@@ -150,12 +152,14 @@ def _contact_triangles(model) -> np.ndarray | None:
     if not any(names.values()):
         return None
     if CONTACT not in names.values():
-        raise BadInput(f"none of its physical surfaces ({', '.join(filter(None, names.values()))}) has the name '{CONTACT}' (accepted: such a one, or none with a name)")
+        raise BadInput(f"none of its physical surfaces ({', '.join(filter(None, names.values()))}) has the name '{CONTACT}' (accepted: "
+                       f"such a one, or none with a name)")
     tags, coordinates, _ = model.mesh.getNodes()
     row = np.zeros(int(tags.max()) + 1, dtype=int)
     row[tags] = np.arange(len(tags))
     corners = [row[np.reshape(nodes, (-1, TRIANGLES[kind]))[:, :3]] for number, name in names.items() if name == CONTACT
-               for surface in model.getEntitiesForPhysicalGroup(2, number) for kind, _, nodes in zip(*model.mesh.getElements(2, surface)) if kind in TRIANGLES]
+               for surface in model.getEntitiesForPhysicalGroup(2, number) for kind, _, nodes in zip(*model.mesh.getElements(2, surface))
+               if kind in TRIANGLES]
     return coordinates.reshape(-1, 3)[np.vstack(corners or [np.empty((0, 3), dtype=int)])]
 
 

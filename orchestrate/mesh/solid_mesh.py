@@ -1,4 +1,5 @@
-"""Meshes of tetrahedra: of balls, boxes and cylinders by gmsh, or parts of them on one side of planes of symmetry; written in Medit's format, as FreeFEM reads it.
+"""Meshes of tetrahedra: of balls, boxes and cylinders by gmsh, or parts of them on one side of planes of symmetry; written in Medit's
+format, as FreeFEM reads it.
 
 Labels of boundary faces: 1 may touch, 2 on the plane x = 0 of what is computed by symmetry, 3 on its plane z = 0, 4 never touches.
 """
@@ -44,8 +45,8 @@ class Curved:
 
 @dataclass(frozen=True)
 class SolidMesh:
-    """points (n, 3) in m, tetrahedra (t, 4) of positive volume, faces (f, 3) of the boundary seen counter-clockwise from outside, their labels (f,); the
-    spheres and cylinders that faces lie on."""
+    """points (n, 3) in m, tetrahedra (t, 4) of positive volume, faces (f, 3) of the boundary seen counter-clockwise from outside, their
+    labels (f,); the spheres and cylinders that faces lie on."""
 
     points: np.ndarray
     cells: np.ndarray
@@ -88,8 +89,8 @@ def unknowns(cells: np.ndarray, degree: int) -> int:
 # ---- meshes of shapes
 
 def mesh_shape(kind: str, lengths: np.ndarray, rotation: np.ndarray, folded: tuple[int, ...], sizes: Sizes, scale: float) -> SolidMesh:
-    """The mesh of a ball (radius), box (extents) or cylinder (radius, height, its axis y) about the origin, turned: only what lies on the positive
-    side of the planes across the axes `folded`. `scale` [m] is about its size: gmsh's tolerances are absolute."""
+    """The mesh of a ball (radius), box (extents) or cylinder (radius, height, its axis y) about the origin, turned: only what lies on the
+    positive side of the planes across the axes `folded`. `scale` [m] is about its size: gmsh's tolerances are absolute."""
     bulk = min(sizes.bulk, LARGEST * lengths[0]) if kind == "ball" else sizes.bulk
     inside = Sizes(*(np.round(size / scale, mesh.DIGITS) for size in (bulk, min(bulk, sizes.contact), sizes.near, sizes.slack)))
     sides = np.round(lengths / scale, 12)        # its corners are exact to as much
@@ -131,8 +132,8 @@ def mesh_shape(kind: str, lengths: np.ndarray, rotation: np.ndarray, folded: tup
 
 
 def generate(build: Callable, sizes: Sizes, turn: int, look: Callable | None = None) -> tuple[np.ndarray, np.ndarray]:
-    """Points and tetrahedra of what `build` puts into gmsh, also shown to `look`; on curved surfaces `turn` elements a full turn at least. Sizes of
-    0 are open: `build` sets the largest."""
+    """Points and tetrahedra of what `build` puts into gmsh, also shown to `look`; on curved surfaces `turn` elements a full turn at least.
+    Sizes of 0 are open: `build` sets the largest."""
     with mesh.gmsh_session() as gmsh:
         build(gmsh)
         for name, value in {"FromPoints": 0, "ExtendFromBoundary": 0, "FromCurvature": turn}.items():
@@ -162,26 +163,12 @@ def _grade(gmsh, sizes: Sizes) -> None:
 
 def cells_of(model) -> tuple[np.ndarray, np.ndarray]:
     """Vertices (n, 3) and tetrahedra (t, 4) of a model of gmsh, of those of second order the corners; BadInput for other elements."""
-    tags, coordinates, _ = model.mesh.getNodes()
-    kinds = {4: 4, 11: 10}
-    found = []
-    for kind in model.mesh.getElementTypes(3):
-        if kind not in kinds:
-            raise BadInput(f"it has elements '{model.mesh.getElementProperties(kind)[0]}' (accepted: tetrahedra of 4 or 10 nodes)")
-        found.append(model.mesh.getElementsByType(kind)[1].reshape(-1, kinds[kind])[:, :4])
-    if not found:
-        raise BadInput("it has no tetrahedra")
-    used, cells = np.unique(np.vstack(found), return_inverse=True)
-    row = np.full(int(max(tags.max(), used.max())) + 1, -1)
-    row[tags] = np.arange(len(tags))
-    if (row[used] < 0).any():
-        raise BadInput(f"a tetrahedron names node {used[row[used] < 0][0]}, which is not there")
-    points = coordinates.reshape(-1, 3)[row[used]]
-    return points, right_handed(points, cells.reshape(-1, 4))
+    points, cells, _ = mesh.elements_of(model, (3,), {4: 4, 11: 10}, "tetrahedron", "tetrahedra")
+    return points, right_handed(points, cells)
 
 
 def expected_cells(volume: float, sizes: Sizes) -> float:
-    """About how many tetrahedra a body gets: those of its bulk, and around where it touches, in layers whose area grows with the distance."""
+    """About how many tetrahedra a body gets: of its bulk, and around where it touches in layers whose area grows with the distance."""
     bulk = volume / (FILL * sizes.bulk**3)
     if not len(sizes.near) or sizes.contact >= sizes.bulk:
         return bulk
@@ -195,7 +182,8 @@ def expected_cells(volume: float, sizes: Sizes) -> float:
 def stack(meshes: list[SolidMesh], centres: np.ndarray) -> tuple[SolidMesh, np.ndarray]:
     """All bodies as one mesh, and the body (t,) of each tetrahedron."""
     first = np.cumsum([0, *(len(one.points) for one in meshes)])
-    together = SolidMesh(np.vstack([one.points + centre for one, centre in zip(meshes, centres)]), np.vstack([one.cells + k for one, k in zip(meshes, first)]),
+    together = SolidMesh(np.vstack([one.points + centre for one, centre in zip(meshes, centres)]),
+                         np.vstack([one.cells + k for one, k in zip(meshes, first)]),
                          np.vstack([one.faces + k for one, k in zip(meshes, first)]), np.concatenate([one.labels for one in meshes]))
     return together, np.repeat(np.arange(len(meshes)), [len(one.cells) for one in meshes])
 

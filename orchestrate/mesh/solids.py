@@ -1,10 +1,11 @@
-"""Bodies in three dimensions: [[body]] tables as solids with signed distances, their places and motions, SI units. y is up, z completes x and y.
+"""Bodies in three dimensions: [[body]] tables as solids with signed distances, their places and motions, SI units. y is up, z completes x
+and y.
 
     [[body]]
     shape = "ball"               # radius
                                  # box: width, height, depth along x, y, z;  cylinder: radius, height, its axis y
-                                 # mesh: file, tetrahedra (gmsh's .msh, Medit's .mesh) or a geometry that gmsh meshes (.geo, .step, .stp), lengths in m;
-                                 # a physical surface `contact` may touch, others never; without one the whole outer surface may
+                                 # mesh: file, tetrahedra (gmsh's .msh, Medit's .mesh) or a geometry that gmsh meshes (.geo, .step, .stp),
+                                 # lengths in m; a physical surface `contact` may touch, others never; without one the whole outer one
     position = [0, 1.5, 0]       # centre of its volume at the start [m]
     turn = [0, 0, 30]            # turned about it: axis times angle [deg]; angle = 30 is a turn about z
     velocity = [0, -10, 0]       # [m/s]
@@ -202,8 +203,8 @@ class Surface:
 
     @cached_property
     def moments(self) -> np.ndarray:
-        """The integral of x x^T over the tetrahedra between the centre and each triangle is 1/120 of six times its volume times (s s^T + a a^T + b b^T +
-        c c^T), s = a + b + c."""
+        """The integral of x x^T over the tetrahedra between the centre and each triangle is 1/120 of six times its volume times (s s^T + a
+        a^T + b b^T + c c^T), s = a + b + c."""
         a, b, c = self.triangles.transpose(1, 0, 2)
         six = (a * np.cross(b, c)).sum(axis=1)
         square = sum(np.einsum("t,ti,tj->ij", six, one, one) for one in (a + b + c, a, b, c)) / 120
@@ -262,8 +263,8 @@ def distance_to_triangles(points: np.ndarray, triangles: np.ndarray) -> np.ndarr
 
 @dataclass(frozen=True)
 class Solid(outlines.Shape):
-    """A shape with its centre of volume at `centre`, turned by the matrix `rotation`; where gmsh is to mesh a file, that `geometry` and where in it
-    the centre is."""
+    """A shape with its centre of volume at `centre`, turned by the matrix `rotation`; where gmsh is to mesh a file, that `geometry` and
+    where in it the centre is."""
 
     shape: Shape
     centre: np.ndarray
@@ -336,21 +337,24 @@ class Solid(outlines.Shape):
 # ---- meshes
 
 def mesh_of(body, sizes: Sizes | None, folded: tuple[int, ...]) -> SolidMesh:
-    """The mesh of a body (bodies.Body) about its centre of volume, turned as it is at the start: that of its file, or one with sizes, which are of the
-    body not turned; of that what lies on the positive side of the planes across the axes `folded`."""
+    """The mesh of a body (bodies.Body) about its centre of volume, turned as it is at the start: that of its file, or one with sizes, which
+    are of the body not turned; of that what lies on the positive side of the planes across the axes `folded`."""
     solid = body.at(0.0, np.zeros(3))
     if body.mesh:
         return _with_curves(replace(body.mesh, points=body.mesh.points @ solid.rotation.T))
     expected = expected_cells(solid.volume, sizes) / 2**len(folded)
     if expected > MOST_CELLS:
-        raise BadInput(f"mesh_size: '{body.name}' would have about {expected:.2g} tetrahedra (accepted: up to {MOST_CELLS}; larger mesh_size, contact_mesh_size or accuracy)")
+        raise BadInput(f"mesh_size: '{body.name}' would have about {expected:.2g} tetrahedra (accepted: up to {MOST_CELLS}; larger "
+                       f"mesh_size, contact_mesh_size or accuracy)")
     if solid.geometry:
         path, centre = solid.geometry
         made = solid_file.meshed(path, replace(sizes, near=sizes.near + centre))
         return _with_curves(replace(made, points=(made.points - (centre if solid.disc else made.centre)) @ solid.rotation.T))
     shape = solid.shape
-    lengths = shape.extent if isinstance(shape, Box) else np.array([shape.radius] if isinstance(shape, Ball) else [shape.radius, shape.height])
-    return mesh_shape(type(shape).__name__.lower(), lengths, solid.rotation, folded, replace(sizes, near=sizes.near @ solid.rotation.T), solid.half_thickness)
+    lengths = shape.extent if isinstance(shape,
+                                         Box) else np.array([shape.radius] if isinstance(shape, Ball) else [shape.radius, shape.height])
+    return mesh_shape(type(shape).__name__.lower(), lengths, solid.rotation, folded, replace(sizes, near=sizes.near @ solid.rotation.T),
+                      solid.half_thickness)
 
 
 def _with_curves(made: SolidMesh) -> SolidMesh:
@@ -379,7 +383,8 @@ def _of_file(table: Table, folder: Path) -> tuple[Solid, SolidMesh | None]:
         found = solid_file.read(path)
     except BadInput as error:
         raise BadInput(f"{table.path}.file: {error}") from None
-    ball = next((one for one, own in curved.surfaces(found.points, found.faces) if not len(one.axis) and len(own) == len(found.faces)), None)
+    ball = next((one for one, own in curved.surfaces(found.points, found.faces) if not len(one.axis) and len(own) == len(found.faces)),
+                None)
     centre = ball.centre if ball else found.centre
     centred = found.moved(-centre)
     shape = Ball(ball.radius) if ball else Surface(centred.points[centred.faces])
@@ -391,7 +396,8 @@ def _of_file(table: Table, folder: Path) -> tuple[Solid, SolidMesh | None]:
 def motion(table: Table) -> dict:
     """Where a body is at the start and how it moves: position [m], turn [rad], velocity [m/s], spin [rad/s], vectors (3,)."""
     if "angle" in table and "turn" in table:
-        raise BadInput(f"{table.path}.angle: '{brief(table.given['angle'])}' stands beside turn (accepted: angle about z, or turn = [x, y, z])")
+        raise BadInput(f"{table.path}.angle: '{brief(table.given['angle'])}' stands beside turn (accepted: angle about z, or turn = "
+                       f"[x, y, z])")
     turn = [0.0, 0.0, table.number("angle", -36000, 36000)] if "angle" in table else table.numbers("turn", -36000, 36000, (0.0,) * 3, 3)
     about_z = "spin" in table and not isinstance(table.given["spin"], list)
     spin = [0.0, 0.0, table.number("spin", -1e12, 1e12)] if about_z else table.numbers("spin", -1e12, 1e12, (0.0,) * 3, 3)

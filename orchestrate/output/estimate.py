@@ -7,12 +7,12 @@ geometric mean of three measures that mislead for different reasons,
     BOUND (D d A)^(1/3),   D: the mean of the promised answers' differences, over their usual ones;
                            d: the largest difference of its course over its scale: running impulse, velocities, elastic energy (course());
                            A = 1/n^2, n: the steps in which the force is above half its peak: what second-order steps are good for,
-and no less than the difference. Three answers differ (MEASURES): the steps of an impact say little of spin and peak force (d for A), the other
-answers little of friction work (d for D). A touch ends between two steps, so that times converge more slowly: the fourth root.
-BOUND is what 97 of 100 runs keep on scenes other than those of docs/promise.md, some three times the usual error. It is that of mesh
-and steps: penalty and slip velocity are the same in all runs. Where that of a promised answer is more than WORTH times what is asked
-finer runs follow. Where the contact time alone is off and a finer run has not halved its estimate it scatters with the vibration at the last
-touch (by 0.8 % rms in hard impacts, on any mesh and at any step that was tried): no finer run follows, and the estimate says by how much.
+and no less than the difference. Three answers differ (MEASURES): the steps of an impact say little of spin and peak force (d for A), the
+other answers little of friction work (d for D). A touch ends between two steps, so that times converge more slowly: the fourth root. BOUND
+is what 97 of 100 runs keep on scenes other than those of docs/promise.md, some three times the usual error. It is that of mesh and steps:
+penalty and slip velocity are the same in all runs. Where that of a promised answer is more than WORTH times what is asked finer runs
+follow. Where the contact time alone is off and a finer run has not halved its estimate it scatters with the vibration at the last touch (by
+0.8 % rms in hard impacts, on any mesh and at any step that was tried): no finer run follows, and the estimate says by how much.
 """
 
 import math
@@ -36,8 +36,8 @@ LOOSER = 2
 WORTH = 1.5                 # of what is asked: a stated error that a finer run is worth its price for
 REGULARISED = ("penalty", "slip_velocity")
 NO_ANSWER = (11, 12)        # exit codes of a run that the step or the material ended
-# What the answers of a pair usually differ by, beside each other; the first six are promised. What is stated of them; both calibrated over other
-# scenes than those of docs/promise.md.
+# What the answers of a pair usually differ by, beside each other; the first six are promised. What is stated of them; both calibrated over
+# other scenes than those of docs/promise.md.
 USUAL = {"impulse": 0.06, "rebound": 0.12, "rebound_spin": 0.08, "energy": 0.16, "friction_work": 0.04, "thresholded_contact_time": 0.4,
          "contact_time": 0.8, "peak_force": 1.2}
 BOUND = {"impulse": 0.43, "rebound": 0.71, "rebound_spin": 0.94, "energy": 0.86, "friction_work": 4.4, "thresholded_contact_time": 0.92,
@@ -57,8 +57,9 @@ Solve = Callable[[dict[str, Value], Path], None]   # runs the scene with these v
 
 
 def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solve, read: Callable, scaled: Scaled | None = None) -> dict:
-    """What joins the summary of the run in `stage`, made from the scene `values`: estimated_error (by answer, see difference(); None if
-    it could not be estimated), estimated_error_excludes (what all runs have alike), estimate_cpu_seconds, refinements, and the sentences `warnings`.
+    """What joins the summary of the run in `stage`, made from the scene `values`: estimated_error (by answer, see difference(); None if it
+    could not be estimated), estimated_error_excludes (what all runs have alike), estimate_cpu_seconds, refinements, and the sentences
+    `warnings`.
 
     Where sizes and steps follow from the accuracy and the estimate is above it, finer runs take the run's place in `stage`.
     `read` gives the Answers of a folder, `scaled` the entries of the scene with larger or smaller elements and steps (left out: other).
@@ -75,7 +76,8 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
         coarse = before_it.summary
         seconds += coarse["cpu_seconds"]
         if all(coarse.get(name) == summary.get(name) is not None for name in ("dofs", "steps")):
-            sentences = ["the error is not estimated: steps 1.4 times larger are too large for this scene, a second run took the same ones: ask for a smaller accuracy"]
+            sentences = ["the error is not estimated: steps 1.4 times larger are too large for this scene, a second run took the same "
+                         "ones: ask for a smaller accuracy"]
             break
         estimated = errors(difference(summary, coarse, answers.speed, used.get("radius")), course(answers, before_it), resolved(answers))
         above = [name for name in wanted(values["accuracy_of"]) if estimated[name] > WORTH * asked]
@@ -95,10 +97,12 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
         sentences = []
     excludes = [*REGULARISED, *([] if own_mesh else ["mesh"])]
     if estimated and not own_mesh:
-        sentences.append("estimated errors are those of the step: what the mesh of the file is good for they do not say: run a finer one beside it")
+        sentences.append("estimated errors are those of the step: what the mesh of the file is good for they do not say: run a finer one "
+                         "beside it")
     for folder in (coarser, finer):
         shutil.rmtree(folder, ignore_errors=True)
-    return {"estimated_error": estimated, "estimated_error_excludes": excludes, "estimate_cpu_seconds": seconds, "refinements": refinements, "warnings": sentences}
+    return {"estimated_error": estimated, "estimated_error_excludes": excludes, "estimate_cpu_seconds": seconds, "refinements": refinements,
+            "warnings": sentences}
 
 
 def _ended(solve: Solve, values: dict[str, Value], where: Path) -> Failure | None:
@@ -135,9 +139,9 @@ def other(values: Mapping[str, Value], used: Mapping[str, Value], factor: float,
 
 
 def difference(fine: Mapping, coarse: Mapping, speed: float, radius: float | None) -> dict[str, float]:
-    """How far the answers of two summaries differ, each over its scale: impulse, times and force over themselves, velocities and
-    spin over `speed` [m/s] (spin times `radius` [m]; of several bodies the largest, and spin times its reach), energies and friction work over the largest energy, where the summary has it,
-    else over that at the start."""
+    """How far the answers of two summaries differ, each over its scale: impulse, times and force over themselves, velocities and spin over
+    `speed` [m/s] (spin times `radius` [m]; of several bodies the largest, and spin times its reach), energies and friction work over the
+    largest energy, where the summary has it, else over that at the start."""
     def value(summary: Mapping, name: str) -> float:
         found = summary.get(name)
         return 0.0 if found is None or math.isnan(found) else float(found)
@@ -147,8 +151,10 @@ def difference(fine: Mapping, coarse: Mapping, speed: float, radius: float | Non
 
     energy = value(fine, "largest_energy") or value(fine, "energy_initial") or value(fine, "energy_final")
     rebound = max(math.hypot(*(apart(f"rebound_v{axis}{of}", speed) for axis in "xyz")) for of in suffixes(fine))
-    rim = max(math.hypot(*(apart(f"rebound_spin{about}{of}", speed / (value(fine, f"reach{of}") or radius)) for about in ("", "_x", "_y"))) for of in suffixes(fine))
-    found = {"impulse": apart("impulse", value(fine, "impulse")), "rebound": rebound, "rebound_spin": rim, "energy": max(apart(name, energy) for name in ("energy_final", "vibration_energy")),
+    rim = max(math.hypot(*(apart(f"rebound_spin{about}{of}", speed / (value(fine, f"reach{of}") or radius)) for about in ("", "_x", "_y")))
+              for of in suffixes(fine))
+    found = {"impulse": apart("impulse", value(fine, "impulse")), "rebound": rebound, "rebound_spin": rim,
+             "energy": max(apart(name, energy) for name in ("energy_final", "vibration_energy")),
              "friction_work": apart("friction_work", energy)}
     for name in ("thresholded_contact_time", "contact_time", "peak_force"):
         found[name] = apart(name, value(fine, name))
@@ -156,9 +162,10 @@ def difference(fine: Mapping, coarse: Mapping, speed: float, radius: float | Non
 
 
 def course(fine: Answers, coarse: Answers) -> dict[str, float]:
-    """How far two runs are apart on their way, by answer and over its scale as in difference(): impulse, velocities, spins and elastic energy
-    (with the contact's) at the time when they are farthest from each other, and what friction changes in them (in the spin of what turns at all);
-    friction work, by Coulomb's law of impulse and path, at equal shares of the impulse, root mean square: a touch that is a little later is no error."""
+    """How far two runs are apart on their way, by answer and over its scale as in difference(): impulse, velocities, spins and elastic
+    energy (with the contact's) at the time when they are farthest from each other, and what friction changes in them (in the spin of what
+    turns at all); friction work, by Coulomb's law of impulse and path, at equal shares of the impulse, root mean square: a touch that is a
+    little later is no error."""
     summary, history = fine.summary, (fine.history, coarse.history)
     ends = [one["t"] for one in history]
     t = np.union1d(*ends)
@@ -175,11 +182,13 @@ def course(fine: Answers, coarse: Answers) -> dict[str, float]:
     reach = {of: summary.get(f"reach{of}") or fine.used["radius"] for of in bodies}
     found = {"impulse": apart(lambda one: [np.cumsum(one["normal_force"] * one["dt"])], summary["impulse"]),
              "rebound": max(apart(vector(*(f"v{axis}{of}" for axis in "xyz")), fine.speed) for of in bodies),
-             "rebound_spin": max(apart(vector(*(f"spin{about}{of}" for about in ("", "_x", "_y"))), fine.speed / reach[of]) for of in bodies),
+             "rebound_spin": max(apart(vector(*(f"spin{about}{of}" for about in ("", "_x", "_y"))), fine.speed / reach[of])
+                                 for of in bodies),
              "energy": apart(lambda one: [one["elastic"] + one["contact"]], energy)}
     for name in ("rebound", "energy", *(["rebound_spin"] if found["rebound_spin"] > NONE else [])):
         found[name] += THROUGH * apart(vector("friction_work"), energy)
-    found["friction_work"] = float(np.sqrt(np.mean((_over_impulse(fine.history) - _over_impulse(coarse.history))**2)) / energy) if work else 0.0
+    way = [_over_impulse(one.history) for one in (fine, coarse)] if work else [0.0, 0.0]
+    found["friction_work"] = float(np.sqrt(np.mean((way[0] - way[1])**2)) / energy) if work else 0.0
     found |= {name: found[stands] for name, stands in COURSE.items()}
     return found | {OF_ITSELF: found["friction_work"] * energy / work if work else 0.0}
 
@@ -197,7 +206,8 @@ def resolved(run: Answers) -> float:
 
 
 def errors(apart: Mapping[str, float], way: Mapping[str, float], steps: float) -> dict[str, float]:
-    """The error that is stated of every answer, from the differences of a pair at the end and on its way (course()), in the same units, and from resolved()."""
+    """The error that is stated of every answer, from the differences of a pair at the end and on its way (course()), in the same units, and
+    from resolved()."""
     shares = [apart[name] / USUAL[name] for name in PROMISED if apart[name] > NONE]
     measures = {"D": sum(shares) / len(shares) if shares else 0.0, "A": steps}
 
@@ -221,13 +231,16 @@ def largest(estimated: Mapping[str, float]) -> float:
 def touches(fine: Mapping, coarse: Mapping) -> list[str]:
     """A sentence where the runs of a pair saw different numbers of touches, so that what they differ by estimates nothing."""
     seen, other = (summary.get("contact_intervals") for summary in (fine, coarse))
-    return [f"touches: contact intervals are {seen} in the run and {other} in one with {COARSER:.1f} times larger elements and steps: answers that are beyond the accuracy asked for "
-            "are known to no more than that: look at contacts.csv for what each touch does, or ask for a smaller accuracy"] if seen != other else []
+    return [f"touches: contact intervals are {seen} in the run and {other} in one with {COARSER:.1f} times larger elements and steps: "
+            f"answers that are beyond the accuracy asked for are known to no more than that: look at contacts.csv for what each touch "
+            f"does, or ask for a smaller accuracy"] if seen != other else []
 
 
 def excess(estimated: Mapping[str, float], accuracy: float, also: str) -> list[str]:
     """A sentence about the answers whose estimated error is above the accuracy; above LOOSER times it where it is not promised."""
-    limits = {name: accuracy for name in wanted(also)} | {name: LOOSER * accuracy for name in ("contact_time", "peak_force") if name != also}
+    limits = {name: accuracy for name in wanted(also)} | {name: LOOSER * accuracy for name in ("contact_time", "peak_force")
+                                                          if name != also}
     above = [f"{name.replace('_', ' ')} {100 * estimated[name]:.2g} %" for name, limit in limits.items() if estimated[name] > limit]
-    return [f"estimated errors above the {100 * accuracy:g} % that are asked for: {', '.join(above)}: take these answers as known to no more than that, or ask for "
-            "a smaller accuracy (contact times and peak forces scatter in hard impacts on any mesh)"] if above else []
+    return [f"estimated errors above the {100 * accuracy:g} % that are asked for: {', '.join(above)}: take these answers as known to no "
+            f"more than that, or ask for a smaller accuracy (contact times and peak forces scatter in hard impacts on any "
+            f"mesh)"] if above else []

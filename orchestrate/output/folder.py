@@ -24,8 +24,9 @@ RECORDS = ("scene.toml", "history.csv", "contacts.csv", "modes.csv", "summary.js
 FIELDS = [f"fields{on_its_way}/{name}" for on_its_way in ("", ".part")
           for name in ("[0-9][0-9][0-9][0-9].vtu", "contact.csv", "contact.pvd", "contact-[0-9][0-9][0-9][0-9].vtp")]
 FIGURES = ("energies", "velocity", "force", "rolling", "shapes", "flight", "contact", "bounces", "vibration", "solid")
-OWN = (*RECORDS, *(f"{Path(name).stem}.part" for name in RECORDS), "failure.json", "log.txt", "mesh.msh", "mesh.mesh", "scene.dat", "history.cut", "summary.json.part",
-       "checkpoint", "checkpoint.json", "checkpoint.part", "checkpoint.state", "parting", "fields.pvd", "fields.pvd.part", *FIELDS, *(f"figures/{name}.png" for name in FIGURES))
+OWN = (*RECORDS, *(f"{Path(name).stem}.part" for name in RECORDS), "failure.json", "log.txt", "mesh.msh", "mesh.mesh", "scene.dat",
+       "history.cut", "summary.json.part", "checkpoint", "checkpoint.json", "checkpoint.part", "checkpoint.state", "parting", "fields.pvd",
+       "fields.pvd.part", *FIELDS, *(f"figures/{name}.png" for name in FIGURES))
 OURS = {"scene.toml", "failure.json", "scene.part", "history.part", "checkpoint.json"}   # a folder with one of these is the program's
 
 
@@ -179,7 +180,8 @@ def unfinished(stage: Path) -> dict | None:
 def replace(stage: Path, folder: Path, same: bool) -> None:
     """Puts `stage` in the place of `folder`, complete or not at all.
 
-    What was there stays as DIR.1 (.2 ...); where it is of the `same` scene, what the program wrote there goes, and what else is there moves over.
+    What was there stays as DIR.1 (.2 ...); where it is of the `same` scene, what the program wrote there goes, and what else is there moves
+    over.
     """
     earlier = None
     if folder.exists() and any(folder.iterdir()):

@@ -1,5 +1,6 @@
-"""What is in the folder of a finished run: its history, its scene as used, its summary. Whatever is wrong with a file of it is Unreadable, in one line: where
-it is not there, makes no sense or lacks what is asked of it, or is another than the run has written (`files` of the provenance)."""
+"""What is in the folder of a finished run: its history, its scene as used, its summary. Whatever is wrong with a file of it is Unreadable,
+in one line: where it is not there, makes no sense or lacks what is asked of it, or is another than the run has written (`files` of the
+provenance)."""
 
 import hashlib
 import io
@@ -21,7 +22,8 @@ from ..input.parameters import Value
 if TYPE_CHECKING:
     from pandas import DataFrame   # takes longer to load than a run: only where a table is wanted
 
-WRITTEN = ("scene.toml", "history.csv", "contacts.csv", "modes.csv", "fields.pvd", "fields/*.vtu", "fields/contact.csv")   # what is read again
+# what is read again
+WRITTEN = ("scene.toml", "history.csv", "contacts.csv", "modes.csv", "fields.pvd", "fields/*.vtu", "fields/contact.csv")
 AGAIN = "delete its folder, or run it again with --force"
 
 
@@ -93,7 +95,8 @@ def content(path: Path) -> str:
 
 def files_of(folder: Path) -> dict[str, str]:
     """sha256 by name of what a run has written into `folder` to be read."""
-    return {path.relative_to(folder).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest() for pattern in WRITTEN for path in sorted(folder.glob(pattern))}
+    return {path.relative_to(folder).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest() for pattern in WRITTEN
+            for path in sorted(folder.glob(pattern))}
 
 
 def check_files(folder: Path) -> None:
@@ -107,7 +110,8 @@ def read_table(path: Path, columns: Iterable[str] = ()) -> np.recarray:
     """A table of a run, all numbers: a field a column; Unreadable where it is not one that has these columns, and where it is cut off."""
     head, end, rows = content(path).partition("\n")
     with reading(path):
-        names, lines = head.split(","), re.sub(r"(?<![^,\n])(?=[,\n])", "nan", rows).splitlines()      # what is not known is written as nothing
+        # what is not known is written as nothing
+        names, lines = head.split(","), re.sub(r"(?<![^,\n])(?=[,\n])", "nan", rows).splitlines()
         if not end or rows[-1:] not in ("", "\n") or {len(line.split(",")) for line in lines} - {len(names)}:
             raise ValueError("it is empty, cut off, or has rows of several lengths")
         if lacks := [name for name in columns if name not in names]:
@@ -148,8 +152,8 @@ def read_scene(folder: Path) -> dict[str, Value]:
 
 
 class Answers(NamedTuple):
-    """Of a finished run the summary, with energy_final and largest_energy [J/m], the scene as used, the largest speed of a centre of mass [m/s], and
-    the columns of its history."""
+    """Of a finished run the summary, with energy_final and largest_energy [J/m], the scene as used, the largest speed of a centre of mass
+    [m/s], and the columns of its history."""
 
     summary: dict
     used: dict[str, Value]
@@ -158,8 +162,8 @@ class Answers(NamedTuple):
 
 
 def read_answers(folder: Path) -> Answers:
-    """The answers of a finished run, and what energies and velocities are measured by: as seen by one who moves with the obstacles, or without any with the
-    bodies' common centre of mass: errors do not depend on a motion that all share."""
+    """The answers of a finished run, and what energies and velocities are measured by: as seen by one who moves with the obstacles, or
+    without any with the bodies' common centre of mass: errors do not depend on a motion that all share."""
     history, summary, used = read_history(folder), read_summary(folder), read_scene(folder)
     axes, bodies = [axis for axis in "xyz" if f"v{axis}" in history], suffixes(history)
     mass = summary["mass"]
@@ -180,7 +184,8 @@ def _frame(used: dict, like: np.ndarray, bodies: int) -> np.ndarray | None:
     if "body" not in used:
         return None if bodies > 1 else np.zeros_like(like)
     obstacles = [one.get("velocity", np.zeros_like(like)) for one in used.get("obstacle", [])]
-    return np.mean([[0.0, one] if np.isscalar(one) else one for one in obstacles], axis=0) if obstacles else None    # of revolution: along the axis
+    # of revolution: along the axis
+    return np.mean([[0.0, one] if np.isscalar(one) else one for one in obstacles], axis=0) if obstacles else None
 
 
 def suffixes(columns: Iterable[str]) -> list[str]:

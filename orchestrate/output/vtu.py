@@ -12,17 +12,21 @@ from .results import Contents, content, reading
 TRIANGLE, QUADRATIC_TRIANGLE, QUADRATIC_TETRAHEDRON = 5, 22, 24   # VTK's cell types
 NODES = {TRIANGLE: 3, QUADRATIC_TRIANGLE: 6, QUADRATIC_TETRAHEDRON: 10}
 FINEST, MOST = 6, 2_000      # straight triangles along a side of a quadratic one, at most; and of all, where that is more than two a side
-EIGHT = [[0, 4, 6, 7], [4, 1, 5, 8], [6, 5, 2, 9], [7, 8, 9, 3],      # a quadratic tetrahedron as its corners and the four about the diagonal 4-9
+# a quadratic tetrahedron as its corners and the four about the diagonal 4-9
+EIGHT = [[0, 4, 6, 7], [4, 1, 5, 8], [6, 5, 2, 9], [7, 8, 9, 3],
          [4, 9, 5, 6], [4, 9, 6, 7], [4, 9, 7, 8], [4, 9, 8, 5]]
-CUTS = {1: [[[0, 1], [0, 2], [0, 3]]], 2: [[[0, 2], [0, 3], [1, 3]], [[0, 2], [1, 3], [1, 2]]],     # edges of a tetrahedron between its first so many
-        3: [[[0, 3], [1, 3], [2, 3]]]}                                                               # corners and the others, three a triangle
-FACES = [[0, 1, 2, 4, 5, 6], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [0, 2, 3, 6, 9, 7]]   # of a quadratic tetrahedron, as quadratic triangles
+
+# edges of a tetrahedron between its first so many corners and the others, three a triangle
+CUTS = {1: [[[0, 1], [0, 2], [0, 3]]], 2: [[[0, 2], [0, 3], [1, 3]], [[0, 2], [1, 3], [1, 2]]],
+        3: [[[0, 3], [1, 3], [2, 3]]]}
+# of a quadratic tetrahedron, as quadratic triangles
+FACES = [[0, 1, 2, 4, 5, 6], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [0, 2, 3, 6, 9, 7]]
 
 
 @dataclass(frozen=True)
 class Snapshot:
-    """points (n, 2) reference coordinates in m; triangles (t, 3) straight; fields by name, SI units: (n,), (n, 3) for vectors,
-    (n, 6) for the Cauchy stress (xx yy zz xy yz xz). Of a body in three dimensions its cut with the plane z = 0 of the reference configuration."""
+    """points (n, 2) reference coordinates in m; triangles (t, 3) straight; fields by name, SI units: (n,), (n, 3) for vectors, (n, 6) for
+    the Cauchy stress (xx yy zz xy yz xz). Of a body in three dimensions its cut with the plane z = 0 of the reference configuration."""
 
     points: np.ndarray
     triangles: np.ndarray
@@ -39,8 +43,9 @@ class Solid:
 
 
 def read(path: Path) -> Snapshot:
-    """One snapshot; quadratic triangles, and the faces of quadratic tetrahedra in the plane z = 0, are split into straight ones, so many that curved sides
-    look it. Where a body in three dimensions has no such faces, it is cut there. Unreadable where it is not such a file."""
+    """One snapshot; quadratic triangles, and the faces of quadratic tetrahedra in the plane z = 0, are split into straight ones, so many
+    that curved sides look it. Where a body in three dimensions has no such faces, it is cut there. Unreadable where it is not such a
+    file."""
     points, kind, cells, fields = _parts(path)
     on_plane = np.ones(len(points), dtype=bool)
     if kind == QUADRATIC_TETRAHEDRON:
@@ -78,7 +83,8 @@ def _parts(path: Path) -> tuple[np.ndarray, int, np.ndarray, dict[str, np.ndarra
 
 
 def _straight(curved: Snapshot) -> Snapshot:
-    """Its quadratic triangles (t, 6: corners, then the middles of 01, 12, 20) as n * n straight ones each, on points where the quadratic functions are."""
+    """Its quadratic triangles (t, 6: corners, then the middles of 01, 12, 20) as n * n straight ones each, on points where the quadratic
+    functions are."""
     cells = curved.triangles
     values, first, triangles = _split(cells.tobytes(), len(cells))
     at = lambda field: np.tensordot(field[cells], values, axes=(1, 1)).swapaxes(1, -1).reshape(-1, *field.shape[1:])[first]   # noqa: E731
@@ -87,28 +93,35 @@ def _straight(curved: Snapshot) -> Snapshot:
 
 @lru_cache(1)          # snapshots of a run have the same triangles
 def _split(cells: bytes, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Of so many quadratic triangles the functions (points of a cell, 6), the row of each point among those of all cells, and the straight triangles."""
+    """Of so many quadratic triangles the functions (points of a cell, 6), the row of each point among those of all cells, and the straight
+    triangles."""
     corners = np.frombuffer(cells, dtype=int).reshape(count, 6)[:, :3]
     n = int(np.clip(np.sqrt(MOST / max(1, count)), 2, FINEST))
-    lattice = [(i, j) for j in range(n + 1) for i in range(n + 1 - j)]
-    place = {each: k for k, each in enumerate(lattice)}
-    b, c = np.array(lattice).T / n
-    a = 1 - b - c
-    values = np.stack([a * (2 * a - 1), b * (2 * b - 1), c * (2 * c - 1), 4 * a * b, 4 * b * c, 4 * c * a], axis=1)        # (points of a cell, 6)
+    places, values, triangles = lattice(n)
     # a point of a side is one for both neighbours: it is known by its corners and their shares
-    shares = np.rint(n * np.stack([a, b, c], axis=1)).astype(int)[None].repeat(count, axis=0)                          # (cells, points, 3)
+    shares = np.rint(n * places).astype(int)[None].repeat(count, axis=0)                          # (cells, points, 3)
     owners = np.where(shares > 0, corners[:, None, :], -1)
     order = np.argsort(owners, axis=2)
     known = np.concatenate([np.take_along_axis(each, order, axis=2) for each in (owners, shares)], axis=2).reshape(-1, 6)
     _, first, which = np.unique(known, axis=0, return_index=True, return_inverse=True)
-    up = [(place[i, j], place[i + 1, j], place[i, j + 1]) for i, j in lattice if i + j < n]
-    down = [(place[i + 1, j], place[i + 1, j + 1], place[i, j + 1]) for i, j in lattice if i + j < n - 1]
-    triangles = which.reshape(count, -1)[:, np.array(up + down)].reshape(-1, 3)
-    return values, first, triangles
+    return values, first, which.reshape(count, -1)[:, triangles].reshape(-1, 3)
+
+
+def lattice(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """A triangle as n * n straight ones: their corners (points, 3), as shares of its own, the values (points, 6) there of the quadratic
+    functions of its corners and the middles of 01, 12, 20, and the triangles (n * n, 3)."""
+    points = [(i, j) for j in range(n + 1) for i in range(n + 1 - j)]
+    place = {each: k for k, each in enumerate(points)}
+    b, c = np.array(points).T / n
+    a = 1 - b - c
+    values = np.stack([a * (2 * a - 1), b * (2 * b - 1), c * (2 * c - 1), 4 * a * b, 4 * b * c, 4 * c * a], axis=1)
+    up = [(place[i, j], place[i + 1, j], place[i, j + 1]) for i, j in points if i + j < n]
+    down = [(place[i + 1, j], place[i + 1, j + 1], place[i, j + 1]) for i, j in points if i + j < n - 1]
+    return np.stack([a, b, c], axis=1), values, np.array(up + down)
 
 
 def _in_plane(tetrahedra: np.ndarray, on_plane: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """The faces (f, 6) of quadratic tetrahedra (t, 10) all of whose nodes are marked in `on_plane`, each once, counter-clockwise in x, y."""
+    """The faces (f, 6) of quadratic tetrahedra (t, 10) of which all nodes are marked in `on_plane`, each once, counter-clockwise."""
     faces = tetrahedra[:, FACES].reshape(-1, 6)
     faces = faces[on_plane[faces].all(axis=1)]
     faces = faces[np.unique(np.sort(faces[:, :3], axis=1), axis=0, return_index=True)[1]]
@@ -118,7 +131,8 @@ def _in_plane(tetrahedra: np.ndarray, on_plane: np.ndarray, points: np.ndarray) 
 
 
 def _cut(solid: Solid, on_plane: np.ndarray) -> Snapshot:
-    """The body's cut with the plane z = 0, on which nodes are where marked: every edge that crosses it has a point there, the fields linear along it."""
+    """The body's cut with the plane z = 0, on which nodes are where marked: every edge that crosses it has a point there, the fields linear
+    along it."""
     z = np.where(on_plane, 0.0, solid.points[:, 2])
     parts = solid.tetrahedra[:, EIGHT].reshape(-1, 4)
     parts = np.take_along_axis(parts, np.argsort(z[parts] <= 0, axis=1, kind="stable"), axis=1)        # first the corners above
@@ -132,7 +146,8 @@ def _cut(solid: Solid, on_plane: np.ndarray) -> Snapshot:
     (ax, ay), (bx, by), (cx, cy) = (at(solid.points)[triangles[:, k], :2].T for k in range(3))
     area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
     triangles = np.where((area < 0)[:, None], triangles[:, ::-1], triangles)[area != 0]
-    return Snapshot(at(solid.points)[:, :2], triangles, Contents({name: at(field) for name, field in solid.fields.items()}, solid.fields.path))
+    return Snapshot(at(solid.points)[:, :2], triangles,
+                    Contents({name: at(field) for name, field in solid.fields.items()}, solid.fields.path))
 
 
 def series(pvd: Path) -> list[tuple[float, Path]]:

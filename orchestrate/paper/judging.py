@@ -1,15 +1,15 @@
 """What the statements of the paper are judged with: the verdicts, the results that `make paper` leaves, error bars.
 
-Every verdict follows from numbers by the rule in the docstring of its statement (limits, friction, impacts, pairs, bodies,
-times). Section 3 is told of the paper's law, St. Venant-Kirchhoff (5), except where it names (6): with it a verdict is decided; the neo-Hookean
-answer, which converges, stands beside it.
+Every verdict follows from numbers by the rule in the docstring of its statement (limits, friction, impacts, pairs, bodies, times). Section
+3 is told of the paper's law, St. Venant-Kirchhoff (5), except where it names (6): with it a verdict is decided; the neo-Hookean answer,
+which converges, stands beside it.
 
-Where that law loses ellipticity in a run that decides, its answer depends on the mesh, and "agrees" becomes "partly" (`_on_any_mesh`), whatever the
-statement is; but not of what every step keeps exactly, on any mesh: the discrete energy and momentum.
+Where that law loses ellipticity in a run that decides, its answer depends on the mesh, and "agrees" becomes "partly" (`_on_any_mesh`),
+whatever the statement is; but not of what every step keeps exactly, on any mesh: the discrete energy and momentum.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cache, wraps
 from pathlib import Path
 
@@ -30,14 +30,12 @@ History = dict[str, np.ndarray]
 
 @dataclass(frozen=True)
 class Finding:
-    """What we found: the verdict, our number in words, the pictures, the folders of the runs it rests on, and when those of them with
-    St. Venant-Kirchhoff that decide lost ellipticity [s], None or nan where they kept it."""
+    """What we found: the verdict, our number in words, the pictures, the folders of the runs it rests on."""
 
     verdict: str
     ours: str
     figures: list[Path] = field(default_factory=list)
     runs: list[Path] = field(default_factory=list)
-    lost: list[float | None] = field(default_factory=list)
 
 
 class Results:
@@ -74,9 +72,10 @@ class Results:
         """The folder of a sweep."""
         return self.folder / "sweeps" / name
 
-    def drawn(self, name: str) -> list[Path]:
-        """The picture of a sweep."""
-        return [self.sweep(name) / "sweep.png"]
+    def drawn(self, *names: str) -> list[Path]:
+        """The pictures of sweeps, of runs ("run/kind"), and those that have a place of their own (with .png)."""
+        return [self.folder / name if name.endswith(".png") else self.sweep(name) / "sweep.png" if name in sweep.built_in()
+                else self.picture(*name.split("/")) for name in names]
 
     def table(self, name: str) -> pd.DataFrame:
         """The points of a sweep, from its runs."""
@@ -85,6 +84,10 @@ class Results:
     def sweep_runs(self, name: str) -> list[Path]:
         """The folders of the runs of a sweep."""
         return [study.place(self.sweep(name), point) for point in loaded(name).runs]
+
+    def folders(self, *names: str) -> list[Path]:
+        """Those of runs, and of all runs of sweeps."""
+        return [folder for name in names for folder in (self.sweep_runs(name) if name in sweep.built_in() else [self.run(name)])]
 
     def pair(self, name: str, **values) -> list[Path]:
         """The runs of the point of a sweep with these values: plain and, where the sweep refines, refined."""
@@ -122,37 +125,53 @@ def loaded(name: str) -> sweep.Sweep:
 # ---- the statements, in the order of the paper
 
 STATEMENTS: list[tuple[str, str, Callable[[Results], Finding]]] = []
+Lost = list[float | None]   # when runs with St. Venant-Kirchhoff lost ellipticity [s], None or nan where they kept it
 
 
-def states(item: str, text: str, exact: bool = False) -> Callable:
-    """Registers how a statement of the paper is judged; `exact`: it is about what every step keeps exactly, on any mesh."""
-    def register(find: Callable[[Results], Finding]) -> Callable[[Results], Finding]:
-        @wraps(find)
+def states(item: str, text: str, runs: str | Callable[[Results], list[Path]] = "", figures: str | None = None,
+           lost: Callable[[Results], Lost] = lambda results: [], exact: bool = False, laws: str = "") -> Callable:
+    """Registers how a statement of the paper is judged. The rule gives the verdict and our number in words, and may give `lost`.
+
+    runs: the runs and sweeps that it rests on; figures: as Results.drawn() names them, those of its sweeps where none are given; lost: of
+    the runs that decide; exact: it is about what every step keeps exactly, on any mesh; laws: the rule is about one law, which it takes,
+    and gives whether it holds, and words, which stand for {} in these.
+    """
+    def register(rule: Callable) -> Callable[[Results], Finding]:
+        @wraps(rule)
         def judged(results: Results) -> Finding:
-            return _on_any_mesh(find(results), exact)
+            verdict, ours, *more = of_both(rule, results, laws) if laws else rule(results)
+            folders = results.folders(*runs.split()) if isinstance(runs, str) else runs(results)
+            shown = [name for name in runs.split() if name in sweep.built_in()] if figures is None else figures.split()
+            if verdict == AGREES:
+                verdict, ours = _on_any_mesh(ours, more[0] if more else lost(results), exact)
+            return Finding(verdict, ours, results.drawn(*shown), folders)
         STATEMENTS.append((item, text, judged))
         return judged
     return register
 
 
-def _on_any_mesh(found: Finding, exact: bool) -> Finding:
-    """The rule of all statements on St. Venant-Kirchhoff: "agrees" becomes "partly" where a run that decides lost ellipticity, as another mesh
-    may decide otherwise; not where the statement is `exact`."""
-    lost = [time for time in found.lost if known(time)]
-    if found.verdict != AGREES or not lost:
-        return found
-    since = f"SVK loses ellipticity from {1e3 * min(lost):.2f} ms on"
+def _on_any_mesh(ours: str, lost: Lost, exact: bool) -> tuple[str, str]:
+    """The rule of all statements on St. Venant-Kirchhoff: "agrees" becomes "partly" where a run that decides lost ellipticity, as another
+    mesh may decide otherwise; not where the statement is `exact`."""
+    if not (times := [time for time in lost if known(time)]):
+        return AGREES, ours
+    since = f"SVK loses ellipticity from {1e3 * min(times):.2f} ms on"
     if exact:
-        return replace(found, ours=f"{found.ours} ({since}; but this is kept exactly by every step, on any mesh.)")
-    return replace(found, verdict=PARTLY, ours=f"{found.ours} Partly: {since}, from where its answer depends on the mesh.")
+        return AGREES, f"{ours} ({since}; but this is kept exactly by every step, on any mesh.)"
+    return PARTLY, f"{ours} Partly: {since}, from where its answer depends on the mesh."
 
 
-def of_both(of: Callable[[str], tuple[bool, str]]) -> tuple[str, str]:
-    """(verdict, words) of what holds of a law: agrees with both, partly with the paper's alone, not where the paper's does not;
-    `of` gives (holds, words) of "svk" and "neohookean"."""
-    found = {law: of(law) for law in LAWS}
+def graded(agrees: bool, partly: bool = False) -> str:
+    """The verdict of what agrees, or else partly."""
+    return AGREES if agrees else PARTLY if partly else DIFFERS
+
+
+def of_both(rule: Callable[[Results, str], tuple[bool, str]], results: Results, around: str) -> tuple[str, str]:
+    """(verdict, words) of what holds of a law: agrees with both, partly with the paper's alone, not where the paper's does not; `rule`
+    gives (holds, words) of "svk" and "neohookean"."""
+    found = {law: rule(results, law) for law in LAWS}
     paper, other = (holds for holds, _ in found.values())
-    return AGREES if paper and other else PARTLY if paper else DIFFERS, "; ".join(f"{LAWS[law]}: {words}" for law, (_, words) in found.items())
+    return graded(paper and other, paper), around.format("; ".join(f"{LAWS[law]}: {words}" for law, (_, words) in found.items()))
 
 
 def finished(results: Results, name: str) -> pd.DataFrame:

@@ -19,7 +19,8 @@ from ..report.figures import STYLE
 from .judging import AGREES, DIFFERS, OPEN, PARTLY, Finding
 
 COLOURS = {AGREES: "#009e73", DIFFERS: "#d55e00", PARTLY: "#b8860b", OPEN: "#777777"}
-SHOWN = {"energies": "energies over time", "force": "contact force over time", "rolling": "velocity of the centre and the rim, and the share that slides",
+SHOWN = {"energies": "energies over time", "force": "contact force over time",
+         "rolling": "velocity of the centre and the rim, and the share that slides",
          "velocity": "velocities over time", "contact": "contact pressure along the outline and over time",
          "flight": "shapes on the flight and in the contact", "shapes": "deformed shapes"}   # what a picture of a run shows
 PIXELS, DPI = 85, STYLE["savefig.dpi"]      # of the page and of a picture to an inch
@@ -34,7 +35,8 @@ def page(findings: list[tuple[str, str, Finding]], more: str = "") -> str:
     """The page as HTML, pictures and all; `more` comes behind the statements."""
     counts = ", ".join(f"{sum(found.verdict == verdict for *_, found in findings)} {verdict}" for verdict in COLOURS)
     contents = "\n".join(f"<li>{line}</li>" for line in [
-        '<a href="#all">All verdicts</a>', *(f'<a href="#s{k}">{escape(item)}</a>: {escape(text)}' for k, (item, text, _) in enumerate(findings)),
+        '<a href="#all">All verdicts</a>',
+        *(f'<a href="#s{k}">{escape(item)}</a>: {escape(text)}' for k, (item, text, _) in enumerate(findings)),
         *(['<a href="#verification">Verification</a>: exact solutions'] if more else [])])
     rows = "\n".join(f'<tr id="row{k}"><td>{escape(item)}</td><td>{escape(text)}</td><td>{escape(found.ours)}</td>'
                      f'<td style="color:{COLOURS[found.verdict]}"><a href="#s{k}">{found.verdict}</a></td></tr>'
@@ -45,18 +47,23 @@ def page(findings: list[tuple[str, str, Finding]], more: str = "") -> str:
 <html lang="en"><head><meta charset="utf-8"><title>The paper's statements and our numbers</title>
 <style>
 body {{ font: 15px/1.45 system-ui, sans-serif; color: #222; max-width: 60em; margin: 2em auto; padding: 0 1em }}
-table {{ border-collapse: collapse; width: 100% }} td, th {{ border-bottom: 1px solid #ddd; padding: .35em .6em; text-align: left; vertical-align: top }}
+table {{ border-collapse: collapse; width: 100% }} td, th {{ border-bottom: 1px solid #ddd; padding: .35em .6em; text-align: left; \
+vertical-align: top }}
 td a {{ color: inherit }} img {{ max-width: 100% }} h2 {{ margin-top: 2.2em; font-size: 1.1em }}
-h3 {{ margin-top: 1.6em; font-size: 1em }} figure {{ margin: 1em 0 }} figcaption {{ font-size: .85em; color: #555 }} nav {{ font-size: .9em }}
+h3 {{ margin-top: 1.6em; font-size: 1em }} figure {{ margin: 1em 0 }} figcaption {{ font-size: .85em; color: #555 }} nav {{ font-size: \
+.9em }}
 details {{ font-size: .85em }} pre {{ white-space: pre-wrap }}
 </style></head><body>
 <h1 id="top">The paper's statements and our numbers</h1>
-<p>Buezas, Rosales and Filipich, <i>Nonlinear deformable bodies with unilateral contact including friction</i>. The paper states neither ν (only
+<p>Buezas, Rosales and Filipich, <i>Nonlinear deformable bodies with unilateral contact including friction</i>. The paper states neither \
+ν (only
 “ν → 0.5”) nor the contact stiffness, ε, mesh or step; a number that it prints is taken as known to half a unit of its last digit.
 Error bars of ours are what refining mesh and step changes. Verdicts follow from the numbers by fixed rules
 (orchestrate/paper/*.py): a statement on St. Venant–Kirchhoff is decided by runs with
-that law; where it loses ellipticity in them “agrees” becomes “partly”, as then the mesh decides, but not of energy and momentum, which every
-step keeps on any mesh; “not decided” means that the effect is smaller than the errors. “As the paper may have run it”: on a coarse mesh of linear triangles.</p>
+that law; where it loses ellipticity in them “agrees” becomes “partly”, as then the mesh decides, but not of energy and momentum, which \
+every
+step keeps on any mesh; “not decided” means that the effect is smaller than the errors. “As the paper may have run it”: on a coarse mesh \
+of linear triangles.</p>
 <p><b>{counts}</b></p>
 <nav><p>Contents</p><ol>
 {contents}
@@ -81,12 +88,14 @@ def _section(k: int, item: str, text: str, found: Finding, shown: dict[Path, int
         else:
             shown[path] = len(shown) + 1
             pictures.append(_picture(path, shown[path], f"#s{k}", item))
-    return (f'<h2 id="s{k}">{escape(item)}: {escape(text)}</h2>\n<p><b style="color:{COLOURS[found.verdict]}">{found.verdict}</b>: {escape(found.ours)}</p>\n'
+    return (f'<h2 id="s{k}">{escape(item)}: {escape(text)}</h2>\n<p><b style="color:{COLOURS[found.verdict]}">{found.verdict}</b>: '
+            f'{escape(found.ours)}</p>\n'
             + "\n".join(pictures) + f'\n{_provenance(found.runs)}\n<p><a href="#row{k}">Back to its row in the table</a> · {BACK}</p>')
 
 
 def _picture(path: Path, number: int = 0, back: str = "", item: str = "") -> str:
-    """A picture with its caption, as wide as it was drawn, so that the text of all has one size; with a number and what it belongs to where they are given."""
+    """A picture with its caption, as wide as it was drawn, so that the text of all has one size; with a number and what it belongs to where
+    they are given."""
     words, data = escape(caption(path)), path.read_bytes()
     wide = f' width="{round(PIXELS * int.from_bytes(data[16:20], "big") / DPI)}"' if data[12:16] == b"IHDR" else ""
     lead, trail = (f"<b>Figure {number}.</b> ", f' (<a href="{back}">{escape(item)}</a>)') if number else ("", "")
@@ -137,7 +146,8 @@ def _provenance(folders: list[Path]) -> str:
     standard = parameters.defaults()
     common = {name: value for name, value in scenes[0].items()
               if all(used.get(name) == value for used in scenes) and (name in ("script", "nu") or standard.get(name) != value)}
-    varied = {name: sorted({used[name] for used in scenes if name in used}, key=lambda value: (isinstance(value, str), value)) for name in scenes[0]
+    varied = {name: sorted({used[name] for used in scenes if name in used}, key=lambda value: (isinstance(value, str), value))
+              for name in scenes[0]
               if any(used.get(name) != scenes[0][name] for used in scenes)}
     records = [read_json(path) for folder in folders
                for path in (folder / "summary.json", folder / "failure.json") if path.exists()]

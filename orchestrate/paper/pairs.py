@@ -1,8 +1,10 @@
-"""Section 3.2: closest points (9), what they cost, and contact without a search for them, (14), (15): the disc on the block, on two meshes (the sweep pairing)."""
+"""Section 3.2: closest points (9), what they cost, and contact without a search for them, (14), (15): the disc on the block, on two meshes
+(pairing)."""
 
+from collections.abc import Callable
 from pathlib import Path
 
-from .judging import AGREES, DIFFERS, PARTLY, Finding, Results, states
+from .judging import Lost, Results, graded, states
 
 PAIRS = "pairing"
 SAME = 0.01                 # largest difference of rebound velocities over the speed, and of the impulse, for two contacts to be the same
@@ -10,42 +12,57 @@ DEAR = 0.1                  # share of the processor time from which a search co
 PRINTED = {"pairwise": "with a repulsion that vanishes at ε", "pairwise-printed": "as printed"}
 
 
-@states("Section 3.2, equation (9)", "the minimum distance is found at each instant at the cost of CPU time")
-def search_costs(results: Results) -> Finding:
-    """By shares of each run, which scatter less than seconds: agrees where the search for closest points takes more than a tenth of the processor time on both
-    meshes, partly where on one."""
-    ends = {pairing: results.summaries(PAIRS, pairing=pairing, pairing_range="auto") for pairing in ("closest-point", *PRINTED)}
-    shares = {pairing: [end["phase_seconds"]["search"] / end["cpu_seconds"] for end in each] for pairing, each in ends.items()}
-    dear = [share > DEAR for share in shares["closest-point"]]
-    words = {"closest-point": "closest points (9)"} | {pairing: f"(14), (15) {how}" for pairing, how in PRINTED.items()}
-    told = "; ".join(f"{words[pairing]} {' and '.join(f'{100 * share:.0f} %' for share in found)} of "
-                     f"{' and '.join(format(end['cpu_seconds'], '.1f') for end in ends[pairing])} s"
-                     for pairing, found in shares.items())
-    return Finding(AGREES if all(dear) else PARTLY if any(dear) else DIFFERS, f"the search's share of the processor time, on two meshes: {told}. More than "
-                                                                              f"{100 * DEAR:g} % is asked; boxes "
-                   "leave few edges to a point.", results.drawn(PAIRS), _pair_runs(results, "auto"), _pairs_lost(results))
+def lost(results: Results) -> Lost:
+    """When closest points lose ellipticity."""
+    return [end["ellipticity_lost_time"] for end in results.summaries(PAIRS, pairing="closest-point", pairing_range="auto")]
 
 
-@states("Section 3.2, equations (14), (15)", "a sum over all points nearer than ε takes the place of the closest points")
-def sum_of_points(results: Results) -> Finding:
-    """As printed, on two meshes: agrees where rebounds and impulse are those of closest points to 1 % and the bodies touch as often; partly where the
-    answers are alone, as printed or with a repulsion that vanishes at ε."""
-    return _beside_closest(results, "auto", "ε an element where the bodies touch")
+def runs(*widths: Callable) -> Callable[[Results], list[Path]]:
+    """Those of all contacts with these ε, each once."""
+    return lambda results: list(dict.fromkeys(run for width in widths for pairing in ("closest-point", *PRINTED)
+                                              for run in results.pair(PAIRS, pairing=pairing, pairing_range=width(results))))
 
 
-@states("Section 3.2, equation (15)", "with ε of the order of the separation of the points and a large k a point meets a single one of the other body, and "
-                                      "nothing has to be sought")
-def single_point(results: Results) -> Finding:
-    """As (14), (15) with that ε: judged by the answers, not by the number of points."""
-    return _beside_closest(results, _separation(results), "ε the separation of the points")
+def element(results: Results) -> str:
+    """ε that is an element where the bodies touch."""
+    return "auto"
 
 
-def _separation(results: Results) -> float:
+def separation(results: Results) -> float:
     """The smaller ε of the sweep [m]."""
     return float(next(value for value in results.table(PAIRS).pairing_range.unique() if value != "auto"))
 
 
-def _beside_closest(results: Results, width: str | float, words: str) -> Finding:
+@states("Section 3.2, equation (9)", "the minimum distance is found at each instant at the cost of CPU time", runs(element), PAIRS, lost)
+def search_costs(results: Results) -> tuple[str, str]:
+    """By shares of each run, which scatter less than seconds: agrees where the search for closest points takes more than a tenth of the
+    processor time on both meshes, partly where on one."""
+    words = {"closest-point": "closest points (9)"} | {pairing: f"(14), (15) {how}" for pairing, how in PRINTED.items()}
+    ends = {pairing: results.summaries(PAIRS, pairing=pairing, pairing_range="auto") for pairing in words}
+    shares = {pairing: [end["phase_seconds"]["search"] / end["cpu_seconds"] for end in each] for pairing, each in ends.items()}
+    dear = [share > DEAR for share in shares["closest-point"]]
+    told = "; ".join(f"{words[pairing]} {' and '.join(f'{100 * share:.0f} %' for share in found)} of "
+                     f"{' and '.join(format(end['cpu_seconds'], '.1f') for end in ends[pairing])} s" for pairing, found in shares.items())
+    return graded(all(dear), any(dear)), (f"the search's share of the processor time, on two meshes: {told}. More than {100 * DEAR:g} % is "
+                                          f"asked; boxes leave few edges to a point.")
+
+
+@states("Section 3.2, equations (14), (15)", "a sum over all points nearer than ε takes the place of the closest points", runs(element),
+        PAIRS, lost)
+def sum_of_points(results: Results) -> tuple[str, str]:
+    """As printed, on two meshes: agrees where rebounds and impulse are those of closest points to 1 % and the bodies touch as often; partly
+    where the answers are alone, as printed or with a repulsion that vanishes at ε."""
+    return _beside_closest(results, element(results), "ε an element where the bodies touch")
+
+
+@states("Section 3.2, equation (15)", "with ε of the order of the separation of the points and a large k a point meets a single one of the "
+        "other body, and nothing has to be sought", runs(element, separation), PAIRS, lost)
+def single_point(results: Results) -> tuple[str, str]:
+    """As (14), (15) with that ε: judged by the answers, not by the number of points."""
+    return _beside_closest(results, separation(results), "ε the separation of the points")
+
+
+def _beside_closest(results: Results, width: str | float, words: str) -> tuple[str, str]:
     """Verdict and words of (14), (15) beside closest points, with ε = `width`."""
     nearest = results.summaries(PAIRS, pairing="closest-point", pairing_range="auto")
     same, as_often, told = {}, {}, []
@@ -56,13 +73,11 @@ def _beside_closest(results: Results, width: str | float, words: str) -> Finding
         slip = any("slip through" in said for end in ends for said in end["warnings"])
         same[pairing] = max(apart) <= SAME and not slip
         as_often[pairing] = all(end["contact_intervals"] <= near["contact_intervals"] for end, near in zip(ends, nearest))
-        told.append(f"{how} {' and '.join(f'{100 * each:.1f} %' for each in apart)} off, touching {_touches(ends)} times, peak force {peaks} times that of "
-                    f"closest points"
-                    + ", points slip through between each other" * slip)
-    holds = same["pairwise-printed"] and as_often["pairwise-printed"]
-    return Finding(AGREES if holds else PARTLY if any(same.values()) else DIFFERS, f"{words}, on two meshes (closest points touch "
-                   f"{_touches(nearest)} times): {'; '.join(told)}. As printed the force jumps to its largest where points come within ε.",
-                   results.drawn(PAIRS), list(dict.fromkeys([*_pair_runs(results, "auto"), *_pair_runs(results, width)])), _pairs_lost(results))
+        told.append(f"{how} {' and '.join(f'{100 * each:.1f} %' for each in apart)} off, touching {_touches(ends)} times, peak force "
+                    f"{peaks} times that of closest points" + ", points slip through between each other" * slip)
+    return graded(same["pairwise-printed"] and as_often["pairwise-printed"], any(same.values())), (
+        f"{words}, on two meshes (closest points touch {_touches(nearest)} times): {'; '.join(told)}. As printed the force jumps to its "
+        f"largest where points come within ε.")
 
 
 def _touches(ends: list[dict]) -> str:
@@ -72,13 +87,5 @@ def _touches(ends: list[dict]) -> str:
 def _apart(end: dict, nearest: dict) -> float:
     """The largest difference of both rebound velocities over the speed, and of the impulse."""
     speed = abs(nearest["rebound_vy_1"] - nearest["impulse_y_1"] / nearest["mass_1"])
-    return max(*(abs(end[f"rebound_vy_{b}"] - nearest[f"rebound_vy_{b}"]) / speed for b in (1, 2)), abs(end["impulse_y_1"] / nearest["impulse_y_1"] - 1))
-
-
-def _pair_runs(results: Results, width: str | float) -> list[Path]:
-    return [run for pairing in ("closest-point", *PRINTED) for run in results.pair(PAIRS, pairing=pairing, pairing_range=width)]
-
-
-def _pairs_lost(results: Results) -> list[float | None]:
-    """When closest points lose ellipticity."""
-    return [end["ellipticity_lost_time"] for end in results.summaries(PAIRS, pairing="closest-point", pairing_range="auto")]
+    rebounds = [abs(end[f"rebound_vy_{b}"] - nearest[f"rebound_vy_{b}"]) / speed for b in (1, 2)]
+    return max(*rebounds, abs(end["impulse_y_1"] / nearest["impulse_y_1"] - 1))

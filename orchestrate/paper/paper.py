@@ -21,9 +21,11 @@ from . import judging, making
 from . import limits, friction, impacts, pairs, bodies, times   # noqa: F401: these register the statements, in this order
 from .page import COLOURS, page, verification
 
-RUNS = {"disc-normal": ("force",), "disc-normal-neohookean": (), "disc-oblique": ("flight", "force", "energies"), "disc-oblique-svk": ("flight", "force", "rolling", "energies"),
-        "disc-rolling": ("rolling",), "disc-block": ("velocity", "shapes", "energies"), "disc-block-neohookean": ("velocity",),
-        "ball": ("shapes", "force"), "ball-axisymmetric": (), "ball-axisymmetric-svk": ("energies", "force")}   # and the pictures of them on the page
+# the runs, and the pictures of them on the page
+RUNS = {"disc-normal": ("force",), "disc-normal-neohookean": (), "disc-oblique": ("flight", "force", "energies"),
+        "disc-oblique-svk": ("flight", "force", "rolling", "energies"), "disc-rolling": ("rolling",),
+        "disc-block": ("velocity", "shapes", "energies"), "disc-block-neohookean": ("velocity",),
+        "ball": ("shapes", "force"), "ball-axisymmetric": (), "ball-axisymmetric-svk": ("energies", "force")}
 TARGETS = {"disc-oblique-svk": "disc-oblique", "disc-block-neohookean": "disc-block", "ball-axisymmetric-svk": "ball-axisymmetric",
            "disc-normal-neohookean": "ball-comparison"}   # the make target of a case, where it is not its own name
 
@@ -61,7 +63,8 @@ def _cases(results: judging.Results) -> list[str]:
     """The targets of the runs that are not there."""
     missing = [TARGETS.get(name, name) for name, pictures in RUNS.items() if not _holds([(results.run(name), scene.load(name))])
                or not all(results.picture(name, picture).exists() for picture in pictures)]
-    return missing + ["ball-comparison"] * (not all((results.folder / drawn).exists() for drawn in (bodies.ACCELERATIONS, bodies.LIKE_FOR_LIKE)))
+    return missing + ["ball-comparison"] * (not all((results.folder / drawn).exists()
+                                                    for drawn in (bodies.ACCELERATIONS, bodies.LIKE_FOR_LIKE)))
 
 
 def _sweeps(results: judging.Results) -> list[str]:

@@ -1,7 +1,8 @@
-"""Sections 3.1 and 3.3: the contact times that the paper prints, each over maps of the nu and k that it does not state, and all of them at once.
+"""Sections 3.1 and 3.3: the contact times that the paper prints, each over maps of the nu and k that it does not state, and all of them at
+once.
 
-A map is a sweep over nu and k, for those that lose ellipticity on several coarse meshes; what lies between its runs is interpolated in the logarithm of k.
-Runs with det F <= 0 are no answers.
+A map is a sweep over nu and k, for those that lose ellipticity on several coarse meshes; what lies between its runs is interpolated in the
+logarithm of k. Runs with det F <= 0 are no answers.
 """
 
 from dataclasses import dataclass
@@ -11,8 +12,8 @@ import numpy as np
 import pandas as pd
 
 from ..sweeps import sweep_figures
-from .bodies import BALL, BALL_NEO, DISC, DISC_NEO
-from .judging import AGREES, DIFFERS, PARTLY, Finding, Results, bar, both_times, finished, loaded, of_both, states, when
+from .bodies import BALL, BALL_NEO, DISC, DISC_NEO, lost
+from .judging import Results, bar, both_times, finished, graded, loaded, states, when
 
 DISC_MAP, OBLIQUE_MAP, BALL_MAP, SOLID_MAP = "calibrate", "calibrate-oblique", "calibrate-ball", "calibrate-ball-3d"
 MAPS = {"disc": (DISC_MAP,), "oblique disc": (OBLIQUE_MAP,), "ball": (BALL_MAP, SOLID_MAP)}   # of each number of the paper
@@ -24,50 +25,51 @@ Ranges = list[tuple[float, float]]
 
 # ---- one number, one map
 
-@states("Section 3.1", "oblique disc, SVK, 12 m/s at π/3, μ_d = 0.5, μ_e = 0.7: contact time 0.0045 s, as the paper may have run it")
-def oblique_time(results: Results) -> Finding:
+@states("Section 3.1", "oblique disc, SVK, 12 m/s at π/3, μ_d = 0.5, μ_e = 0.7: contact time 0.0045 s, as the paper may have run it",
+        f"{OBLIQUE_MAP} disc-oblique-svk oblique", f"{OBLIQUE_MAP} disc-oblique-svk/force")
+def oblique_time(results: Results) -> tuple[str, str]:
     """As the ball's time, at 60 degrees from the plane; 30 degrees stand beside."""
-    rows = results.table(OBLIQUE_MAP)
-    other, neo = _met(_whole(rows[(rows.exit == 0) & (rows.angle == OTHER)]), OBLIQUE_MAP), finished(results, "oblique")
-    converged = ", ".join(f"{1e3 * time:.2f} ± {1e3 * error:.2f} ms (ν = "
-                          f"{nu:g})" for nu, (time, error) in ((nu, bar(neo, "contact_time", nu=nu)) for nu in neo.nu))
-    return _over_meshes(results, OBLIQUE_MAP, rows[rows.angle == ANGLE], f"At {OTHER:g}° from the plane it is met on {_where(other)}. (The run of "
-                                                                         f"disc-oblique-svk: "
-                        f"{both_times(results.summary('disc-oblique-svk'))}; the neo-Hookean disc, another law, converges to {converged}.)",
-                        [results.picture("disc-oblique-svk", "force")], [results.run("disc-oblique-svk"), *results.sweep_runs("oblique")])
+    rows, neo = results.table(OBLIQUE_MAP), finished(results, "oblique")
+    other = _met(_whole(rows[(rows.exit == 0) & (rows.angle == OTHER)]), OBLIQUE_MAP)
+    found = {nu: bar(neo, "contact_time", nu=nu) for nu in neo.nu}
+    converged = ", ".join(f"{1e3 * time:.2f} ± {1e3 * error:.2f} ms (ν = {nu:g})" for nu, (time, error) in found.items())
+    return _over_meshes(OBLIQUE_MAP, rows[rows.angle == ANGLE], f"At {OTHER:g}° from the plane it is met on {_where(other)}. (The run of "
+                        f"disc-oblique-svk: {both_times(results.summary('disc-oblique-svk'))}; the neo-Hookean disc, another law, "
+                        f"converges to {converged}.)")
 
 
-@states("Section 3.3", "the 2D disc at 8 m/s: contact time 0.0048 s")
-def disc_time(results: Results) -> Finding:
+@states("Section 3.3", "the 2D disc at 8 m/s: contact time 0.0048 s", f"{DISC_MAP} {DISC}", f"{DISC_MAP} {DISC}/force")
+def disc_time(results: Results) -> tuple[str, str]:
     """Agrees where some (ν, k) of the map, with ellipticity kept, meet it with SVK: the paper states neither."""
     rows, given = finished(results, DISC_MAP), loaded(DISC_MAP).figure
     rows = rows[(rows.law == "svk") & rows.ellipticity_lost_time.isna()]
     met, above = ({nu: ranges for nu, ranges in sweep_figures.level_set(given | {"colour": name}, rows).items() if ranges}
                   for name in ("contact_time", "thresholded_contact_time"))
-    return Finding(AGREES if met else DIFFERS, f"with SVK met for {_each(met) or 'no ν and k'} [Pa/m] (the time above 1 % of the peak force for "
-                   f"{'ν = ' + ', '.join(f'{nu:g}' for nu in above) if above else 'no ν'}); the default run (ν = 0.45, k = 10¹⁰ Pa/m) gives "
-                   f"{both_times(results.summary(DISC))}.",
-                   [*results.drawn(DISC_MAP), results.picture(DISC, "force")], results.sweep_runs(DISC_MAP) + [results.run(DISC)])
+    return graded(bool(met)), (
+        f"with SVK met for {_each(met) or 'no ν and k'} [Pa/m] (the time above 1 % of the peak force for "
+        f"{'ν = ' + ', '.join(f'{nu:g}' for nu in above) if above else 'no ν'}); the default run (ν = 0.45, k = 10¹⁰ Pa/m) gives "
+        f"{both_times(results.summary(DISC))}.")
 
 
-@states("Section 3.3, figure 10", "ball, SVK, 8 m/s: contact time 0.00603 s, as the paper may have run it: as a body of revolution")
-def ball_time(results: Results) -> Finding:
-    """Over a map of (ν, k) on coarse meshes, as the paper states none of these: agrees where some (ν, k) meets it, to half a unit of its last digit, on every
-    mesh with ellipticity kept; partly where one meets it on some mesh only, or with ellipticity lost; else not. Runs with det F ≤ 0 are no answers."""
-    return _over_meshes(results, BALL_MAP, results.table(BALL_MAP), f"(The run of {BALL}: {both_times(results.summary(BALL))}; the neo-Hookean ball, another "
-                                                                    f"law, "
-                        f"converges to {both_times(results.summary(BALL_NEO))}.)", [results.picture(BALL, "force")], [results.run(BALL), results.run(BALL_NEO)])
+@states("Section 3.3, figure 10", "ball, SVK, 8 m/s: contact time 0.00603 s, as the paper may have run it: as a body of revolution",
+        f"{BALL_MAP} {BALL} {BALL_NEO}", f"{BALL_MAP} {BALL}/force")
+def ball_time(results: Results) -> tuple[str, str]:
+    """Over a map of (ν, k) on coarse meshes, as the paper states none of these: agrees where some (ν, k) meets it, to half a unit of its
+    last digit, on every mesh with ellipticity kept; partly where one meets it on some mesh only, or with ellipticity lost; else not. Runs
+    with det F ≤ 0 are no answers."""
+    return _over_meshes(BALL_MAP, results.table(BALL_MAP), f"(The run of {BALL}: {both_times(results.summary(BALL))}; the neo-Hookean "
+                        f"ball, another law, converges to {both_times(results.summary(BALL_NEO))}.)")
 
 
-@states("Section 3.3, figure 10", "ball, SVK, 8 m/s: contact time 0.00603 s, as the paper may have run it: in three dimensions")
-def ball_time_3d(results: Results) -> Finding:
+@states("Section 3.3, figure 10", "ball, SVK, 8 m/s: contact time 0.00603 s, as the paper may have run it: in three dimensions",
+        f"{SOLID_MAP} ball")
+def ball_time_3d(results: Results) -> tuple[str, str]:
     """As the ball's time as a body of revolution, on meshes of tetrahedra."""
-    return _over_meshes(results, SOLID_MAP, results.table(SOLID_MAP), f"(The neo-Hookean ball in three dimensions, another law, gives "
-                                                                      f"{both_times(results.summary('ball'))}.)",
-                        [], [results.run("ball")])
+    return _over_meshes(SOLID_MAP, results.table(SOLID_MAP), "(The neo-Hookean ball in three dimensions, another law, gives "
+                        f"{both_times(results.summary('ball'))}.)")
 
 
-def _over_meshes(results: Results, name: str, every: pd.DataFrame, beside: str, figures: list, runs: list) -> Finding:
+def _over_meshes(name: str, every: pd.DataFrame, beside: str) -> tuple[str, str]:
     """A printed time over a map on several meshes, from the rows `every` of it, by the rule of ball_time()."""
     rows, meshes, time = every[every.exit == 0], every.mesh_size.unique(), loaded(name).figure["level"]
     whole = _whole(rows)
@@ -78,12 +80,10 @@ def _over_meshes(results: Results, name: str, every: pd.DataFrame, beside: str, 
         f"{1e3 * row.contact_time:.3f} ms on {1e3 * row.mesh_size:g} mm ({when(row.ellipticity_lost_time, 'ellipticity lost')}, "
         f"{when(row.breakdown_time, 'det F ≤ 0')})"
         for row in rows[(rows.nu == nearest.nu) & (rows.penalty == nearest.penalty)].itertuples())
-    return Finding(AGREES if independent else PARTLY if met else DIFFERS,
-                   f"of {len(rows)} runs over ν, k and mesh {len(rows) - len(whole)} invert elements (det F ≤ 0). Between the others it is met on "
-                   f"{_where(met)}; with ellipticity kept "
-                   f"on {_where(sound)}; so on all meshes for "
-                   f"{'ν = ' + ', '.join(f'{nu:g}' for nu in independent) if independent else 'no ν and k: the number is not mesh-independent'}"
-                   f"{same}. {beside}", [*results.drawn(name), *figures], [*results.sweep_runs(name), *runs])
+    everywhere = "ν = " + ", ".join(f"{nu:g}" for nu in independent) if independent else "no ν and k: the number is not mesh-independent"
+    return graded(bool(independent), bool(met)), (
+        f"of {len(rows)} runs over ν, k and mesh {len(rows) - len(whole)} invert elements (det F ≤ 0). Between the others it is met on "
+        f"{_where(met)}; with ellipticity kept on {_where(sound)}; so on all meshes for {everywhere}{same}. {beside}")
 
 
 def _whole(rows: pd.DataFrame) -> pd.DataFrame:
@@ -94,7 +94,8 @@ def _whole(rows: pd.DataFrame) -> pd.DataFrame:
 def _met(rows: pd.DataFrame, name: str) -> dict[tuple[float, float], Ranges]:
     """For each (mesh size, ν) of a map that meets the paper's contact time, the ranges of k that do."""
     figure = loaded(name).figure
-    return {(h, nu): ranges for h, group in rows.groupby("mesh_size", sort=False) for nu, ranges in sweep_figures.level_set(figure, group).items() if ranges}
+    return {(h, nu): ranges for h, group in rows.groupby("mesh_size", sort=False)
+            for nu, ranges in sweep_figures.level_set(figure, group).items() if ranges}
 
 
 def _together(each: list[Ranges]) -> bool:
@@ -119,29 +120,32 @@ def _each(met: dict[float, Ranges]) -> str:
 
 # ---- all numbers, all maps
 
-@states("Sections 3.1, 3.3", "one material and one contact for all: with the same ν and k 4.8 ms of the disc, 4.5 ms of the oblique disc, 6.03 ms of the ball")
-def at_once(results: Results) -> Finding:
-    """On the ν that all maps have, with SVK, the angle from the plane or the normal. A number is met where it lies, to half a unit of its last digit, within
-    the error bar of the runs, or, on coarse meshes, between them. Agrees where some (ν, k) meets all three with ellipticity kept; partly where one does
-    whatever is lost; else not."""
+@states("Sections 3.1, 3.3", "one material and one contact for all: with the same ν and k 4.8 ms of the disc, 4.5 ms of the oblique disc, "
+        "6.03 ms of the ball", " ".join(EVERY))
+def at_once(results: Results) -> tuple[str, str]:
+    """On the ν that all maps have, with SVK, the angle from the plane or the normal. A number is met where it lies, to half a unit of its
+    last digit, within the error bar of the runs, or, on coarse meshes, between them. Agrees where some (ν, k) meets all three with
+    ellipticity kept; partly where one does whatever is lost; else not."""
     whole, sound = ({angle: _joint(results, angle, kept) for angle in (ANGLE, OTHER)} for kept in (False, True))
     met, kept = ({angle: {each.nu: each.met for each in maps if each.met} for angle, maps in found.items()} for found in (whole, sound))
     words = []
     for angle, maps in whole.items():
         nearest = min(maps, key=lambda each: each.miss, default=None)
         words.append(f"oblique at {angle:g}°: " + (f"all three for {_each(met[angle])}" if met[angle] else "no ν and k for all three") + (
-            f"; nearest ν = {nearest.nu:g}, k = {nearest.k:.2g} Pa/m: {', '.join(nearest.times)}, off by up to {100 * nearest.miss:.1f} %" if nearest else ""))
+            f"; nearest ν = {nearest.nu:g}, k = {nearest.k:.2g} Pa/m: {', '.join(nearest.times)}, off by up to {100 * nearest.miss:.1f} %"
+            if nearest else ""))
     each = {name: _alone(results, name, ANGLE) for name in MAPS}
     alone = ". ".join(f"{name}: {_each(found) or 'nowhere'}" for name, found in each.items())
-    pairs = ". ".join(f"{first} and {second}: {_each(_common(each[first], each[second])) or 'nowhere'}" for first, second in combinations(MAPS, 2))
-    return Finding(AGREES if any(kept.values()) else PARTLY if any(met.values()) else DIFFERS, f"{'. '.join(words)}. Two at once, oblique at {ANGLE:g}° "
-                                                                                               f"[Pa/m]: {pairs}. Each alone: {alone}.",
-                   [picture for name in EVERY for picture in results.drawn(name)], [run for name in EVERY for run in results.sweep_runs(name)])
+    pairs = ". ".join(f"{first} and {second}: {_each(_common(each[first], each[second])) or 'nowhere'}"
+                      for first, second in combinations(MAPS, 2))
+    return graded(any(kept.values()), any(met.values())), (
+        f"{'. '.join(words)}. Two at once, oblique at {ANGLE:g}° [Pa/m]: {pairs}. Each alone: {alone}.")
 
 
 @dataclass(frozen=True)
 class Together:
-    """Of a ν of all maps: the ranges of k [Pa/m] that meet all numbers; the k that misses them by least, by what share of one, and the times there."""
+    """Of a ν of all maps: the ranges of k [Pa/m] that meet all numbers; the k that misses them by least, by what share of one, and the
+    times there."""
 
     nu: float
     met: Ranges
@@ -177,7 +181,8 @@ def _alone(results: Results, name: str, angle: float) -> dict[float, Ranges]:
 
 def _common(one: dict[float, Ranges], other: dict[float, Ranges]) -> dict[float, Ranges]:
     """What two numbers share of their ranges of k, for each ν."""
-    found = {nu: [(max(a, c), min(b, d)) for (a, b), (c, d) in product(one[nu], other[nu]) if max(a, c) <= min(b, d)] for nu in one if nu in other}
+    found = {nu: [(max(a, c), min(b, d)) for (a, b), (c, d) in product(one[nu], other[nu]) if max(a, c) <= min(b, d)] for nu in one
+             if nu in other}
     return {nu: ranges for nu, ranges in found.items() if ranges}
 
 
@@ -193,8 +198,8 @@ def _bounds(k: np.ndarray, each: pd.DataFrame) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _between(results: Results, number: str, angle: float, kept: bool) -> dict[float, pd.DataFrame]:
-    """For each ν of the maps of a number with two k or more: low and high, the smallest and the largest contact time of the runs on all meshes, error bars
-    included, by k."""
+    """For each ν of the maps of a number with two k or more: low and high, the smallest and the largest contact time of the runs on all
+    meshes, error bars included, by k."""
     parts = []
     for name in MAPS[number]:
         rows = finished(results, name)
@@ -214,28 +219,23 @@ def _ranges(k: np.ndarray, miss: np.ndarray) -> Ranges:
     return [(float(k[first]), float(k[last - 1])) for first, last in edges]
 
 
-@states("Section 3.3", "the contact time is always larger of the ball when the laws are similar")
-def always_longer(results: Results) -> Finding:
-    """With a law for both: where the ball's is longer than the disc's at 8 m/s, by contact_time and by the time above 1 % of the peak force; with SVK for every
-    ν and k that the maps of both have, too."""
-    def of(law: str) -> tuple[bool, str]:
-        disc, ball = (results.summary(name) for name in ((DISC, BALL) if law == "svk" else (DISC_NEO, BALL_NEO)))
-        longer = all(ball[key] > disc[key] for key in ("contact_time", "thresholded_contact_time"))
-        words = f"ball {both_times(ball)}, disc {both_times(disc)}"
-        if law != "svk":
-            return longer, words
-        least = _least_excess(results)
-        return longer and bool(least) and min(least.values()) > 0, words + "; over the maps, at least " + ", ".join(
-            f"{1e3 * excess:+.2f} ms (ν = {nu:g})" for nu, excess in least.items())
-    verdict, words = of_both(of)
-    lost = [results.summary(name)["ellipticity_lost_time"] for name in (DISC, BALL)]
-    maps, runs = (DISC_MAP, BALL_MAP, SOLID_MAP), (DISC, BALL, DISC_NEO, BALL_NEO)
-    return Finding(verdict, f"{words}.", [picture for name in maps for picture in results.drawn(name)],
-                   [run for name in maps for run in results.sweep_runs(name)] + [results.run(name) for name in runs], lost)
+@states("Section 3.3", "the contact time is always larger of the ball when the laws are similar", laws="{}.",
+        runs=f"{DISC_MAP} {BALL_MAP} {SOLID_MAP} {DISC} {BALL} {DISC_NEO} {BALL_NEO}", lost=lost(DISC, BALL))
+def always_longer(results: Results, law: str) -> tuple[bool, str]:
+    """With a law for both: where the ball's is longer than the disc's at 8 m/s, by contact_time and by the time above 1 % of the peak
+    force; with SVK for every ν and k that the maps of both have, too."""
+    disc, ball = (results.summary(name) for name in ((DISC, BALL) if law == "svk" else (DISC_NEO, BALL_NEO)))
+    longer = all(ball[key] > disc[key] for key in ("contact_time", "thresholded_contact_time"))
+    words = f"ball {both_times(ball)}, disc {both_times(disc)}"
+    if law != "svk":
+        return longer, words
+    least = _least_excess(results)
+    return longer and bool(least) and min(least.values()) > 0, words + "; over the maps, at least " + ", ".join(
+        f"{1e3 * excess:+.2f} ms (ν = {nu:g})" for nu, excess in least.items())
 
 
 def _least_excess(results: Results) -> dict[float, float]:
-    """For each ν of the maps of disc and ball by how much the ball's contact is longer at least, over their k, error bars and meshes [s]."""
+    """For each ν of the maps of disc and ball by how much [s] the ball's contact is longer at least, over k, error bars and meshes."""
     disc, ball = (_between(results, name, ANGLE, False) for name in ("disc", "ball"))
     found = {}
     for nu in sorted(set(disc) & set(ball)):

@@ -1,5 +1,5 @@
-"""Figures of a run of several bodies, or of obstacles of one's own: energies of each body and of all (figures 9a, 9b of the paper), velocities,
-forces, and deformed shapes among the obstacles."""
+"""Figures of a run of several bodies, or of obstacles of one's own: energies of each body and of all (figures 9a, 9b of the paper),
+velocities, forces, and deformed shapes among the obstacles."""
 
 from pathlib import Path
 from textwrap import wrap
@@ -13,8 +13,8 @@ from ..scenes import obstacles
 from ..scenes.obstacles import Obstacle
 from ..input.parameters import Value
 from ..output.results import body_names, suffixes
-from .figures import (BLACK, BLUE, GREEN, GREY, ORANGE, ORIGIN, PURPLE, Body, as_written, balance_error, deformed, instants, is_half, least, material,
-                      over_time, per_metre, side_by_side)
+from .figures import (BLACK, BLUE, GREEN, GREY, ORANGE, ORIGIN, PURPLE, Body, as_written, balance_error, deformed, instants, is_half,
+                      least, material, over_time, per_metre, side_by_side)
 
 ALONE = ("disc-plane", "ball-axisymmetric", "ball-plane")     # scripts of one body on the plane
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, "#56b4e9", "#e69f00")    # of bodies
@@ -103,11 +103,13 @@ def energies(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fig
         together.plot(t, history["elastic"], color=ORANGE, linewidth=2.3, label="elastic")
     total, words = history["kinetic"] + history["elastic"] + history["contact"], "total"
     lines = {"contact": (history["contact"], "#56b4e9")}
-    for name, column, words_of_it, sign in (("lost to friction", "friction_work", "+ lost", 1), ("external work", "external_work", "− work", -1)):
+    for name, column, words_of_it, sign in (("lost to friction", "friction_work", "+ lost", 1),
+                                            ("external work", "external_work", "− work", -1)):
         if history[column].any():
             lines[name] = history[column], {"friction_work": "#d4a017", "external_work": "#888888"}[column]
             total, words = total + sign * history[column], f"{words} {words_of_it}"
-    largest = max(np.abs(values).max() for values in (total, *(values for values, _ in lines.values()), history["kinetic"], history["elastic"]))
+    largest = max(np.abs(values).max() for values in (total, *(values for values, _ in lines.values()), history["kinetic"],
+                                                      history["elastic"]))
     for k, (name, (values, colour)) in enumerate(lines.items()):          # thinner and thinner, so that one on another is seen
         together.plot(t, values, color=colour, linewidth=1.8 - 0.4 * k, label=name + least(values, largest))
     together.plot(t, total, color=BLACK, linestyle="--", linewidth=1.0, label=words)
@@ -125,7 +127,8 @@ def energies(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fig
 def velocities(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
     """Velocities [m/s] of the centres of mass and spins [rad/s], a panel a component, a line a body."""
     bodies = columns_of(history, scene)
-    components = {**{f"v{axis}": f"velocity along {axis} [m/s]" for axis in "xyz"}, "spin_x": "spin about x [rad/s]", "spin_y": "spin about y [rad/s]", "spin": "spin [rad/s]"}
+    components = {**{f"v{axis}": f"velocity along {axis} [m/s]" for axis in "xyz"}, "spin_x": "spin about x [rad/s]",
+                  "spin_y": "spin about y [rad/s]", "spin": "spin [rad/s]"}
     moving = [name for name in components if any(np.any(history.get(name + of, 0)) for of in bodies.values())] or ["vy"]
     figure, grid = panels(len(moving), 2.8)
     for axes, name in zip(grid, moving):
@@ -145,7 +148,8 @@ def forces(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figur
     lines = {f"normal force {unit}": {"": "normal_force"}}
     if history["friction_force"].any():
         lines[f"friction force {unit}"] = {"": "friction_force"}
-    own = {f"force along {component} {unit}": {name: f"force_{component}{of}" for name, of in bodies.items()} for component in "xyz" if len(bodies) > 1}
+    own = {f"force along {component} {unit}": {name: f"force_{component}{of}" for name, of in bodies.items()} for component in "xyz"
+           if len(bodies) > 1}
     own = {words: columns for words, columns in own.items() if any(np.any(history.get(column, 0)) for column in columns.values())}
     if own and len(bodies) == 2 and not obstacles_of(scene):     # the normal force is then that on each
         lines = dict(list(lines.items())[1:])
@@ -171,7 +175,8 @@ def shapes(series: list[tuple[float, Path]], scene: dict[str, Value]) -> plt.Fig
     found = [deformed(vtu.read(path), is_half(scene)) for _, path in picked]
     left, right, low, high = view = limits(found)
     rigid, columns = obstacles_of(scene), 3 if right - left < 3 * (high - low) else 2
-    return side_by_side(found, [t for t, _ in picked], view, min(columns, len(found)), lambda axes, t, place: draw_obstacles(axes, rigid, view, t, place))
+    return side_by_side(found, [t for t, _ in picked], view, min(columns, len(found)),
+                        lambda axes, t, place: draw_obstacles(axes, rigid, view, t, place))
 
 
 def obstacles_of(scene: dict[str, Value]) -> list[Obstacle]:
@@ -187,7 +192,8 @@ def limits(found: list[Body]) -> tuple[float, float, float, float]:
     return left - margin, right + margin, bottom - margin, top + margin
 
 
-def draw_obstacles(axes: plt.Axes, rigid: list[Obstacle], view: tuple[float, float, float, float], t: float, place: np.ndarray = ORIGIN) -> list:
+def draw_obstacles(axes: plt.Axes, rigid: list[Obstacle], view: tuple[float, float, float, float], t: float,
+                   place: np.ndarray = ORIGIN) -> list:
     """The obstacles where they are at time t [s], grey, within the limits `view` [m], drawn at a place [m]; what was drawn."""
     left, right, low, high = view
     step = max(right - left, high - low) / GRID
@@ -199,4 +205,5 @@ def draw_obstacles(axes: plt.Axes, rigid: list[Obstacle], view: tuple[float, flo
     if not gap.min() < 0 < gap.max():
         return []
     x, y = x + place[0], y + place[1]
-    return [axes.contourf(x, y, gap, levels=[gap.min(), 0], colors=["#d0d0d0"]), axes.contour(x, y, gap, levels=[0], colors=[BLACK], linewidths=0.8)]
+    return [axes.contourf(x, y, gap, levels=[gap.min(), 0], colors=["#d0d0d0"]),
+            axes.contour(x, y, gap, levels=[0], colors=[BLACK], linewidths=0.8)]

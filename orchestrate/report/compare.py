@@ -49,8 +49,8 @@ def main(argv: list[str]) -> int:
 def draw(results: dict[str, RunResult], path: Path) -> None:
     """Normal force, friction force, total energy and velocities (of each body) over time, a colour a run; friction only where there is any.
 
-    Totals, which often lie on one another, are dashes of the runs in turn. Of discs, per metre, and balls together: the acceleration of the centre of mass (figure 11), of several bodies the first one's, for the force, energies over
-    that at the start.
+    Totals, which often lie on one another, are dashes of the runs in turn. Of discs, per metre, and balls together: the acceleration of the
+    centre of mass (figure 11), of several bodies the first one's, for the force, energies over that at the start.
     """
     mixed = len({per_metre(result.scene) for result in results.values()}) > 1
     rubs = any(result.history["friction_force"].any() for result in results.values())
@@ -65,7 +65,8 @@ def draw(results: dict[str, RunResult], path: Path) -> None:
                        label=f"{name}: {_material(used)}{result.summary['dofs']} dofs{_doubts(result.summary)}")
             _contact(force, result, colour)
             drag.plot(t, 1e-3 * h["friction_force"] / heavy if rubs else h["max_penetration"] * 1e3, color=colour)
-            energy.plot(t, (h["kinetic"] + h["elastic"] + h["contact"]) / start, color=colour, linewidth=2.4, linestyle=(2 * k, (2, 2 * len(results) - 2)))
+            energy.plot(t, (h["kinetic"] + h["elastic"] + h["contact"]) / start, color=colour, linewidth=2.4,
+                        linestyle=(2 * k, (2, 2 * len(results) - 2)))
             energy.plot(t, h["elastic"] / start, color=colour, linewidth=0.9)
             for of, body in zip(suffixes(h), body_names(used)):
                 if of and colour == BLUE:                            # once
@@ -77,7 +78,8 @@ def draw(results: dict[str, RunResult], path: Path) -> None:
         for axes in (drag, velocity):
             axes.axhline(0, color=GREY, linewidth=0.6)
         force.set(ylabel="normal acceleration [10³ m/s²]" if mixed else f"normal force [kN{per}]", ylim=(0, None))
-        drag.set_ylabel(("acceleration by friction [10³ m/s²]" if mixed else f"friction force [kN{per}]") if rubs else "largest penetration [mm]")
+        drag.set_ylabel(("acceleration by friction [10³ m/s²]" if mixed else f"friction force [kN{per}]") if rubs
+                        else "largest penetration [mm]")
         energy.set(ylabel="energy over that at the start" if mixed else f"energy [J{per}]", ylim=(0, None), xlabel="time [ms]")
         stated = any(each.scene.get("law") == "svk" and numbers_of_the_paper(each.scene, "contact_time") for each in results.values())
         _key(force, {"end of the contact": ":", "by the paper": "-."} if stated else {"end of the contact": ":"})
@@ -94,7 +96,8 @@ def _contact(axes: plt.Axes, result: RunResult, colour: str) -> None:
     if not (when := touched(result.summary)):
         return
     axes.axvline(1e3 * when[1], color=colour, linestyle=":", linewidth=0.9)
-    for _, seconds, _ in numbers_of_the_paper(result.scene, "contact_time") if result.scene.get("law") == "svk" else []:   # the law of all of the paper's
+    # the law of all of the paper's
+    for _, seconds, _ in numbers_of_the_paper(result.scene, "contact_time") if result.scene.get("law") == "svk" else []:
         axes.axvline(1e3 * (when[0] + seconds), color=colour, linestyle="-.", linewidth=0.9)
 
 
@@ -119,7 +122,8 @@ def _material(used: dict) -> str:
 
 def _doubts(summary: dict) -> str:
     """The names of the warnings of a run."""
-    return "".join(f"\n    ! {', '.join(dict.fromkeys(sentence.partition(':')[0] for sentence in summary['warnings']))}" if summary.get("warnings") else "")
+    return "".join(f"\n    ! {', '.join(dict.fromkeys(sentence.partition(':')[0] for sentence in summary['warnings']))}"
+                   if summary.get("warnings") else "")
 
 
 def _key(axes: plt.Axes, lines: dict[str, str]) -> None:

@@ -1,4 +1,4 @@
-"""The contact of a run along the outlines of its bodies: pressure at instants and over time, and with friction where it sticks and slides."""
+"""The contact of a run along the outlines of its bodies: pressure at instants and over time, with friction where it sticks and slides."""
 
 from pathlib import Path
 
@@ -24,12 +24,14 @@ COLUMNS = ["t", "body", "partner", "s", "X", "Y", "x", "y", "weight", "pressure"
 
 
 def read(folder: Path, beside: bool = False) -> np.recarray:
-    """fields/contact.csv of the run in `folder`: a row for every point of an outline that bears load, at the instants of the snapshots; also for those `beside`,
-    where only the projected pressure is not 0.
+    """fields/contact.csv of the run in `folder`: a row for every point of an outline that bears load, at the instants of the snapshots;
+    also for those `beside`, where only the projected pressure is not 0.
 
-    t [s]; body (from 1); partner (k: body k, -k: obstacle k); s: along the body's outline from where it was first touched, the body to the left;
-    X, Y, x, y: reference and present place; weight: share of the outline [m]; pressure (10), shear (11) [Pa] per reference length, means over the
-    step that ends at t; slip_velocity [m/s]; slides (1 or 0); projected_pressure [Pa]: the pressure as the outline's own functions have it, with the same resultant and moment. In three dimensions also Z, z, shear_z, slip_velocity_z; weight [m2]. Unreadable where it is not such a table.
+    t [s]; body (from 1); partner (k: body k, -k: obstacle k); s: along the body's outline from where it was first touched, the body to the
+    left; X, Y, x, y: reference and present place; weight: share of the outline [m]; pressure (10), shear (11) [Pa] per reference length,
+    means over the step that ends at t; slip_velocity [m/s]; slides (1 or 0); projected_pressure [Pa]: the pressure as the outline's own
+    functions have it, with the same resultant and moment. In three dimensions also Z, z, shear_z, slip_velocity_z; weight [m2]. Unreadable
+    where it is not such a table.
     """
     table = read_table(folder / "fields/contact.csv", COLUMNS)
     return table if beside else table[table.pressure > 0]
@@ -37,12 +39,14 @@ def read(folder: Path, beside: bool = False) -> np.recarray:
 
 def draw(table: np.recarray, names: list[str], half: bool, free: np.ndarray, ball: dict[str, Value] | None = None, symmetry: str = "full",
          history: dict[str, np.ndarray] | None = None) -> plt.Figure | None:
-    """A row of panels a body: pressure over the outline at some instants, over outline and time, with friction where it sticks and slides, and with the
-    `history` half-width and largest pressure; None without contact. `table`: also of the points beside. `free`: times [s] at which nothing is touched.
+    """A row of panels a body: pressure over the outline at some instants, over outline and time, with friction where it sticks and slides,
+    and with the `history` half-width and largest pressure; None without contact. `table`: also of the points beside. `free`: times [s] at
+    which nothing is touched.
 
-    Half a body is drawn with its mirror image. `ball`: the scene where the body is a ball that nothing turns: all is drawn over the distance from
-    its axis. Of other bodies in three dimensions: of one the points nearest to the plane z = 0, of several all over the distance from the first touch;
-    below them the patch at some instants. `symmetry` (quarter, half, full): what of a body in three dimensions was computed."""
+    Half a body is drawn with its mirror image. `ball`: the scene where the body is a ball that nothing turns: all is drawn over the
+    distance from its axis. Of other bodies in three dimensions: of one the points nearest to the plane z = 0, of several all over the
+    distance from the first touch; below them the patch at some instants. `symmetry` (quarter, half, full): what of a body in three
+    dimensions was computed."""
     around, table = table, table[table.pressure > 0]
     if not len(table):
         return None
@@ -63,7 +67,8 @@ def draw(table: np.recarray, names: list[str], half: bool, free: np.ndarray, bal
         else:
             _profiles(panels["profiles"], own if solid else _section(around[around.body == body], half)[0], words, "" if solid else "-")
         times, places, pressure = _over_time(own, "pressure", instants)
-        picture = panels["pressure"].pcolormesh(1e3 * times, 1e3 * places, 1e-6 * pressure.T, shading="nearest", cmap="viridis", vmin=0, rasterized=True)
+        picture = panels["pressure"].pcolormesh(1e3 * times, 1e3 * places, 1e-6 * pressure.T, shading="nearest", cmap="viridis", vmin=0,
+                                                rasterized=True)
         upper.colorbar(picture, ax=panels["pressure"], label=PRESSURE)
         if rubs:
             _slip(panels["slip"], own, instants, states)
@@ -83,20 +88,22 @@ def _columns(**columns: np.ndarray) -> np.recarray:
 
 
 def _section(points: np.recarray, half: bool) -> tuple[np.recarray, str, dict[str, str]]:
-    """Along the outline: t, s [m], pressure, projected_pressure, state (SLIP: -1, 0, 1); of a body in three dimensions near the plane z = 0."""
+    """Along the outline: t, s [m], pressure, projected_pressure, state (SLIP: -1, 0, 1); in three dimensions near the plane z = 0."""
     if "Z" in points.dtype.names:
         away = np.abs(points.Z)
         points = points[away <= max(0.15 * away.max(), away.min())]
     state, sides = np.where(points.slides > 0, np.sign(points.slip_velocity), 0.0), (1, -1) if half else (1,)
-    own = np.concatenate([_columns(t=points.t, s=side * points.s, pressure=points.pressure, projected_pressure=points.projected_pressure, state=side * state)
+    own = np.concatenate([_columns(t=points.t, s=side * points.s, pressure=points.pressure, projected_pressure=points.projected_pressure,
+                                   state=side * state)
                           for side in sides]).view(np.recarray)
-    once = np.unique(np.stack([own.t, own.s]), axis=1, return_index=True)[1]      # twice only on the axis, and where an outline meets itself
+    # twice only on the axis, and where an outline meets itself
+    once = np.unique(np.stack([own.t, own.s]), axis=1, return_index=True)[1]
     return own[once], ALONG, SLIP
 
 
 def _radial(points: np.recarray, ball: dict[str, Value] | None) -> tuple[np.recarray, str, dict[str, str]]:
-    """Over the distance from the axis, of a ball, or from the first touch: t, s [m], pressure, state. Of a surface means over rings: the pressure over all of
-    its points that are ever under load; it slides where most of the load does."""
+    """Over the distance from the axis, of a ball, or from the first touch: t, s [m], pressure, state. Of a surface means over rings: the
+    pressure over all of its points that are ever under load; it slides where most of the load does."""
     solid = "Z" in points.dtype.names
     if ball:
         away, words, states = np.hypot(points.X, points.Z) if solid else points.X, "distance from the axis", RADIAL
@@ -124,7 +131,8 @@ def _history(axes: plt.Axes, history: dict[str, np.ndarray], of: str) -> None:
     """Half-width [mm] and, on the right, largest pressure [MPa] of the contact over time; in the flight neither."""
     touches = history[f"contact_half_width{of}"] > 0
     other = axes.twinx()
-    for where, name, scale, colour, label in ((axes, "contact_half_width", 1e3, WIDTH, "half-width [mm]"), (other, "max_pressure", 1e-6, LOAD, "largest pressure [MPa]")):
+    for where, name, scale, colour, label in ((axes, "contact_half_width", 1e3, WIDTH, "half-width [mm]"),
+                                              (other, "max_pressure", 1e-6, LOAD, "largest pressure [MPa]")):
         where.plot(1e3 * history["t"], np.where(touches, scale * history[name + of], np.nan), color=colour, linewidth=1)
         where.set_ylim(0, None)
         where.set_ylabel(label, color=colour)
@@ -134,8 +142,8 @@ def _history(axes: plt.Axes, history: dict[str, np.ndarray], of: str) -> None:
 
 
 def _maps(figure: plt.Figure, points: np.recarray, rubs: bool, symmetry: str, several: bool) -> None:
-    """The points under load at some instants, each a square of its area: coloured by pressure and, below, where they stick and slide. Of one body on
-    the plane y = 0 at their places x, z, else in the reference along the two main directions of all of them."""
+    """The points under load at some instants, each a square of its area: coloured by pressure and, below, where they stick and slide. Of
+    one body on the plane y = 0 at their places x, z, else in the reference along the two main directions of all of them."""
     mirrored = {"quarter": ("X", "Z"), "half": ("Z",)}.get(symmetry, ())
     columns = {name: points[name] for name in ("t", "X", "Y", "Z", "x", "y", "z", "pressure")}
     columns["area"] = points.weight / 2 ** len(mirrored)
@@ -156,10 +164,12 @@ def _maps(figure: plt.Figure, points: np.recarray, rubs: bool, symmetry: str, se
     low, high = (1e3 * np.array([end(points.across), end(points.up)]) for end in (np.min, np.max))
     low, high = low - 0.04 * (high - low), high + 0.04 * (high - low)
     scale = 72 * min(5.2 / len(shown) / (high - low)[0], 1.1 / (high - low)[1])                # points a mm
-    for row, (column, colours) in zip(grid, (("pressure", dict(cmap="viridis", vmin=0, vmax=1e-6 * points.pressure.max())), ("state", _colours(states)))):
+    for row, (column, colours) in zip(grid, (("pressure", dict(cmap="viridis", vmin=0, vmax=1e-6 * points.pressure.max())),
+                                             ("state", _colours(states)))):
         for axes, (t, now, _) in zip(row, shown):
             values = 1e-6 * now.pressure if column == "pressure" else now.state
-            picture = axes.scatter(1e3 * now.across, 1e3 * now.up, c=values, s=np.maximum(1e6 * now.area * scale**2, 1.5), marker="s", linewidths=0, **colours)
+            picture = axes.scatter(1e3 * now.across, 1e3 * now.up, c=values, s=np.maximum(1e6 * now.area * scale**2, 1.5), marker="s",
+                                   linewidths=0, **colours)
             axes.set(aspect="equal", xlim=(low[0], high[0]), ylim=(low[1], high[1]))
             axes.tick_params(labelsize=7)
             if row is grid[0]:
@@ -174,7 +184,7 @@ def _maps(figure: plt.Figure, points: np.recarray, rubs: bool, symmetry: str, se
 
 
 def _in_plane(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Of places (n, 3) [m] the distances from their centre along the two directions in which they spread most, the second the one nearer to z."""
+    """Of places (n, 3) [m] the distances from their centre along the two directions in which they spread most, the second nearer to z."""
     places = places - places.mean(axis=0)
     two = np.linalg.svd(places, full_matrices=False)[2][:2]
     two = two[np.argsort(np.abs(two[:, 2]))]
@@ -190,20 +200,21 @@ def _instants(table: np.recarray, most: int = INSTANTS) -> list[tuple[float, np.
 
 
 def _profiles(axes: plt.Axes, own: np.recarray, words: str, line: str) -> None:
-    """Pressure [MPa] over s [mm], which is the distance in these words, at up to INSTANTS times: along a line its projection on the outline's own
-    functions, where it is more than nothing; without a line the points."""
+    """Pressure [MPa] over s [mm], which is the distance in these words, at up to INSTANTS times: along a line its projection on the
+    outline's own functions, where it is more than nothing; without a line the points."""
     for t, now, colour in _instants(own):
         now = now[np.argsort(now.s, kind="stable")]
         if line:
             now = now[np.abs(now.projected_pressure) > 0.01 * now.projected_pressure.max()]
-        axes.plot(1e3 * now.s, 1e-6 * (now.projected_pressure if line else now.pressure), color=colour, linestyle=line, marker="" if line else ".", linewidth=1.1,
-                  markersize=2.5, label=f"{1e3 * t:.3g} ms")
+        axes.plot(1e3 * now.s, 1e-6 * (now.projected_pressure if line else now.pressure), color=colour, linestyle=line,
+                  marker="" if line else ".", linewidth=1.1, markersize=2.5, label=f"{1e3 * t:.3g} ms")
     axes.set(xlabel=f"{words} [mm]", ylabel=PRESSURE, ylim=(0, None))
     axes.legend(**ABOVE)
 
 
 def _over_radius(axes: plt.Axes, table: np.recarray, ball: dict[str, Value]) -> None:
-    """Pressure [MPa] at the points over their present distance [mm] from the axis, at up to INSTANTS times; in a slow impact Hertz' of the same force."""
+    """Pressure [MPa] at the points over their present distance [mm] from the axis, at up to INSTANTS times; in a slow impact Hertz' of the
+    same force."""
     slow = ball["speed"] <= SLOW * np.sqrt(ball["young"] / ball["density"])
     for t, now, colour in _instants(table):
         away = np.hypot(now.x, now.z) if "z" in now.dtype.names else now.x
@@ -218,7 +229,8 @@ def _over_radius(axes: plt.Axes, table: np.recarray, ball: dict[str, Value]) -> 
 
 
 def hertz(force: float, ball: dict[str, Value]) -> tuple[np.ndarray, np.ndarray]:
-    """Radii [m] and Hertz' pressure there [Pa] of a ball that is pressed on a rigid plane by `force` [N]: a^3 = 3 F R / (4 E*), p_0 = 3 F / (2 pi a^2)."""
+    """Radii [m] and Hertz' pressure there [Pa] of a ball that is pressed on a rigid plane by `force` [N]: a^3 = 3 F R / (4 E*), p_0 = 3 F /
+    (2 pi a^2)."""
     stiffness = ball["young"] / (1 - ball["nu"] ** 2)
     a = (3 * force * ball["radius"] / (4 * stiffness)) ** (1 / 3)
     r = a * np.sin(np.linspace(0, np.pi / 2, 60))

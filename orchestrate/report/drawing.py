@@ -21,13 +21,15 @@ def draw(folder: Path, warnings: list[str]) -> list[Path]:
     history, scene = read_history(folder), read_scene(folder)
     scene["touched"] = touched(read_json(folder / "summary.json"))
     if scene["script"] in dimension.SCRIPTS and "body" not in scene:
-        raise Unreadable(f"{folder}: of a run without Python, which keeps neither names of bodies nor obstacles (accepted: a folder of {COMMAND} run)")
+        raise Unreadable(f"{folder}: of a run without Python, which keeps neither names of bodies nor obstacles (accepted: a folder of "
+                         f"{COMMAND} run)")
     snapshots = vtu.series(folder / "fields.pvd")
     target = folder / "figures"
     target.mkdir(exist_ok=True)
     touches, several = history["normal_force"] > 0, bodies.are_several(scene)
     names = body_names(scene) if several else ["body"]
-    contact = Contents({name: column[max(0, int(np.argmax(touches)) - 1):] for name, column in history.items()}, history.path)   # without the flight
+    # without the flight
+    contact = Contents({name: column[max(0, int(np.argmax(touches)) - 1):] for name, column in history.items()}, history.path)
     with plt.rc_context(STYLE):
         if several:
             drawn = bodies.draw(contact, scene, snapshots)
@@ -55,7 +57,8 @@ def draw(folder: Path, warnings: list[str]) -> list[Path]:
 
 
 def title(scene: dict[str, Value]) -> str:
-    """Which body, law, nu, speed, the angle where the impact is oblique, linear elements, and the friction law where there is one; of several bodies each one's."""
+    """Which body, law, nu, speed, the angle where the impact is oblique, linear elements, and the friction law where there is one; of
+    several bodies each one's."""
     if bodies.are_several(scene):
         return bodies.title(scene)
     angle = "" if scene.get("angle", 90) == 90 else f" at {scene['angle']:g}°"

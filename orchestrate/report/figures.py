@@ -1,5 +1,5 @@
-"""What figures have in common, and those of a body on the plane: energies, contact force, velocity of the centre of mass, deformed shapes; with friction also
-the friction force, what slides and sticks, and the flight, as figures 4 to 6 of the paper."""
+"""What figures have in common, and those of a body on the plane: energies, contact force, velocity of the centre of mass, deformed shapes;
+with friction also the friction force, what slides and sticks, and the flight, as figures 4 to 6 of the paper."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -28,20 +28,23 @@ from . import literature
 LAWS = {"svk": "St. Venant–Kirchhoff", "neohookean": "neo-Hookean", "mooney-rivlin": "Mooney–Rivlin"}
 BLUE, ORANGE, GREEN, PURPLE, BLACK, GREY = "#0072b2", "#d55e00", "#009e73", "#aa4499", "#222222", "#999999"
 SMALL = 7.5   # text of legends, of numbers in cells and below figures; all other text has the style's size
-STYLE = {"font.size": 9, "axes.titlesize": 9, "legend.fontsize": SMALL, "figure.titlesize": 9, "axes.spines.top": False, "axes.spines.right": False,
-         "axes.linewidth": 0.8, "lines.linewidth": 1.4, "legend.frameon": False, "figure.dpi": 100, "savefig.dpi": 150,
-         "figure.constrained_layout.use": True, "figure.constrained_layout.w_pad": 0.08,
-         "text.hinting": "none", "axes.titley": 1.0}     # quicker: outlines of letters as they are; titles stand where nothing is to be made way for
+# hinting, titley: quicker: outlines of letters as they are; titles stand where nothing is to be made way for
+STYLE = {"font.size": 9, "axes.titlesize": 9, "legend.fontsize": SMALL, "figure.titlesize": 9, "axes.spines.top": False,
+         "axes.spines.right": False, "axes.linewidth": 0.8, "lines.linewidth": 1.4, "legend.frameon": False, "figure.dpi": 100,
+         "savefig.dpi": 150, "figure.constrained_layout.use": True, "figure.constrained_layout.w_pad": 0.08,
+         "text.hinting": "none", "axes.titley": 1.0}
 BODY = {"ball-plane": "ball: ", "ball-axisymmetric": "ball as a body of revolution: "}
 STRESS = "von Mises stress [MPa]"
 SHAPES = 9   # small multiples at most
 ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 1), "handlelength": 1.6, "columnspacing": 1.4}   # a legend above its panel
-BELOW = {"loc": "upper center", "bbox_to_anchor": (0.5, 0), "borderaxespad": 5.5}         # one below it, under the numbers and the name of its axis
+# one below it, under the numbers and the name of its axis
+BELOW = {"loc": "upper center", "bbox_to_anchor": (0.5, 0), "borderaxespad": 5.5}
 BARE = {"xticks": [], "yticks": []}                               # of a panel without axes: its ticks would still be laid out
 BAND = "#c8c8c8"   # of what other curves run along
 DASHED = (0, (4, 2))
 ORIGIN = np.zeros(2)
-RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")              # letters, as is all that pictures say: to parse formulas takes as long as to draw one
+# letters, as is all that pictures say: to parse formulas takes as long as to draw one
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 filterwarnings("ignore", "Glyph .* missing from", UserWarning)    # a letter that the font lacks is an empty box in the title
 
 
@@ -102,14 +105,15 @@ def touched(summary: dict) -> tuple[float, float] | None:
 
 
 def over_time(panels: list[plt.Axes], history: dict[str, np.ndarray], scene: dict[str, Value]) -> None:
-    """Limits of the time [ms], which begins at 0 where the run does not begin with a long flight; a dotted line at the end of the contact, where the run goes on
-    after it for longer than between any two touches, with a name in the legend of the first panel."""
+    """Limits of the time [ms], which begins at 0 where the run does not begin with a long flight; a dotted line at the end of the contact,
+    where the run goes on after it for longer than between any two touches, with a name in the legend of the first panel."""
     t, touches = 1e3 * history["t"], history["normal_force"] > 0
     last = 1e3 * scene["touched"][1] if scene.get("touched") else t[-1]
     for axes in panels:
         axes.set_xlim(0 if t[0] < 0.05 * t[-1] else t[0], t[-1])
         if t[-1] - last > np.diff(t[touches]).max(initial=0.0):
-            axes.axvline(last, color=BLACK, linestyle=":", linewidth=0.8, label=f"end of the contact, {last:.4g} ms" if axes is panels[0] else None)
+            axes.axvline(last, color=BLACK, linestyle=":", linewidth=0.8, label=f"end of the contact, {last:.4g} ms"
+                         if axes is panels[0] else None)
 
 
 def published(axes: plt.Axes, scene: dict[str, Value]) -> None:
@@ -121,8 +125,8 @@ def published(axes: plt.Axes, scene: dict[str, Value]) -> None:
 
 
 def numbers_of_the_paper(scene: dict[str, Value], key: str, over: str = "") -> list[tuple[Value | None, float, str]]:
-    """(value of the parameter `over` there, number, words) of every number `key` (summary.json, SI) that the paper prints of this scene, or of it with
-    another value of `over`, or with another law, which the words then say. None of a body of the user's own mesh."""
+    """(value of the parameter `over` there, number, words) of every number `key` (summary.json, SI) that the paper prints of this scene, or
+    of it with another value of `over`, or with another law, which the words then say. None of a body of the user's own mesh."""
     found = []
     for run in literature.published() if not scene.get("mesh") else []:
         when = run["when"]
@@ -136,8 +140,8 @@ def numbers_of_the_paper(scene: dict[str, Value], key: str, over: str = "") -> l
 def _energies(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
     """Energies [J/m] over time, and below them the error of their balance, relative to the energy at the start.
 
-    Figure 6a: where friction takes energy or gravity gives it the total is not constant, the dashed balance is. Lines get thinner, so that one on
-    another is seen, and the total is a band.
+    Figure 6a: where friction takes energy or gravity gives it the total is not constant, the dashed balance is. Lines get thinner, so that
+    one on another is seen, and the total is a band.
     """
     t = 1e3 * history["t"]
     total = history["kinetic"] + history["elastic"] + history["contact"]
@@ -230,7 +234,8 @@ def _friction(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fi
 
 
 def _enlarge(grid: np.ndarray, history: dict[str, np.ndarray], window: tuple[int, int], per: str) -> None:
-    """The right panels of figure 5: the share of the load that slides, and the friction force [kN/m], in a window of rows that is marked on the left."""
+    """The right panels of figure 5: the share of the load that slides, and the friction force [kN/m], in a window of rows that is marked on
+    the left."""
     t, friction = 1e3 * history["t"], 1e-3 * history["friction_force"]
     first, last = window
     inside, (share, zoom) = slice(first, last + 1), grid[:, 1]
@@ -240,7 +245,8 @@ def _enlarge(grid: np.ndarray, history: dict[str, np.ndarray], window: tuple[int
     share.set(title="grey on the left, enlarged", ylabel="load that slides [%]",
               xlim=(t[first], t[last]), ylim=(0, 1.08 * max(1.0, 100 * history["sliding_fraction"][inside].max())))
     zoom.plot(t, friction, color=ORANGE, linewidth=1.0, marker=".", markersize=3)
-    lines = [line.get_ydata()[inside] for line in grid[1, 0].lines if len(line.get_ydata()) == len(t)]     # the limits that the force touches, too
+    # the limits that the force touches, too
+    lines = [line.get_ydata()[inside] for line in grid[1, 0].lines if len(line.get_ydata()) == len(t)]
     near = [values for values in lines if values.mean() * friction[inside].mean() > 0]
     zoom.set(ylabel=f"friction force [kN{per}]", ylim=_around(np.concatenate([friction[inside], *near]), 0.15))
 
@@ -253,8 +259,8 @@ def _around(values: np.ndarray, margin: float) -> tuple[float, float]:
 
 
 def _liveliest(history: dict[str, np.ndarray]) -> tuple[int, int] | None:
-    """First and last row of the twelfth of the contact, or third of its longest interval where that is less, in which the share of the load that slides
-    goes up and down most, weighted with the load; None where it does so by less than a twentieth of the largest load."""
+    """First and last row of the twelfth of the contact, or third of its longest interval where that is less, in which the share of the load
+    that slides goes up and down most, weighted with the load; None where it does so by less than a twentieth of the largest load."""
     touching = np.flatnonzero(history["normal_force"] > 0)
     t, force = history["t"], history["normal_force"]
     intervals = np.split(touching, np.flatnonzero(np.diff(touching) > 1) + 1)
@@ -331,8 +337,7 @@ def _rigid_rolling(t: np.ndarray, scene: dict[str, Value]) -> tuple[np.ndarray, 
 
 @dataclass(frozen=True)
 class Pose:
-    """The body at time t [s]: centre of mass (2,), closed outline (n, 2) and a material diameter (m, 2), marked at its first
-    point, in m."""
+    """The body at time t [s]: centre of mass (2,), closed outline (n, 2) and a material diameter (m, 2), marked at its first point."""
 
     t: float
     centre: np.ndarray
@@ -409,7 +414,8 @@ def _pose(t: float, path: Path, history: dict[str, np.ndarray]) -> Pose:
     moved = snapshot.points + snapshot.fields["displacement"][:, :2]
     sides = snapshot.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
     number = sides @ (len(moved), 1)
-    following = dict(sides[~np.isin(number, sides[:, ::-1] @ (len(moved), 1))].tolist())   # along the boundary: no triangle on the other side
+    # along the boundary: no triangle on the other side
+    following = dict(sides[~np.isin(number, sides[:, ::-1] @ (len(moved), 1))].tolist())
     loop = [next(iter(following))]
     while following[loop[-1]] != loop[0]:
         loop.append(following[loop[-1]])
@@ -457,9 +463,10 @@ def instants(series: list[tuple[float, Path]]) -> list[tuple[float, Path]]:
     return [series[k] for k in np.unique(np.linspace(0, len(series) - 1, SHAPES).round().astype(int))]
 
 
-def side_by_side(found: list["Body"], times: list[float], view: tuple[float, float, float, float], columns: int, behind: Callable) -> plt.Figure:
-    """The bodies in rows, each at its time [s] within the limits `view` [m] with what behind(axes, time, place) draws there, coloured by the von Mises
-    stress [MPa]: in one panel, as each of its own would take as long as its body."""
+def side_by_side(found: list["Body"], times: list[float], view: tuple[float, float, float, float], columns: int,
+                 behind: Callable) -> plt.Figure:
+    """The bodies in rows, each at its time [s] within the limits `view` [m] with what behind(axes, time, place) draws there, coloured by
+    the von Mises stress [MPa]: in one panel, as each of its own would take as long as its body."""
     left, right, low, high = view
     rows, inch = -(-len(found) // columns), (right - left) * columns / 6.5             # [m]
     step = np.array([right - left + 0.1 * inch, high - low + 0.3 * inch])
@@ -490,7 +497,8 @@ def scale_bar(axes: plt.Axes, share: float = 0.25) -> None:
     below = axes.get_xaxis_transform() + ScaledTranslation(0, -9 / 72, axes.figure.dpi_scale_trans)      # [m] along, nine points down
     axes.plot([left, left + size], [0, 0], color=BLACK, linewidth=2.0, solid_capstyle="butt", transform=below, clip_on=False)
     factor, unit = (1e6, "μm") if size < 1e-3 else (1e3, "mm") if size < 1 else (1, "m")
-    axes.text(left + size + share / 16 * (right - left), 0, f"{factor * size:.3g} {unit}", fontsize=SMALL, ha="left", va="center", transform=below)
+    axes.text(left + size + share / 16 * (right - left), 0, f"{factor * size:.3g} {unit}", fontsize=SMALL, ha="left", va="center",
+              transform=below)
     axes.set_xlim(left, right)
 
 
@@ -504,7 +512,8 @@ class Body:
 
 
 def is_half(scene: dict[str, Value]) -> bool:
-    """Whether only the half of the body, or of a meridian plane of it, to the right of its axis was computed; of a body in three dimensions a quarter."""
+    """Whether only the half of the body, or of a meridian plane of it, to the right of its axis was computed; of a body in three dimensions
+    a quarter."""
     script = scene.get("script", "")
     return scene.get("symmetry") == ("quarter" if script in ("ball-plane", "bodies-3d") else "half") or script.endswith("axisymmetric")
 

@@ -9,7 +9,8 @@ from ..output.results import read_table
 
 
 LIGHTEST = 0.01                  # of the largest impulse of a meeting: what is less is the grazing end of an impact
-LEAST_SLIP = 0.05                # of the approach, and of the largest slip of a meeting: of less the restitution along the partner is that of vibrations
+# of the approach, and of the largest slip of a meeting: of less the restitution along the partner is that of vibrations
+LEAST_SLIP = 0.05
 LEAST_APPROACH = 0.01            # of the largest of a meeting: of less, as of a body that lies on its partner, there is no restitution
 HIGHEST = 1.5                    # restitution that is drawn to scale: above it a body that vibrates was pushed off as it hardly approached
 COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"]
@@ -25,15 +26,17 @@ def read(folder: Path) -> np.recarray:
 
 
 def several(table: np.recarray) -> list[np.recarray]:
-    """The impacts of each meeting, where there are more than one of all; intervals with less than LIGHTEST of the largest impulse of their meeting are none."""
-    meetings = [table[(table.body == body) & (table.partner == partner)] for body, partner in np.unique(np.stack([table.body, table.partner], axis=1), axis=0)]
+    """The impacts of each meeting, where there are more than one of all; intervals with less than LIGHTEST of the largest impulse of their
+    meeting are none."""
+    meetings = [table[(table.body == body) & (table.partner == partner)]
+                for body, partner in np.unique(np.stack([table.body, table.partner], axis=1), axis=0)]
     impacts = [rows[rows.impulse >= LIGHTEST * rows.impulse.max()] for rows in meetings]
     return impacts if sum(map(len, impacts)) > 1 else []
 
 
 def draw(table: np.recarray, names: list[str], rigid: list[str]) -> plt.Figure | None:
-    """Restitution, across and along the partner, over the impacts of each meeting, and below them the speeds before each; None where there are not several.
-    `names`: of the bodies; `rigid`: of the obstacles."""
+    """Restitution, across and along the partner, over the impacts of each meeting, and below them the speeds before each; None where there
+    are not several. `names`: of the bodies; `rigid`: of the obstacles."""
     impacts = several(table)
     if not impacts:
         return None
@@ -45,7 +48,8 @@ def draw(table: np.recarray, names: list[str], rigid: list[str]) -> plt.Figure |
         pushed = across > HIGHEST
         top.plot(t, np.where(pushed, np.nan, across), "o-", color=colour, markersize=4, linewidth=0.8, label=f"{label}: across")
         if pushed.any():
-            top.plot(t[pushed], np.full(pushed.sum(), HIGHEST), "^", color=colour, markersize=5, label=f"{label}: across, above {HIGHEST:g}")
+            top.plot(t[pushed], np.full(pushed.sum(), HIGHEST), "^", color=colour, markersize=5,
+                     label=f"{label}: across, above {HIGHEST:g}")
         slips = rows.slip_before > LEAST_SLIP * np.maximum(rows.approach, np.fmax.reduce(rows.slip_before))
         along = np.where(slips, rows.restitution_tangential, np.nan)
         if np.isfinite(along).any():

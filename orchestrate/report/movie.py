@@ -1,5 +1,5 @@
-"""A film of a scene: the deforming body coloured by its stress above the ground, and the contact force over time under it. Of a body in three
-dimensions, where PyVista is installed (solid.py), the body cut open and from below; elsewhere its cut with the plane z = 0."""
+"""A film of a scene: the deforming body coloured by its stress above the ground, and the contact force over time under it. Of a body in
+three dimensions, where PyVista is installed (solid.py), the body cut open and from below; elsewhere its cut with the plane z = 0."""
 
 import argparse
 import logging
@@ -38,7 +38,8 @@ def main(argv: list[str]) -> int:
     parser = argparse.ArgumentParser(prog=f"{COMMAND} movie", description=__doc__)
     parser.add_argument("scene", metavar="SCENE", help="a built-in scene or the path of a TOML file")
     parser.add_argument("--set", metavar="NAME=VALUE", nargs="+", action="extend", default=[], help="set a parameter")
-    parser.add_argument("--frames", metavar="N", type=whole, default=100, help="number of frames (default: 100), and of snapshots of the run")
+    parser.add_argument("--frames", metavar="N", type=whole, default=100,
+                        help="number of frames (default: 100), and of snapshots of the run")
     parser.add_argument("--format", choices=("mp4", "gif"), help="default: mp4 where there is ffmpeg, otherwise gif")
     parser.add_argument("--out", metavar="DIR", type=Path, help="the result folder (default: results/movies/SCENE)")
     options = parser.parse_args(argv)
@@ -82,14 +83,15 @@ def write(film: Path, result: RunResult, frames: int) -> None:
 
 
 class GifWriter(PillowWriter):
-    """One palette for all frames, so that no colour changes from frame to frame: `colours` (at most 256, 3), or those of SAMPLES of the frames."""
+    """One palette for all frames, so that no colour changes: `colours` (at most 256, 3), or those of SAMPLES of the frames."""
 
     colours: np.ndarray | None = None
 
     def finish(self) -> None:
         if self.colours is None:
             sample = self._frames[::max(1, len(self._frames) // SAMPLES)]
-            palette = Image.fromarray(np.vstack([np.asarray(frame.convert("RGB")) for frame in sample])).quantize(256, Image.Quantize.FASTOCTREE)
+            together = Image.fromarray(np.vstack([np.asarray(frame.convert("RGB")) for frame in sample]))
+            palette = together.quantize(256, Image.Quantize.FASTOCTREE)
         else:
             palette = Image.new("P", (1, 1))
             palette.putpalette((255 * self.colours).round().astype(int).ravel().tolist())
@@ -118,7 +120,8 @@ class Motion:
         place = np.interp(t, self.times, np.arange(len(self.times)))
         low, high, share = int(np.floor(place)), int(np.ceil(place)), place % 1
         before, after = self.bodies[low], self.bodies[high]
-        body = Body((1 - share) * before.points + share * after.points, before.triangles, (1 - share) * before.stress + share * after.stress)
+        body = Body((1 - share) * before.points + share * after.points, before.triangles, (1 - share) * before.stress
+                    + share * after.stress)
         if self.diameters is None:
             return body, None
         return body, (1 - share) * self.diameters[low] + share * self.diameters[high]
@@ -228,7 +231,8 @@ class SolidStage(Stage):
             axes = panel.inset_axes((0.5 * k, 0, 0.5, 1))
             axes.set_axis_off()
             self.pictures.append(axes.imshow(image, interpolation="antialiased"))
-            self.figure.colorbar(colours, cax=panel.inset_axes((0.5 * k + 0.08, -0.05, 0.34, 0.03)), label=label, orientation="horizontal", extend="max")
+            self.figure.colorbar(colours, cax=panel.inset_axes((0.5 * k + 0.08, -0.05, 0.34, 0.03)), label=label, orientation="horizontal",
+                                 extend="max")
 
     def _move(self, t: float) -> None:
         for picture, image in zip(self.pictures, self.views.render(self.views.at(t))):

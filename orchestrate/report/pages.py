@@ -1,4 +1,5 @@
-"""Pages of docs/ that say what the scripts say of themselves: docs/results.md, docs/warnings.md, and the table of equations in README.md and docs/method.md."""
+"""Pages of docs/ that say what the scripts say of themselves: docs/results.md, docs/warnings.md, and the table of equations in README.md
+and docs/method.md."""
 
 import argparse
 import re
@@ -9,7 +10,8 @@ from ..freefem.describe import describe_results
 from ..places import COMMAND, ROOT, shown
 
 RESULTS = """# Results
-The folder of a run, or of a direct `FreeFem++ edp/….edp -out DIR`. Written by `python -m orchestrate pages` from what the scripts say of themselves.
+The folder of a run, or of a direct `FreeFem++ edp/….edp -out DIR`. Written by `python -m orchestrate pages` from what the scripts say of \
+themselves.
 
 | file | what it holds |
 |---|---|
@@ -19,24 +21,33 @@ The folder of a run, or of a direct `FreeFem++ edp/….edp -out DIR`. Written by
 | `modes.csv` | with `--set modes=50`: natural modes of the free bodies, frequency [Hz] and energy of each at the end |
 | `summary.json` | the run in numbers; written last, by rename: a folder that has it is finished |
 | `failure.json` | the same for a run that failed; there is then no `summary.json` |
-| `fields.pvd`, `fields/*.vtu` | displacement, velocity, Cauchy stress (XX YY ZZ XY YZ XZ, Pa), von Mises stress, det F (`jacobian`) of every snapshot (`--set fields=50`) |
-| `fields/contact.csv`, `fields/contact.pvd` | with `fields`: a row for every point under load, at up to four times as many instants; the same as points for ParaView |
+| `fields.pvd`, `fields/*.vtu` | displacement, velocity, Cauchy stress (XX YY ZZ XY YZ XZ, Pa), von Mises stress, det F (`jacobian`) of \
+every snapshot (`--set fields=50`) |
+| `fields/contact.csv`, `fields/contact.pvd` | with `fields`: a row for every point under load, at up to four times as many instants; the \
+same as points for ParaView |
 | `figures/*.png` | energies, forces, velocities, shapes, pressure along the contact, and what else the scene has |
-| `log.txt`, `mesh.msh` (`mesh.mesh` of tetrahedra), `scene.dat` | what FreeFem++ printed; the mesh; bodies and obstacles as the scripts of scenes of bodies read them |
+| `log.txt`, `mesh.msh` (`mesh.mesh` of tetrahedra), `scene.dat` | what FreeFem++ printed; the mesh; bodies and obstacles as the scripts \
+of scenes of bodies read them |
 
-Units are those of plane strain, per metre of thickness; of balls and bodies of revolution those of the whole, without the last /m. Of several bodies the columns and numbers without a
-suffix are totals, and each body has its own with `_1`, `_2` … in the scene's order (disc 1, block 2). In scenes of bodies reference places are those of the mesh, in which the bodies
+Units are those of plane strain, per metre of thickness; of balls and bodies of revolution those of the whole, without the last /m. Of \
+several bodies the columns and numbers without a
+suffix are totals, and each body has its own with `_1`, `_2` … in the scene's order (disc 1, block 2). In scenes of bodies reference \
+places are those of the mesh, in which the bodies
 stand beside each other. What is not defined is empty in tables and `null` in the summary.
 
-In ParaView open `fields.pvd`, apply Warp By Vector with `displacement` and colour by `von_mises`; `fields/contact.pvd`, warped likewise and drawn as Point Gaussian, lays pressure and
-slip over it. The sum of `pressure` × `weight` is the normal load of what touches obstacles; between two bodies each has its own points and the force is the mean of both sums.
+In ParaView open `fields.pvd`, apply Warp By Vector with `displacement` and colour by `von_mises`; `fields/contact.pvd`, warped likewise \
+and drawn as Point Gaussian, lays pressure and
+slip over it. The sum of `pressure` × `weight` is the normal load of what touches obstacles; between two bodies each has its own points \
+and the force is the mean of both sums.
 """
 TABLES = (("history.csv", "history", ("columns", "body_columns")), ("summary.json", "summary", ("summary", "body_summary")),
           ("contacts.csv", "contacts", ("contact_columns",)), ("fields/contact.csv", "points", ()))
 SCRIPTS = ("disc-plane", "disc-block", "ball-axisymmetric", "ball-plane")
 WARNINGS = """# Warnings
-A finished run may still need a word: `warnings` in the summary is a list of sentences, printed at the end, in the report, below each figure and as a column in the tables of sweeps and
-studies. Each says what, how much, what it means and what to do. Written by `python -m orchestrate pages` from the sentences themselves, numbers left out (…).
+A finished run may still need a word: `warnings` in the summary is a list of sentences, printed at the end, in the report, below each \
+figure and as a column in the tables of sweeps and
+studies. Each says what, how much, what it means and what to do. Written by `python -m orchestrate pages` from the sentences themselves, \
+numbers left out (…).
 
 | warning | says |
 |---|---|
@@ -63,7 +74,8 @@ def site(folder: Path) -> None:
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     for path in [ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]:
-        text = path.read_text().replace("](docs/", "](").replace("](../README.md", "](index.md").replace("](../CONTRIBUTING.md", "](CONTRIBUTING.md")
+        text = path.read_text().replace("](docs/",
+                                        "](").replace("](../README.md", "](index.md").replace("](../CONTRIBUTING.md", "](CONTRIBUTING.md")
         text = re.sub(r"\[([^]]+)\]\((?:\.\./)*(?:edp|orchestrate|verification|LICENSE|CITATION)[^)]*\)", r"`\1`", text)
         (folder / ("index.md" if path.name == "README.md" else path.name)).write_text(text)
     for path in [*ROOT.glob("*.png"), ROOT / "docs/site.css"]:
@@ -90,7 +102,8 @@ def results() -> str:
         names |= {name: None for name in meanings[table]}
         of_body = {name for each in told for key in lists if key.startswith("body") for name in each[key]}
         text += f"\n## `{file}`\n| name | unit | meaning |\n|---|---|---|\n"
-        text += "".join(f"| `{name}`{' `_1` …' if name in of_body else ''} | {known[name][0]} | {cell(known[name][1])} |\n" for name in names)
+        text += "".join(f"| `{name}`{' `_1` …' if name in of_body else ''} | {known[name][0]} | {cell(known[name][1])} |\n"
+                        for name in names)
     return text
 
 
@@ -102,8 +115,9 @@ def warnings() -> str:
             sentence = _literal(call[1])
             rows.setdefault(sentence.partition(":")[0], []).append(sentence.partition(": ")[2])
     found = "".join(f"| {name} | {cell(' / '.join(dict.fromkeys(words)))} |\n" for name, words in sorted(rows.items()) if words != [""])
-    return WARNINGS + found + ("| estimated errors | of an answer above what was asked, of the exact contact time and the peak force above twice that (`orchestrate/output/estimate.py`) |\n"
-                                "| touches | instead of these, where the two runs of an estimate saw different numbers of intervals of contact |\n")
+    return WARNINGS + found + ("| estimated errors | of an answer above what was asked, of the exact contact time and the peak force above "
+                                "twice that (`orchestrate/output/estimate.py`) |\n| touches | instead of these, where the two runs of an "
+                                "estimate saw different numbers of intervals of contact |\n")
 
 
 def _literal(expression: str) -> str:
@@ -123,7 +137,8 @@ def equations(prefix: str = "") -> str:
                     found.setdefault(match[1], []).append((path, number, line[match.end():].strip()))
     text = "| equation | line | |\n|---|---|---|\n"
     for marks, places in sorted(found.items(), key=lambda each: int(re.search(r"\d+", each[0])[0])):
-        links = ", ".join(f"[{path.parent.name}/{path.name}:{number}]({prefix}{path.relative_to(ROOT)}#L{number})" for path, number, _ in places)
+        links = ", ".join(f"[{path.parent.name}/{path.name}:{number}]({prefix}{path.relative_to(ROOT)}#L{number})"
+                          for path, number, _ in places)
         text += f"| {marks} | {links} | {places[0][2]} |\n"
     return text
 

@@ -11,7 +11,8 @@ from ..output.results import RunResult, body_names, suffixes
 from . import literature
 
 
-LEFT_OUT_AT_ZERO = ("friction_work", "creep_work", "rotation_energy", "impulse_ratio", "rebound_vx", "rebound_vz", "rebound_spin_x", "rebound_spin_y", "rebound_spin", "sliding_time", "sticking_time", "reverse_slip_time", "unsolved_jumps")
+LEFT_OUT_AT_ZERO = ("friction_work", "creep_work", "rotation_energy", "impulse_ratio", "rebound_vx", "rebound_vz", "rebound_spin_x",
+                    "rebound_spin_y", "rebound_spin", "sliding_time", "sticking_time", "reverse_slip_time", "unsolved_jumps")
 
 
 @dataclass(frozen=True)
@@ -83,7 +84,7 @@ def rows(per_metre: bool) -> list[Quantity]:
 
 
 def draw(result: RunResult) -> None:
-    """The figures of the run into its folder, unless they are there; a picture is no reason to lose a run: what hinders it is a line on stderr."""
+    """The figures of the run into its folder, unless they are there; a picture is no reason to lose a run: what hinders it is said."""
     if result.reused and (result.folder / "figures/energies.png").exists():
         return
     try:
@@ -107,7 +108,8 @@ def _scene(scene: dict[str, Value]) -> list[str]:
         words += f", friction {contact['friction_static']:g} static, {contact['friction_dynamic']:g} dynamic"
     if "body" not in scene:
         return [f"{scene['law']}, nu = {scene['nu']:g}, {scene['speed']:g} m/s, angle {scene.get('angle', 90):g} degrees, {words}"]
-    return [*(f"{body['name']}: {body['shape']}, {body['law']}, young = {body['young']:g} Pa, nu = {body['nu']:g}" for body in scene["body"]),
+    return [*(f"{body['name']}: {body['shape']}, {body['law']}, young = {body['young']:g} Pa, nu = {body['nu']:g}"
+              for body in scene["body"]),
             *(f"{one['name']}: rigid {one['kind']}" for one in scene["obstacle"]), words]
 
 
@@ -124,7 +126,8 @@ def report(result: RunResult) -> str:
     summary, scene = result.summary, result.scene
     script = summary["provenance"]["script"]
     provenance = summary["provenance"]
-    known = literature.references(script, scene) if provenance.get("gmsh") or not provenance.get("mesh") else {}   # a mesh of the user's is another body
+    # a mesh of the user's is another body
+    known = literature.references(script, scene) if provenance.get("gmsh") or not provenance.get("mesh") else {}
     place = shown(result.folder)
     lines = [f"{place}: " + ("finished earlier, same scene and code" if result.reused else "finished"), *_scene(scene)]
     quantities = [one for row in rows(dimension.per_metre(script)) for one in _of_bodies(row, scene, summary)]
@@ -138,7 +141,8 @@ def report(result: RunResult) -> str:
         lines += [f"  {'':<{width + 18}}{more}" for more in beside[1:]]
     if stated := summary.get("estimated_error"):
         errors = ", ".join(f"{name.replace('_', ' ')} {100 * value:.2g} %" for name, value in stated.items() if value >= 5e-6)
-        lines.append(f"  {'stated errors':<{width}}{errors}; not in them: what another {' or '.join(summary['estimated_error_excludes']).replace('_', ' ')} would change")
+        lines.append(f"  {'stated errors':<{width}}{errors}; not in them: what another "
+                     f"{' or '.join(summary['estimated_error_excludes']).replace('_', ' ')} would change")
     lines += [f"  {'warning':<{width}}{sentence}" for sentence in summary["warnings"]]
     lines += [f"  {'released':<{width}}{sentence}" for sentence in summary.get("released", [])]
     if summary.get("skipped"):

@@ -1,5 +1,5 @@
-"""Pictures of a body in three dimensions: cut open, with the von Mises stress, and from below, with the contact pressure. They are rendered by
-PyVista, where it is installed (INSTALL). The arrays that they are drawn from need it not."""
+"""Pictures of a body in three dimensions: cut open, with the von Mises stress, and from below, with the contact pressure. They are rendered
+by PyVista, where it is installed (INSTALL). The arrays that they are drawn from need it not."""
 
 import os
 import subprocess
@@ -21,7 +21,8 @@ from .contact import PRESSURE
 from .figures import STRESS
 
 INSTALL = f"{shown(Path(sys.executable))} -m pip install pyvista vtk"
-PROBE = "import pyvista; p = pyvista.Plotter(off_screen=True, window_size=(8, 8)); p.add_mesh(pyvista.Sphere()); p.screenshot(None, return_img=True)"
+PROBE = ("import pyvista; p = pyvista.Plotter(off_screen=True, window_size=(8, 8)); p.add_mesh(pyvista.Sphere()); "
+         "p.screenshot(None, return_img=True)")
 INSTANTS = 4               # of the picture at most
 FINE = 4                   # parts of the side of a face
 PIXELS = (700, 620)        # of a view
@@ -66,13 +67,8 @@ def skin(points: np.ndarray, tetrahedra: np.ndarray) -> Skin:
     faces = tetrahedra[:, vtu.FACES].reshape(-1, 6)
     _, first, count = np.unique(np.sort(faces[:, :3], axis=1), axis=0, return_index=True, return_counts=True)
     faces = faces[first[count == 1]]
-    number = {place: k for k, place in enumerate((i, j) for i in range(FINE + 1) for j in range(FINE + 1 - i))}
-    r, s = np.array(list(number)).T / FINE
-    q = 1 - r - s
-    shape = np.stack([q * (2 * q - 1), r * (2 * r - 1), s * (2 * s - 1), 4 * q * r, 4 * r * s, 4 * s * q], axis=1)
-    pieces = [(number[i, j], number[i + 1, j], number[i, j + 1]) for i, j in number if i + j < FINE]
-    pieces += [(number[i + 1, j], number[i + 1, j + 1], number[i, j + 1]) for i, j in number if i + j < FINE - 1]
-    triangles = (np.array(pieces) + len(shape) * np.arange(len(faces))[:, None, None]).reshape(-1, 3)
+    _, shape, pieces = vtu.lattice(FINE)
+    triangles = (pieces + len(shape) * np.arange(len(faces))[:, None, None]).reshape(-1, 3)
     every = Skin(np.repeat(faces, len(shape), axis=0), np.tile(shape, (len(faces), 1)), triangles)
     rounded = np.round(every.at(points) / (1e-7 * np.ptp(points, axis=0).max())).astype(np.int64)
     _, kept, row = np.unique(rounded, axis=0, return_index=True, return_inverse=True)
@@ -99,7 +95,7 @@ def whole(solid: vtu.Solid, axes: tuple[int, ...]) -> vtu.Solid:
 
 
 def in_front(solid: vtu.Solid, axes: tuple[int, ...]) -> np.ndarray:
-    """Which tetrahedra (t,) are taken away to look into the body: those before the plane z = 0, of a quarter's mirror images one quarter."""
+    """Which tetrahedra (t,) are taken away to look into the body: those before z = 0, of a quarter's mirror images one."""
     middle = solid.points[solid.tetrahedra[:, :4]].mean(axis=1)
     return (middle[:, 2] > 0) & ((middle[:, 0] > 0) | (0 not in axes))
 
@@ -107,9 +103,9 @@ def in_front(solid: vtu.Solid, axes: tuple[int, ...]) -> np.ndarray:
 # ---- the pressure on it
 
 class Pressure:
-    """The pressure (m,) [Pa] at the vertices (m, 3) of a skin in the reference configuration: the mean of the points of contact nearby, weighted with their
-    area A and exp(-(distance/h)^2), h^2 the largest A. Points that bear no load at the time have none, and where points that ever bear some
-    fill less than all of the neighbourhood, of radius 2 h, the rest of it has none: the force is kept."""
+    """The pressure (m,) [Pa] at the vertices (m, 3) of a skin in the reference configuration: the mean of the points of contact nearby,
+    weighted with their area A and exp(-(distance/h)^2), h^2 the largest A. Points that bear no load at the time have none, and where points
+    that ever bear some fill less than all of the neighbourhood, of radius 2 h, the rest of it has none: the force is kept."""
 
     def __init__(self, table: np.recarray, axes: tuple[int, ...], vertices: np.ndarray):
         self.table, self.largest = table, float(table.pressure.max()) if len(table) else 0.0
@@ -148,7 +144,8 @@ class Pressure:
 
 @dataclass(frozen=True)
 class Sight:
-    """What is seen at an instant t [s]: vertices (m, 3) [m] and von Mises stress [MPa] of the cut body, vertices and pressure [MPa] of all of it."""
+    """What is seen at an instant t [s]: vertices (m, 3) [m] and von Mises stress [MPa] of the cut body, vertices and pressure [MPa] of all
+    of it."""
 
     t: float
     cut: np.ndarray
@@ -162,8 +159,8 @@ class Sight:
 
 
 class Views:
-    """The snapshots `series` of a body in three dimensions, rendered. `times` [s]; `stress`, `pressure`: the largest that is drawn [MPa]; `loaded`: at
-    which snapshots the body is touched."""
+    """The snapshots `series` of a body in three dimensions, rendered. `times` [s]; `stress`, `pressure`: the largest that is drawn [MPa];
+    `loaded`: at which snapshots the body is touched."""
 
     def __init__(self, series: list[tuple[float, Path]], table: np.recarray, scene: dict[str, Value]):
         axes = AXES.get(scene.get("symmetry"), ())
@@ -193,7 +190,8 @@ class Views:
     def render(self, sight: Sight) -> tuple[np.ndarray, np.ndarray]:
         """Both views as images (height, width, 3): the cut body from the front, all of it from below, through the obstacles."""
         return (self._image(sight.cut, self.cut.triangles, sight.stress, self.stress, COLOURS["stress"], self.towards, sight.t),
-                self._image(sight.outside, self.outside.triangles, sight.pressure, self.pressure, COLOURS["pressure"], (0.25, -1.0, 0.55), None))
+                self._image(sight.outside, self.outside.triangles, sight.pressure, self.pressure, COLOURS["pressure"],
+                            (0.25, -1.0, 0.55), None))
 
     def _image(self, vertices: np.ndarray, triangles: np.ndarray, values: np.ndarray, largest: float, colours: str,
                towards: tuple[float, float, float], t: float | None) -> np.ndarray:
@@ -210,7 +208,8 @@ class Views:
                 box = pyvista.ImageData(dimensions=(GRID,) * 3, origin=low, spacing=span / (GRID - 1))
                 gap = one.gap(box.points - one.velocity * t)
                 if gap.min() < 0 < gap.max():
-                    plotter.add_mesh(box.contour([0.0], scalars=gap), color=GROUND, opacity=0.5, lighting=one.kind != "plane", show_scalar_bar=False)
+                    plotter.add_mesh(box.contour([0.0], scalars=gap), color=GROUND, opacity=0.5, lighting=one.kind != "plane",
+                                     show_scalar_bar=False)
             plotter.camera_position = [centre + 10 * np.linalg.norm(size) * np.array(towards) / np.linalg.norm(towards), centre, (0, 1, 0)]
             plotter.enable_parallel_projection()
             plotter.camera.parallel_scale = 0.38 * np.linalg.norm(size)
@@ -222,12 +221,13 @@ class Views:
 
 
 def draw(series: list[tuple[float, Path]], table: np.recarray, scene: dict[str, Value]) -> plt.Figure | None:
-    """The body at up to INSTANTS times at which it is touched: above cut open, with its stress, below from below, with the contact pressure. None of a
-    body in the plane, without contact, and where nothing can be rendered."""
+    """The body at up to INSTANTS times at which it is touched: above cut open, with its stress, below from below, with the contact
+    pressure. None of a body in the plane, without contact, and where nothing can be rendered."""
     if not len(table) or vtu.read_solid(series[0][1]) is None or missing():
         return None
     views = Views(series, table, scene)
-    picked = [views.loaded[k] for k in np.unique(np.linspace(0, len(views.loaded) - 1, INSTANTS).round().astype(int))] if views.loaded else [0]
+    picked = [views.loaded[k]
+              for k in np.unique(np.linspace(0, len(views.loaded) - 1, INSTANTS).round().astype(int))] if views.loaded else [0]
     figure, grid = plt.subplots(2, len(picked), figsize=(2.5 * len(picked) + 0.9, 4.6), squeeze=False)
     for column, k in zip(grid.T, picked):
         for axes, image in zip(column, views.render(views.sights[k])):

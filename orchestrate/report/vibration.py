@@ -1,4 +1,4 @@
-"""The vibration that an impact leaves: the energy in each natural mode (modes.csv), beside the spectrum of the force that has excited it."""
+"""The vibration that an impact leaves: the energy in each natural mode (modes.csv), beside the spectrum of the force."""
 
 from pathlib import Path
 
@@ -12,7 +12,8 @@ NEEDED = ["mode", "frequency", "energy", "strain_energy", "kinetic_energy"]
 
 
 def read(folder: Path) -> np.recarray:
-    """modes.csv of the run in `folder`: mode (from 1), frequency [Hz], energy of the last state in it and its two parts [J; of a plane problem J/m].
+    """modes.csv of the run in `folder`: mode (from 1), frequency [Hz], energy of the last state in it and its two parts [J; of a plane
+    problem J/m].
 
     Unreadable where it is not such a table.
     """
@@ -26,7 +27,8 @@ def spectrum(t: np.ndarray, dt: np.ndarray, force: np.ndarray, frequencies: np.n
 
 
 def draw(table: np.recarray, history: dict[str, np.ndarray], per: str) -> plt.Figure | None:
-    """Energy by mode over frequency, and above it the force's spectrum up to the last mode; None where there are no modes, or no energies. `per`: "/m" in plane strain."""
+    """Energy by mode over frequency, and above it the force's spectrum up to the last mode; None where there are no modes, or no energies.
+    `per`: "/m" in plane strain."""
     if np.isnan(table.energy).all():
         return None
     most = np.nanmax(table.energy)

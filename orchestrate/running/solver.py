@@ -23,12 +23,13 @@ FAILURES = {10: "bad input", 11: "step failed", 12: "material broke down", 13: "
 
 
 class Solver:
-    """Runs the scene with some values in a folder, one run after the other, but the coarser one beside the main one where `pair` says that it will be
-    wanted and a core is free: a study has a run on every core already."""
+    """Runs the scene with some values in a folder, one run after the other, but the coarser one beside the main one where `pair` says that
+    it will be wanted and a core is free: a study has a run on every core already."""
 
     def __init__(self, program: freefem.FreeFem, scene: Scene, mesh_file: Path | None, foreign: bytes | None, stage: Path, lock: int,
                  line: Line, pair: bool):
-        self.program, self.scene, self.mesh_file, self.foreign, self.stage, self.lock, self.line = program, scene, mesh_file, foreign, stage, lock, line
+        self.program, self.scene, self.mesh_file, self.foreign = program, scene, mesh_file, foreign
+        self.stage, self.lock, self.line = stage, lock, line
         self.pair = pair and freefem.CORES > 1 and not multiprocessing.parent_process()
         self.own_mesh = foreign is None and not scene.of_files
         self.number = 0

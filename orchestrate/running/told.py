@@ -1,5 +1,5 @@
-"""What is told of the runs of a scene while they go on: which of them, what it is at; in the first seconds of one that will take long about how
-long, and which entry makes it so."""
+"""What is told of the runs of a scene while they go on: which of them, what it is at; in the first seconds of one that will take long about
+how long, and which entry makes it so."""
 
 import time
 from pathlib import Path
@@ -45,8 +45,8 @@ class Told:
             return
         whole = seconds / share * sum(self.line.costs.values()) / self.line.costs[self.part]
         if whole > LONG:
-            self.line.say(f"{self.scene.name}: about {whole / 60:.0f} min, for some {at.steps / at.share:.0f} steps of {at.unknowns} unknowns: "
-                          f"{entry(self.scene, at, self.mesh_file)}")
+            self.line.say(f"{self.scene.name}: about {whole / 60:.0f} min, for some {at.steps / at.share:.0f} steps of {at.unknowns} "
+                          f"unknowns: {entry(self.scene, at, self.mesh_file)}")
         self.judged = whole > LONG or seconds > LAST
 
 

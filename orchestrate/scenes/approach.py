@@ -19,7 +19,8 @@ from .obstacles import Obstacle
 from ..geometry.outlines import Outline, Shape
 
 STEPS = 2000                 # of bodies within reach of each other: what has not met by then is not known to
-FAR = 1e9                    # of the smaller thickness: a gap from an obstacle without parts to be within reach of, that is followed no further
+# of the smaller thickness: a gap from an obstacle without parts to be within reach of, that is followed no further
+FAR = 1e9
 RESTITUTION = 0.5            # of a hit that turns bodies: much of it goes to vibration, and they turn while it lasts
 ECCENTRIC = 1e-2             # lever of a hit over the reach of the body that it turns
 MORE = 3                     # touches of two bodies that follow the first one
@@ -28,9 +29,9 @@ MET, CLOSED = 1e-3, 1e-9     # of the smaller thickness: a gap that counts as me
 
 @dataclass(frozen=True)
 class Meeting:
-    """Body `first` and `second` (body k, or -1 - k for obstacle k) when they first touch, or, where they do not, at the start: both
-    as they are then; the parts along and across the normal, positive, of their relative velocity [m/s] and of the constant force
-    between them [m/s2]; the radius that stands for the pair [m]; the time [s], infinite where they do not; the normal, outward of the second; whether as
+    """Body `first` and `second` (body k, or -1 - k for obstacle k) when they first touch, or, where they do not, at the start: both as they
+    are then; the parts along and across the normal, positive, of their relative velocity [m/s] and of the constant force between them
+    [m/s2]; the radius that stands for the pair [m]; the time [s], infinite where they do not; the normal, outward of the second; whether as
     rigid bodies they never meet."""
 
     first: int
@@ -65,7 +66,7 @@ def _fall(scene: Scene) -> np.ndarray:
 
 
 def _in_turn(scene: Scene, one: Meeting) -> list[Meeting]:
-    """A meeting, and in the plane those of the same two that follow, where rigid bodies without friction are turned by it: other corners strike."""
+    """A meeting, and in the plane those of the same two that follow, where it turns rigid bodies without friction: other corners strike."""
     found = [one]
     while scene.dimension is PLANE_STRAIN and len(found) <= MORE and math.isfinite(one.time):
         scene = _rebound(scene, one)
@@ -77,8 +78,7 @@ def _in_turn(scene: Scene, one: Meeting) -> list[Meeting]:
 
 
 def _rebound(scene: Scene, one: Meeting) -> Scene | None:
-    """The bodies of a meeting a little later, when they have parted and nothing pulls them on. None where the hit does not turn
-    them."""
+    """The bodies of a meeting a little later, when they have parted and nothing pulls them on. None where it does not turn them."""
     n = one.normal
     point = _middle(one)
     fall = _fall(scene) * one.time
@@ -102,13 +102,14 @@ def _rebound(scene: Scene, one: Meeting) -> Scene | None:
     for sign, k, shape, lever, mass in hit:
         body, push = bodies[k], sign * (1 + RESTITUTION) * closing / yields / mass
         velocity, spin = body.velocity + fall + push * n, body.spin + push * lever / shape.gyration
-        bodies[k] = replace(body, position=shape.area_centre + (velocity - moves) * soon, angle=body.angle + body.spin * one.time + spin * soon, velocity=velocity, spin=spin)
+        bodies[k] = replace(body, position=shape.area_centre + (velocity - moves) * soon, angle=body.angle + body.spin * one.time
+                            + spin * soon, velocity=velocity, spin=spin)
     still = {name: 0.0 for name in ("gravity", "body_force_x", "body_force_y") if name in scene.values}
     return replace(scene, bodies=bodies, values=scene.values | still)
 
 
 def _middle(one: Meeting) -> np.ndarray:
-    """Where the two bodies of a meeting touch; of a face that lies on another the middle, so that a body that is set down flat is not turned."""
+    """Where the two bodies of a meeting touch; of a face on another the middle, so that a body set down flat is not turned."""
     points = np.vstack([shape.points for shape in one.outlines if isinstance(shape, Outline)])
     off = np.max([abs(shape.gap(points)) for shape in one.outlines], axis=0)
     along = (points - points[off.argmin()]) @ one.normal
@@ -129,13 +130,14 @@ def _meeting(scene: Scene, first: int, second: int) -> Meeting:
     outlines, velocity = _at(body, other, t, pull), start + pull * t
     normal = outlines[0].normal_from(outlines[1])
     if not met:                                                # what lets them meet later may turn them in any direction
-        return Meeting(first, second, outlines, float(np.linalg.norm(velocity)), 0.0, float(np.linalg.norm(pull)), 0.0, float(radius), math.inf, normal, never)
+        return Meeting(first, second, outlines, float(np.linalg.norm(velocity)), 0.0, float(np.linalg.norm(pull)), 0.0, float(radius),
+                       math.inf, normal, never)
     return Meeting(first, second, outlines, *_parts(velocity, normal), *_parts(pull, normal), float(radius), t, normal)
 
 
 def turned(scene: Scene) -> Scene:
-    """The scene with its discs turned so that what touches first is their lowest point when they are not turned: where a disc is meshed finely
-    does not depend on the frame in which the scene is written."""
+    """The scene with its discs turned so that what touches first is their lowest point when they are not turned: where a disc is meshed
+    finely does not depend on the frame in which the scene is written."""
     if scene.dimension is not PLANE_STRAIN:
         return scene
     met = meetings(scene)
@@ -147,7 +149,8 @@ def turned(scene: Scene) -> Scene:
         soonest = min(one.time for one in mine)
         first = next(one for one in mine if one.time <= soonest * (1 + 1e-9))
         outward = -first.normal if k == first.first else first.normal
-        found[k] = replace(body, angle=math.atan2(outward[1], outward[0]) + math.pi / 2 - (body.spin * first.time if math.isfinite(first.time) else 0.0))
+        found[k] = replace(body, angle=math.atan2(outward[1], outward[0]) + math.pi / 2
+                           - (body.spin * first.time if math.isfinite(first.time) else 0.0))
     return replace(scene, bodies=found)
 
 
@@ -163,8 +166,8 @@ def refuse_nothing(scene: Scene, met: list[Meeting]) -> None:
     for one in met if scene.values["end_time"] == 0 else []:
         body = scene.bodies[one.first]
         if one.second < 0 and one.time == 0 and one.closing == 0 and not np.any(body.spin) and _fall(scene) @ one.normal < 0:
-            raise BadInput(f"end_time: 0 is the end of the contact, but '{body.name}' is set down on '{scene.obstacles[-1 - one.second].name}' and does not leave it "
-                           "(accepted: an end_time > 0)")
+            raise BadInput(f"end_time: 0 is the end of the contact, but '{body.name}' is set down on "
+                           f"'{scene.obstacles[-1 - one.second].name}' and does not leave it (accepted: an end_time > 0)")
 
 
 def _parts(vector: np.ndarray, normal: np.ndarray) -> tuple[float, float]:
@@ -182,9 +185,10 @@ def _at(body: Body, other: Body | Obstacle, t: float, pull: np.ndarray) -> tuple
     return flown(body, body.velocity - other.velocity), other
 
 
-def _first_touch(body: Body, other: Body | Obstacle, start: np.ndarray, pull: np.ndarray, turning: float, radius: float) -> tuple[float, bool]:
-    """When the gap is closed [s], infinite where it is not known to, and whether it never is. By conservative advancement where they are within
-    reach of each other: in each step no point can come nearer than the gap."""
+def _first_touch(body: Body, other: Body | Obstacle, start: np.ndarray, pull: np.ndarray, turning: float,
+                 radius: float) -> tuple[float, bool]:
+    """When the gap is closed [s], infinite where it is not known to, and whether it never is. By conservative advancement where they are
+    within reach of each other: in each step no point can come nearer than the gap."""
     rate, steps, met, before = np.linalg.norm(pull), 0, False, math.inf
     for t, end in _within_reach(body, other, start, pull):
         while t < end:
@@ -226,7 +230,8 @@ def _gates(body: Body, other: Body | Obstacle, start: np.ndarray, pull: np.ndarr
         for point, along, low, high in zip(sides.start, sides.along, sides.low, sides.high):
             r = seen_from(point)
             above, at = r @ np.array([-along[1], along[0]]), r @ along
-            yield [above - reach, -above - reach, *([low - reach - at] if np.isfinite(low) else []), *([at - high - reach] if np.isfinite(high) else [])]
+            yield [above - reach, -above - reach, *([low - reach - at] if np.isfinite(low) else []),
+                   *([at - high - reach] if np.isfinite(high) else [])]
     else:
         axes = len(start)
         r, more = seen_from(np.array(other.numbers[:axes])), other.numbers[axes:]

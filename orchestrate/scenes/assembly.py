@@ -31,8 +31,10 @@ from ..input.tables import to_toml
 NEVER = 3                    # the label of what nothing reaches
 ROUND = 0.5                  # largest element size on a circle or ellipse, over its smaller semi-axis
 LIKE = ("radius", "young", "nu", "density", "speed", "angle", "spin")
-NARROW = 0.6                 # of the contact of a disc on a plane: where less of an outline is near, elements are smaller; of two equal discs it is 0.71
-POINTED = 0.5                # largest half-width of a contact over the radius of the obstacle, as over that of a disc on a plane (sizes.idp)
+# of the contact of a disc on a plane: where less of an outline is near, elements are smaller; of two equal discs it is 0.71
+NARROW = 0.6
+# largest half-width of a contact over the radius of the obstacle, as over that of a disc on a plane (sizes.idp)
+POINTED = 0.5
 ASIDE = 0.02                 # of the pair's radius: as near to a corner of an obstacle is on it
 SMALLEST = 1e-3              # element in a contact over the pair's radius, however small the obstacle is
 BETWEEN = 0.2                # from body to body in the reference configuration, over the largest extent
@@ -63,9 +65,9 @@ class Assembly:
 
 
 def prepare(scene: Scene, where: Path, foreign: bytes | None = None) -> tuple[dict[str, Value | Path], dict, str]:
-    """The flags of a run in the folder `where`, the scene as it will be used, and the text of its scene.toml, "" where the script writes it. Puts into the
-    folder what the flags name: the mesh of all bodies and what the script reads of them; of one of the paper's scenes the mesh, `foreign` or our own, of the
-    sizes and the part of the body that its description says."""
+    """The flags of a run in the folder `where`, the scene as it will be used, and the text of its scene.toml, "" where the script writes
+    it. Puts into the folder what the flags name: the mesh of all bodies and what the script reads of them; of one of the paper's scenes the
+    mesh, `foreign` or our own, of the sizes and the part of the body that its description says."""
     file = where / scene.mesh_name
     if scene.bodies:
         if len(scene.bodies) == 1 and not scene.obstacles:
@@ -98,12 +100,13 @@ def assemble(scene: Scene, rule: Rule | None = None, met: list[Meeting] | None =
     sizes = [None if body.mesh else _sizes(k, ask) for k, body in enumerate(scene.bodies)]
     together, regions, centres, rounds = (_solids if scene.dimension is SOLID else _sections)(scene, sizes)
     disc = ask.disc(scene.bodies, min(body.outline.half_thickness for body in scene.bodies), slides=True)
-    return Assembly(together, regions, centres, data_file(scene, disc, centres, rounds, pairs), values, used_tables(scene, sizes, values, pairs))
+    return Assembly(together, regions, centres, data_file(scene, disc, centres, rounds, pairs), values,
+                    used_tables(scene, sizes, values, pairs))
 
 
 def _sections(scene: Scene, sizes: list[Sizes | None]) -> tuple[mesh.Mesh, np.ndarray, np.ndarray, list[tuple]]:
-    """The mesh of bodies in the plane, the body of each triangle, the centres in it, the lines of circles in scene.dat (of sections those that are not
-    another's mirror image)."""
+    """The mesh of bodies in the plane, the body of each triangle, the centres in it, the lines of circles in scene.dat (of sections those
+    that are not another's mirror image)."""
     meshes = [body.mesh or mesh_body(_boundary(scene, k), sizes[k], body.outline.half_thickness) for k, body in enumerate(scene.bodies)]
     centres = side_by_side(meshes, 1 if scene.dimension is AXISYMMETRIC else 0)
     circles = [(k, *(centre + at), radius) for k, (body, centre) in enumerate(zip(scene.bodies, centres)) for loop in body.outline.loops
@@ -112,14 +115,16 @@ def _sections(scene: Scene, sizes: list[Sizes | None]) -> tuple[mesh.Mesh, np.nd
 
 
 def _solids(scene: Scene, sizes: list[Sizes | None]) -> tuple[solid_mesh.SolidMesh, np.ndarray, np.ndarray, list[tuple]]:
-    """The same in three dimensions: bodies turned as they are at the start, one above the other; half or a quarter of them where that is enough."""
+    """The same in three dimensions: bodies turned as they are at the start, one above the other; half or a quarter where that is enough."""
     folded = FOLDED[copies(scene)]
     meshes = [solids.mesh_of(body, one, folded) for body, one in zip(scene.bodies, sizes)]
     count = sum(solid_mesh.unknowns(one.cells, scene.values["degree"]) for one in meshes)
     if count > solid_mesh.MOST_UNKNOWNS:
-        raise BadInput(f"mesh_size: the bodies have {count} unknowns (accepted: up to {solid_mesh.MOST_UNKNOWNS}; larger mesh_size, contact_mesh_size or accuracy, coarser files, degree = 1)")
+        raise BadInput(f"mesh_size: the bodies have {count} unknowns (accepted: up to {solid_mesh.MOST_UNKNOWNS}; larger mesh_size, "
+                       f"contact_mesh_size or accuracy, coarser files, degree = 1)")
     centres = side_by_side(meshes, 1)
-    surfaces = [(k, *(centre + one.centre), *one.axis, one.radius) for k, (made, centre) in enumerate(zip(meshes, centres)) for one in made.curved]
+    surfaces = [(k, *(centre + one.centre), *one.axis, one.radius) for k, (made, centre) in enumerate(zip(meshes, centres))
+                for one in made.curved]
     spheres, cylinders = ([one for one in surfaces if len(one) == size] for size in (5, 8))
     return *solid_mesh.stack(meshes, centres), centres, [("spheres", len(spheres)), *spheres, ("cylinders", len(cylinders)), *cylinders]
 
@@ -140,7 +145,7 @@ class Asker:
         return self.rule(self.disc(bodies, radius, slides) | more)
 
     def small(self, first: int, second: int) -> float:
-        """The radius [m] of an obstacle where a body meets it, if that is less than half of the body's own, 0 at a sharp corner; else infinite."""
+        """The radius [m] of an obstacle where a body meets it, if less than half of the body's own, 0 at a sharp corner; else infinite."""
         for one in self.met:
             if (one.first, one.second) == (first, second) and second < 0 and not one.never:
                 body, obstacle = one.outlines
@@ -150,7 +155,8 @@ class Asker:
 
     def disc(self, bodies: list[Body], radius: float, slides: bool) -> dict[str, Value]:
         """A disc of this radius [m] and the softer body's material; straight on unless it `slides`."""
-        along, across, pressing, pulling = (float(f"{max((getattr(one, name) for one in self.met), default=0.0):.6g}")    # no round-off: a mesh follows every digit
+        # no round-off: a mesh follows every digit
+        along, across, pressing, pulling = (float(f"{max((getattr(one, name) for one in self.met), default=0.0):.6g}")
                                             for name in ("closing", "sliding", "pressing", "pulling"))
         soft = min(bodies, key=lambda body: body.young)
         asked = {name: self.scene.values[name] for name in ("accuracy", "accuracy_of", "end_time")}
@@ -163,8 +169,8 @@ class Asker:
 
 
 def contact_values(bodies: list[Body], contact: dict[str, Value], ask: Asker, path: str, least: float = math.inf) -> dict[str, Value]:
-    """`contact` with penalty, friction_dynamic and slip_velocity as numbers: for the softest of the bodies and the smallest radius, `least` [m] that of an
-    obstacle."""
+    """`contact` with penalty, friction_dynamic and slip_velocity as numbers: for the softest of the bodies and the smallest radius, `least`
+    [m] that of an obstacle."""
     radius = min([least, *(body.outline.half_thickness for body in bodies)])
     given = [body.contact_mesh_size for body in bodies]
     more = {"contact_mesh_size": min(*given, radius)} if min(given) > 0 else {}
@@ -173,8 +179,8 @@ def contact_values(bodies: list[Body], contact: dict[str, Value], ask: Asker, pa
     if contact["friction_dynamic"] == "auto":
         found["friction_dynamic"] = contact["friction_static"]
     if found["friction_dynamic"] > found["friction_static"]:
-        raise BadInput(f"{path}.friction_dynamic: {found['friction_dynamic']:g} is larger than friction_static {found['friction_static']:g} "
-                       f"(accepted: 0 to friction_static)")
+        raise BadInput(f"{path}.friction_dynamic: {found['friction_dynamic']:g} is larger than friction_static "
+                       f"{found['friction_static']:g} (accepted: 0 to friction_static)")
     return found
 
 
@@ -183,7 +189,8 @@ def pair_values(pair: Pair, ask: Asker, values: dict[str, Value]) -> dict[str, V
     the pair says."""
     bodies = [ask.scene.bodies[k] for k in (pair.first, pair.second) if k >= 0]
     alone = "friction_static" in pair.values                    # sets both
-    inherited = {name: values[name] for name in ask.scene.contact} | {"friction_dynamic": "auto" if alone else ask.scene.contact["friction_dynamic"]}
+    inherited = {name: values[name] for name in ask.scene.contact}
+    inherited["friction_dynamic"] = "auto" if alone else ask.scene.contact["friction_dynamic"]
     small = ask.small(pair.first, pair.second)
     if 0 < small < math.inf:
         inherited["penalty"] = ask.scene.contact["penalty"]
@@ -192,9 +199,10 @@ def pair_values(pair: Pair, ask: Asker, values: dict[str, Value]) -> dict[str, V
 
 
 def _with_small_obstacles(scene: Scene, ask: "Asker") -> list[Pair]:
-    """The scene's pairs, and those that an open penalty makes differ: a body and an obstacle that is smaller than its contact on a plane would be."""
+    """The scene's pairs, and those that an open penalty makes differ: of a body and an obstacle smaller than its contact on a plane."""
     said = {(pair.first, pair.second) for pair in scene.pairs}
-    small = [(one.first, one.second) for one in ask.met if 0 < ask.small(one.first, one.second) < math.inf] if scene.contact["penalty"] == "auto" else []
+    small = [(one.first, one.second) for one in ask.met if 0 < ask.small(one.first, one.second) < math.inf] if scene.contact[
+        "penalty"] == "auto" else []
     pairs = scene.pairs + [Pair(*both, {}, f"obstacle.{-both[1]}") for both in dict.fromkeys(small) if both not in said]
     return sorted(pairs, key=lambda pair: (pair.first, pair.second))
 
@@ -214,7 +222,8 @@ def used_tables(scene: Scene, sizes: list[Sizes | None], values: dict[str, Value
     contact = {key: values[key] for key in scene.contact}
     contact |= {SELF_CONTACT.name: scene.given.get("contact", {}).get(SELF_CONTACT.name, SELF_CONTACT.default)}
     contact |= {"pair": [{"bodies": names(pair)} | own for pair, own in zip(scene.pairs, pairs)]}
-    top = {"title": scene.title, "script": scene.script, "dimension": scene.dimension.name} | _symmetry(scene) | {key: values[key] for key in scene.values}
+    top = {"title": scene.title, "script": scene.script,
+           "dimension": scene.dimension.name} | _symmetry(scene) | {key: values[key] for key in scene.values}
     return top | {"body": bodies, "obstacle": obstacles, "contact": contact}
 
 
@@ -229,7 +238,8 @@ def _sizes(k: int, ask: Asker) -> Sizes:
     try:
         bulk = float(ask.answer([body], body.outline.half_thickness, **given)["used"]["mesh_size"])
     except BadInput as error:
-        raise BadInput(f"body.{k + 1}.{error} (of a {'disc' if ask.scene.dimension is PLANE_STRAIN else 'ball'} as thick as '{body.name}')") from None
+        raise BadInput(f"body.{k + 1}.{error} (of a {'disc' if ask.scene.dimension is PLANE_STRAIN else 'ball'} as thick as "
+                       f"'{body.name}')") from None
     hits = [_hit(body, k, one, ask) for one in ask.met if k in (one.first, one.second)]
     contact = body.contact_mesh_size or min([bulk, *(size for size, *_ in hits)])
     near = np.vstack([np.empty((0, ask.scene.dimension.axes)), *(points for _, points, _ in hits)])
@@ -244,7 +254,8 @@ def _hit(body: Body, k: int, one: Meeting, ask: Asker) -> tuple[float, np.ndarra
     depth, small = one.radius * (1 - math.cos(min(arc, math.pi / 2))), ask.small(one.first, one.second)
     points, spacing = body.outline.samples(size)
     near = _near(body, k, one, depth, points)
-    wider = body.outline.width(max(2, len(near)), spacing) / (2 * arc * one.radius)    # than the contact of a disc: flat faces; or less wide: corners, pegs
+    # than the contact of a disc: flat faces; or less wide: corners, pegs
+    wider = body.outline.width(max(2, len(near)), spacing) / (2 * arc * one.radius)
     if small > 0:                              # a sharp corner no elements resolve
         wider = min(max(1.0, wider), wider / NARROW, POINTED * small / (2 / math.pi * arc * one.radius))
     if small > 0 and wider < 1:
@@ -258,15 +269,15 @@ def _hit(body: Body, k: int, one: Meeting, ask: Asker) -> tuple[float, np.ndarra
 
 
 def _near(body: Body, k: int, one: Meeting, depth: float, points: np.ndarray) -> np.ndarray:
-    """Those of the points of body k where the gap at the meeting is larger than the least by `depth` [m] at most, which of a disc on a plane is that at
-    touch_arc from its lowest point."""
+    """Those of the points of body k where the gap at the meeting is larger than the least by `depth` [m] at most, which of a disc on a
+    plane is that at touch_arc from its lowest point."""
     gaps = one.gaps(k, body.outline.carried(one.outlines[0 if k == one.first else 1], points))
     return points[gaps <= gaps.min() + depth]
 
 
 def _boundary(scene: Scene, k: int) -> list[list[tuple[Curve, float, int]]]:
-    """The closed curves that bound the mesh of body k, the outer first, counter-clockwise: each piece with the largest element size on it and its label.
-    Nothing reaches a hole that holds no other body and no obstacle, unless the body touches itself."""
+    """The closed curves that bound the mesh of body k, the outer first, counter-clockwise: each piece with the largest element size on it
+    and its label. Nothing reaches a hole that holds no other body and no obstacle, unless the body touches itself."""
     outer, *holes = scene.bodies[k].outline.loops
     if scene.dimension is AXISYMMETRIC:
         *surface, axis = revolution.boundary(outer)
@@ -319,10 +330,10 @@ def data_file(scene: Scene, disc: dict[str, Value], centres: np.ndarray, rounds:
         circles C      body x y radius                                                                  in the mesh
         files F        body                                                                             whose mesh is that of a file
         obstacles M    name kind count p1 ... pcount vx vy
-        pairs K        a b penalty friction_static friction_dynamic                                     a, b: body, or -1 - obstacle (a = b: itself)
+        pairs K        a b penalty friction_static friction_dynamic                             a, b: body, or -1 - obstacle (a = b: itself)
     centre: of the area in the mesh; place: where it is at the start; the angle of the disc in degrees. In three dimensions
         ffimpact-bodies-3d 1
-        copies 1, 2 or 4                                                                                how often the mesh makes the whole bodies
+        copies 1, 2 or 4                                                            how often the mesh makes the whole bodies
         bodies N       name law young nu density  centreX Y Z  shiftX Y Z  vx vy vz  spinX Y Z         shift: from the mesh to the start
         spheres C      body x y z radius
         cylinders C    body x y z axisX Y Z radius
@@ -334,11 +345,13 @@ def data_file(scene: Scene, disc: dict[str, Value], centres: np.ndarray, rounds:
         head = [("ffimpact-bodies", 1)]
         starts = [(*body.position, body.angle, *body.velocity, body.spin) for body in scene.bodies]
     lines = [*head, ("disc", *(float(disc[name]) for name in LIKE)), ("bodies", len(scene.bodies))]
-    lines += [(body.name, body.law + (f":{body.law_parameters}" if body.law_parameters != "none" else ""), body.young, body.nu, body.density, *centre, *start) for body, centre, start in zip(scene.bodies, centres, starts)]
+    lines += [(body.name, body.law + (f":{body.law_parameters}" if body.law_parameters != "none" else ""), body.young, body.nu,
+               body.density, *centre, *start) for body, centre, start in zip(scene.bodies, centres, starts)]
     lines += rounds
     lines += [("files", len(files := [k for k, given in enumerate(scene.given["body"]) if "file" in given])), *((k,) for k in files)]
     lines += [("obstacles", len(scene.obstacles))]
-    lines += [(one.name, "circle" if one.kind == "sphere" and scene.dimension is not SOLID else one.kind, len(one.numbers), *one.numbers, *one.velocity) for one in scene.obstacles]
+    lines += [(one.name, "circle" if one.kind == "sphere" and scene.dimension is not SOLID else one.kind, len(one.numbers), *one.numbers,
+               *one.velocity) for one in scene.obstacles]
     lines += [("pairs", len(pairs)), *((pair.first, pair.second, *own.values()) for pair, own in zip(scene.pairs, pairs))]
     return "".join(" ".join(map(_token, line)) + "\n" for line in lines)
 

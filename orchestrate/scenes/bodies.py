@@ -1,5 +1,5 @@
-"""The bodies of a scene: [[body]] tables as outlines (or meshes) with material, place and motion, SI units. In plane strain (flat.py; of revolution
-and in three dimensions shapes and motions are those of revolution.py and solids.py):
+"""The bodies of a scene: [[body]] tables as outlines (or meshes) with material, place and motion, SI units. In plane strain (flat.py; of
+revolution and in three dimensions shapes and motions are those of revolution.py and solids.py):
 
     [[body]]
     name = "disc"                # body1, body2 ... where it is left out
@@ -40,8 +40,8 @@ NAME = re.compile(r"[A-Za-z][A-Za-z0-9_.-]*")
 
 @dataclass(frozen=True)
 class Body:
-    """`outline` and `mesh` (of a mesh file, else None) are about the centre of area (or volume), not turned; angle [rad], in three dimensions
-    a vector as spin is; a mesh size of 0 is open."""
+    """`outline` and `mesh` (of a mesh file, else None) are about the centre of area (or volume), not turned; angle [rad], in three
+    dimensions a vector as spin is; a mesh size of 0 is open."""
 
     name: str
     outline: Outline | Solid

@@ -36,14 +36,15 @@ def set_entry(given: dict, name: str, value: Value | list) -> dict:
 
 
 def release(given: dict, names: list[str]) -> tuple[str, ...]:
-    """Takes out of the tables of a file what FOLLOWS says that the entries `names`, which were set, leave open; the sentences about it. What is of one table
-    (coefficients of friction, sizes of a body) follows what is set there, penalty and step whatever body it is of."""
+    """Takes out of the tables of a file what FOLLOWS says that the entries `names`, which were set, leave open; the sentences about it.
+    What is of one table (coefficients of friction, sizes of a body) follows what is set there, penalty and step whatever body it is of."""
     places = [_table_of(name) for name in names]
     said = []
     for path, table in list(_tables(given)):
         for key in [key for key in parameters.FOLLOWS if key in table and (path, key) not in places]:
             causes = parameters.FOLLOWS[key] + (SHAPE if "radius" in parameters.FOLLOWS[key] else ())
-            found = [name for cause in causes for name, (where, entry) in zip(names, places) if entry == cause and (where == path or key in EVERYWHERE)]
+            found = [name for cause in causes for name, (where, entry) in zip(names, places) if entry == cause
+                     and (where == path or key in EVERYWHERE)]
             if found and table[key] not in ("auto", 0):
                 said.append(parameters.release(f"{path}.{key}".lstrip("."), table.pop(key), found))
     return tuple(said)

@@ -1,4 +1,4 @@
-"""How much of a scene in three dimensions has to be computed: all of it, its half z >= 0, or of that the half x >= 0 (the entry `symmetry`)."""
+"""How much of a scene in three dimensions has to be computed: all of it, its half z >= 0, or of that the half x >= 0 (`symmetry`)."""
 
 import numpy as np
 
@@ -15,7 +15,7 @@ AXES = "xyz"
 
 
 def copies(scene) -> int:
-    """What the computed part stands for: 1, 2 or 4 times itself; 1 in the plane. BadInput where more symmetry is asked for than there is."""
+    """What the computed part stands for: 1, 2 or 4 times itself; 1 in the plane. BadInput where more symmetry is asked for."""
     if scene.dimension is not SOLID:
         return 1
     rule = Parameter("symmetry", "word", "auto", "-", "", words=("auto", *COPIES))

@@ -8,8 +8,8 @@
                                  # polyline: vertices [[x, y], ...], closed = false, rounding = 0: the bodies to its left (polyline.py)
     velocity = [0, 0]            # it moves on with it, whatever it meets [m/s]
 
-Of revolution about x = 0: planes across the axis; sphere (a ball) and bowl on it, centre = [0, y] or y; polyline: a chain that begins or ends on
-the axis, without `closed`. In three dimensions plane, sphere, bowl and implicit, points and vectors [x, y, z].
+Of revolution about x = 0: planes across the axis; sphere (a ball) and bowl on it, centre = [0, y] or y; polyline: a chain that begins or
+ends on the axis, without `closed`. In three dimensions plane, sphere, bowl and implicit, points and vectors [x, y, z].
 """
 
 from dataclasses import dataclass, replace
@@ -26,7 +26,8 @@ from ..input.tables import LONGEST, SHORTEST, Table
 KINDS = {
     PLANE_STRAIN: {"plane": ("point", "normal"), "circle": ("centre", "radius"), "bowl": ("centre", "radius"),
                    "polyline": ("vertices", "closed", "rounding")},
-    AXISYMMETRIC: {"plane": ("point", "normal"), "sphere": ("centre", "radius"), "bowl": ("centre", "radius"), "polyline": ("vertices", "rounding")},
+    AXISYMMETRIC: {"plane": ("point", "normal"), "sphere": ("centre", "radius"), "bowl": ("centre", "radius"),
+                   "polyline": ("vertices", "rounding")},
     SOLID: {"plane": ("point", "normal"), "sphere": ("centre", "radius"), "bowl": ("centre", "radius")},
 }
 for kinds in KINDS.values():
@@ -35,9 +36,9 @@ for kinds in KINDS.values():
 
 @dataclass(frozen=True)
 class Obstacle:
-    """`numbers` as the scripts read them: plane x y nx ny, the normal of length 1; circle, sphere and bowl x y radius; polyline closed (1 or 0)
-    rounding x1 y1 x2 y2 ..., of a surface of revolution with its mirror image; implicit steepest limit program
-    (implicit.py), 1 and 1 before it is settled()."""
+    """`numbers` as the scripts read them: plane x y nx ny, the normal of length 1; circle, sphere and bowl x y radius; polyline closed (1
+    or 0) rounding x1 y1 x2 y2 ..., of a surface of revolution with its mirror image; implicit steepest limit program (implicit.py), 1 and 1
+    before it is settled()."""
 
     name: str
     kind: str
@@ -73,8 +74,8 @@ class Obstacle:
             return implicit.nearest(shape.points[gaps.argmin()], gaps.min(), code, limit, shape.disc)
 
     def radius_at(self, point: np.ndarray, within: float) -> float:
-        """The radius [m] of its surface where that is nearest to a point (axes,), 0 if a sharp corner is `within` [m] as near, infinite where it is flat or
-        hollow."""
+        """The radius [m] of its surface where that is nearest to a point (axes,), 0 if a sharp corner is `within` [m] as near, infinite
+        where it is flat or hollow."""
         if self.kind == "polyline":
             return polyline.radius_at(point, within, self.numbers)
         if self.kind == "implicit":
@@ -94,7 +95,8 @@ def read(tables: list[dict], dimension: Dimension = PLANE_STRAIN) -> list[Obstac
 
 def settled(found: list[Obstacle], centre: np.ndarray, half: float) -> list[Obstacle]:
     """The same, where bodies lie in a box of this half size [m]: how steep and curved an implicit one is there."""
-    return [replace(one, numbers=implicit.settled(f"obstacle.{k}", one.numbers[2:], centre, half)) if one.kind == "implicit" else one for k, one in enumerate(found, 1)]
+    return [replace(one, numbers=implicit.settled(f"obstacle.{k}", one.numbers[2:], centre, half)) if one.kind == "implicit" else one
+            for k, one in enumerate(found, 1)]
 
 
 def _obstacle(path: str, given: dict, dimension: Dimension) -> Obstacle:
@@ -104,20 +106,24 @@ def _obstacle(path: str, given: dict, dimension: Dimension) -> Obstacle:
         raise BadInput(f"{path}.kind: {missing} (accepted: {'|'.join(kinds)})")
     table = Table(path, given, ("name", "kind", "velocity", *kinds[kind]))
     shape = {"plane": _plane, "polyline": _polyline, "implicit": _implicit}.get(kind, _circle)
-    return Obstacle(checked_name(path, given.get("name", path.replace(".", ""))), kind, shape(table, dimension), _velocity(table, dimension))
+    return Obstacle(checked_name(path, given.get("name", path.replace(".", ""))), kind, shape(table, dimension),
+                    _velocity(table, dimension))
 
 
 def _velocity(table: Table, dimension: Dimension) -> np.ndarray:
     still = (0.0,) * dimension.axes
-    return on_axis(table, "velocity", still) if dimension is AXISYMMETRIC else table.numbers("velocity", -LONGEST, LONGEST, still, dimension.axes)
+    return on_axis(table, "velocity",
+                   still) if dimension is AXISYMMETRIC else table.numbers("velocity", -LONGEST, LONGEST, still, dimension.axes)
 
 
 def _plane(table: Table, dimension: Dimension) -> tuple[float, ...]:
     point, normal = (table.numbers(key, -LONGEST, LONGEST, count=dimension.axes) for key in ("point", "normal"))
     if not normal.any():
-        raise BadInput(f"{table.path}.normal: '{brief(table.given['normal'])}' has no direction (accepted: {dimension.placeholder} other than 0)")
+        raise BadInput(f"{table.path}.normal: '{brief(table.given['normal'])}' has no direction (accepted: {dimension.placeholder} "
+                       f"other than 0)")
     if dimension is AXISYMMETRIC and normal[0] != 0:
-        raise BadInput(f"{table.path}.normal: '{brief(table.given['normal'])}' is not along the axis of revolution (accepted: [0, 1] or [0, -1])")
+        raise BadInput(f"{table.path}.normal: '{brief(table.given['normal'])}' is not along the axis of revolution (accepted: [0, 1] or "
+                       f"[0, -1])")
     normal = normal / abs(normal).max()                    # so that no square of it underflows
     return *map(float, point), *map(float, normal / np.linalg.norm(normal))
 
@@ -130,7 +136,8 @@ def _circle(table: Table, dimension: Dimension) -> tuple[float, ...]:
 def _implicit(table: Table, dimension: Dimension) -> tuple[float, ...]:
     code = implicit.program(table.path, table.given.get("distance"), dimension.axes)
     if dimension is AXISYMMETRIC and not implicit.is_mirrored(code, 0, 2):
-        raise BadInput(f"{table.path}.distance: '{brief(table.given['distance'])}' is not the same for x and -x, as of revolution (accepted: with x^2 or abs(x))")
+        raise BadInput(f"{table.path}.distance: '{brief(table.given['distance'])}' is not the same for x and -x, as of revolution "
+                       f"(accepted: with x^2 or abs(x))")
     return 1.0, 1.0, *code
 
 

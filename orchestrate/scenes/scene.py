@@ -1,5 +1,5 @@
-"""A scene: bodies and obstacles in the tables of one TOML file, read, checked, and its entries set by dotted names; or one of the paper's, whose script
-makes the bodies of its parameters, all at the top of the file.
+"""A scene: bodies and obstacles in the tables of one TOML file, read, checked, and its entries set by dotted names; or one of the paper's,
+whose script makes the bodies of its parameters, all at the top of the file.
 
     title = "..."
     dimension = "plane-strain"   # or axisymmetric (dimension.py)
@@ -41,7 +41,8 @@ RUN = ("gravity", "body_force_x", "body_force_y", "degree", "integrator", "dt", 
 OWN = ("penalty", "friction_static", "friction_dynamic")                                  # a pair may have its own
 CONTACT = (*OWN, "exponent", "slip_velocity", "regularization", "friction_transition", "pairing", "pairing_range")
 SELF_CONTACT = Parameter("self_contact", "word", "auto", "-", "", words=("auto", "on", "off"))
-FOLDING = 0.2                # of Outline.folding: that of a ring as thick as its inner radius; what closes only at more does not touch itself
+# of Outline.folding: that of a ring as thick as its inner radius; what closes only at more does not touch itself
+FOLDING = 0.2
 TOUCHING = 1e-9              # of a body's thickness: an overlap up to it is round-off
 
 
@@ -57,8 +58,9 @@ class Pair:
 
 @dataclass(frozen=True)
 class Scene:
-    """`given` are the tables of the file, `values` every parameter of a run, `contact` those of [contact], both with what is left open (auto, 0) as it is.
-    Without `bodies` it is one of the paper's: `values`, and `given` with them, hold EVERY parameter that edp/<script>.edp takes, in SI units."""
+    """`given` are the tables of the file, `values` every parameter of a run, `contact` those of [contact], both with what is left open
+    (auto, 0) as it is. Without `bodies` it is one of the paper's: `values`, and `given` with them, hold EVERY parameter that
+    edp/<script>.edp takes, in SI units."""
 
     name: str
     title: str
@@ -74,7 +76,8 @@ class Scene:
     released: tuple[str, ...] = ()      # sentences: what was fixed for others that are set now
 
     def override(self, given: dict[str, Value]) -> "Scene":
-        """The same scene with some entries set by their dotted names (text or values), open again what it had fixed for them (release), and read again."""
+        """The same scene with some entries set by their dotted names (text or values), open again what it had fixed for them (release), and
+        read again."""
         if not given:
             return self
         changed = self.given
@@ -97,7 +100,8 @@ class Scene:
         """What decides the answer beside the script: two scenes that agree in it are one run."""
         files = [str(given["file"]) for given in self.given.get("body", []) if "file" in given]
         meshes = {name: hashlib.sha256((self.folder / name).read_bytes()).hexdigest() for name in files}
-        return parameters.decisive({name: value for name, value in self.given.items() if name not in ("title", "script")}) | {"files": meshes}
+        return parameters.decisive({name: value for name, value in self.given.items() if name not in ("title", "script")}) | {
+            "files": meshes}
 
     @property
     def numbers(self) -> list[str]:
@@ -136,8 +140,8 @@ class Scene:
         return {name: max(getattr(body, name) for body in self.bodies) for name in SIZES} if self.bodies else {}
 
     def description(self, foreign: bytes | None = None) -> dict:
-        """What the script says of one of the paper's scenes, on the mesh `foreign` (FreeFEM's .msh) where there is one; BadInput where it refuses it. Of
-        others nothing more than was read."""
+        """What the script says of one of the paper's scenes, on the mesh `foreign` (FreeFEM's .msh) where there is one; BadInput where it
+        refuses it. Of others nothing more than was read."""
         if self.bodies:
             if foreign is not None:
                 raise BadInput("mesh: is of one body (accepted: in a table [[body]], shape = \"mesh\" with file)")
@@ -211,7 +215,8 @@ def _of_tables(given: dict, folder: Path, name: str) -> Scene:
     for k in _touching_themselves(contact_table, contact.get("pairing", "closest-point"), all_bodies, of):
         pairs.setdefault((k, k), Pair(k, k, {}, "contact"))
     values = _parameters(table, RUN, of)
-    found = Scene(name, table.text("title", name), script, given, folder, values, of, all_bodies, all_obstacles, contact, [pairs[both] for both in sorted(pairs)])
+    found = Scene(name, table.text("title", name), script, given, folder, values, of, all_bodies, all_obstacles, contact,
+                  [pairs[both] for both in sorted(pairs)])
     _apart(found)
     mirror.copies(found)
     return found

@@ -18,7 +18,7 @@ from ..progress import in_turn
 from ..report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE, save
 from ..output.results import read_history
 from ..sweeps.sweep_figures import distance
-from . import peers, textbook
+from . import peers
 from ..sweeps import study
 
 LEVELS = (5.0, 1.0, 0.1)    # % of error
@@ -26,11 +26,14 @@ HEADLINE, HEADLINE_CONTACT = 0.5, 1.0   # % at the same time in everything but t
 LIMIT = 600.0               # seconds a run may take
 # Other programs, by case: program, form, mesh factor, dt [s]; from their cheapest setting for 0.5 % on
 PEERS = {
-    "normal-svk": [("ngsolve", "tuned", 2, 1.5e-4), ("ngsolve", "tuned", 2, 1e-4), ("ngsolve", "tuned", 1, 1e-4), ("ngsolve", "tuned", 1, 5e-5),
-                   ("ngsolve", "tuned", 1, 2e-5), ("ngsolve", "plain", 2, 1.5e-4), ("ngsolve", "plain", 1, 1e-4), ("ngsolve", "plain", 1, 5e-5),
-                   ("getfem", "tuned", 2, 1.5e-4), ("getfem", "tuned", 1, 1e-4), ("getfem", "tuned", 1, 5e-5), ("getfem", "tuned", 1, 2e-5),
-                   ("getfem", "plain", 2, 1.5e-4), ("getfem", "plain", 1, 1e-4), ("textbook", "FreeFEM", 2, 1e-4), ("textbook", "FreeFEM", 1, 5e-5)],
-    "ball-axisymmetric": [("ngsolve", "tuned", 2, 1.5e-4), ("ngsolve", "tuned", 2, 1e-4), ("ngsolve", "tuned", 1, 1e-4), ("ngsolve", "tuned", 1, 5e-5)],
+    "normal-svk": [("ngsolve", "tuned", 2, 1.5e-4), ("ngsolve", "tuned", 2, 1e-4), ("ngsolve", "tuned", 1, 1e-4),
+                   ("ngsolve", "tuned", 1, 5e-5), ("ngsolve", "tuned", 1, 2e-5), ("ngsolve", "plain", 2, 1.5e-4),
+                   ("ngsolve", "plain", 1, 1e-4), ("ngsolve", "plain", 1, 5e-5), ("getfem", "tuned", 2, 1.5e-4),
+                   ("getfem", "tuned", 1, 1e-4), ("getfem", "tuned", 1, 5e-5), ("getfem", "tuned", 1, 2e-5),
+                   ("getfem", "plain", 2, 1.5e-4), ("getfem", "plain", 1, 1e-4), ("textbook", "FreeFEM", 2, 1e-4),
+                   ("textbook", "FreeFEM", 1, 5e-5)],
+    "ball-axisymmetric": [("ngsolve", "tuned", 2, 1.5e-4), ("ngsolve", "tuned", 2, 1e-4), ("ngsolve", "tuned", 1, 1e-4),
+                          ("ngsolve", "tuned", 1, 5e-5)],
     "ball": [("ngsolve", "tuned", 4, 1.5e-4), ("ngsolve", "tuned", 3, 1e-4), ("ngsolve", "tuned", 2, 1e-4), ("ngsolve", "tuned", 2, 5e-5)],
 }
 PEERS_QUICK = {"normal-svk": [("ngsolve", "tuned", 1, 1e-4), ("textbook", "FreeFEM", 2, 1e-4)],
@@ -44,8 +47,8 @@ NGSOLVE = {"rebound_vy_1": "velocity_upper", "rebound_vy_2": "velocity_lower", "
 @dataclass(frozen=True)
 class Case:
     """A scene, what is set in it, the answers that are judged, the finest accuracy that meshes and steps are made for, how many times
-    larger given sizes and steps are than those of the disc of radius 0.05 m, the families of settings (all where none is named), and the case that
-    has the reference where it is not this one."""
+    larger given sizes and steps are than those of the disc of radius 0.05 m, the families of settings (all where none is named), and the
+    case that has the reference where it is not this one."""
 
     scene: str
     base: study.Point
@@ -70,11 +73,12 @@ BALL = {"law": "neohookean", "nu": 0.45, "speed": 8.0, "penalty": 1.5e10}
 CASES = {
     "normal-svk": Case("disc-normal", {"law": "svk"}, ("impulse", "rebound_vy", "contact_time")),
     "normal-neohookean": Case("disc-normal", {"law": "neohookean"}, ("impulse", "rebound_vy", "contact_time")),
-    "oblique-neohookean": Case("disc-oblique", {"law": "neohookean"}, ("impulse", "rebound_vx", "rebound_vy", "rebound_spin", "friction_work", "contact_time"), 0.000625),
+    "oblique-neohookean": Case("disc-oblique", {"law": "neohookean"},
+                               ("impulse", "rebound_vx", "rebound_vy", "rebound_spin", "friction_work", "contact_time"), 0.000625),
     "disc-block-svk": Case("disc-block", {"law": "svk", "penalty": 1e9}, tuple(NGSOLVE), 0.005, 20),
     "ball-axisymmetric": Case("ball-axisymmetric", BALL, ("impulse", "rebound_vy", "contact_time")),
-    "ball": Case("ball", BALL, ("impulse", "rebound_vy", "contact_time"), 0.005, families=("adaptive, P2", "midpoint", "central-difference"),
-                 like="ball-axisymmetric"),
+    "ball": Case("ball", BALL, ("impulse", "rebound_vy", "contact_time"), 0.005,
+                 families=("adaptive, P2", "midpoint", "central-difference"), like="ball-axisymmetric"),
 }
 
 
@@ -82,7 +86,8 @@ def main(argv: list[str]) -> int:
     """Runs all settings one after the other, writes bench.csv, a figure a case and bench.md; 0 if the references are sound."""
     parser = study.command("bench", __doc__)
     parser.add_argument("cases", metavar="CASE", nargs="*", default=list(CASES), help=f"(default: {' '.join(CASES)})")
-    parser.add_argument("--quick", action="store_true", help="the first case, coarse settings only, a coarser reference; under three minutes")
+    parser.add_argument("--quick", action="store_true",
+                        help="the first case, coarse settings only, a coarser reference; under three minutes")
     options = parser.parse_args(argv)
     for name in options.cases:
         if name not in CASES:
@@ -102,7 +107,8 @@ def main(argv: list[str]) -> int:
     return 0
 
 
-HEAD = """One process, one thread; seconds are processor time: of ours the whole process, start-up and set-up included; of the other programs the
+HEAD = """One process, one thread; seconds are processor time: of ours the whole process, start-up and set-up included; of the other \
+programs the
 march alone, without imports and set-up (up to 0.4 s). Errors are
 relative to the mean of our two finest runs; ± is half their difference, and no error below it is known. The force error is the L2
 norm over time of the difference of the force histories over that of the reference.
@@ -114,7 +120,8 @@ norm over time of the difference of the force histories over that of the referen
 
 def settings(case: Case, quick: bool) -> dict[str, list[study.Point]]:
     """Points by family, from coarse to fine."""
-    return {family: points for family, points in (coarse(case) if quick else grid(case)).items() if family in case.families or not case.families}
+    return {family: points for family, points in (coarse(case) if quick else grid(case)).items() if family in case.families
+            or not case.families}
 
 
 def adaptive(case: Case, accuracies: Iterable[float], **given) -> list[study.Point]:
@@ -134,7 +141,8 @@ def grid(case: Case) -> dict[str, list[study.Point]]:
     found = {
         "adaptive, P2": adaptive(case, [a for a in (0.05, 0.02, 0.01, 0.005, 0.0025, 0.00125, 0.000625) if a >= case.finest]),
         "adaptive, P1": adaptive(case, (0.02, 0.005, 0.00125, 0.0005), degree=1),
-        "fixed step, P2": [case.sized(factor, dt) for factor, dt in ((2, 1.5e-4), (2, 1e-4), (2, 5e-5), (1, 1e-4), (1, 5e-5), (1, 2e-5), (0.5, 2e-5))],
+        "fixed step, P2": [case.sized(factor, dt)
+                           for factor, dt in ((2, 1.5e-4), (2, 1e-4), (2, 5e-5), (1, 1e-4), (1, 5e-5), (1, 2e-5), (0.5, 2e-5))],
         "fixed step, P1": [case.sized(factor, dt, degree=1) for factor, dt in ((1, 5e-5), (0.5, 5e-5), (0.5, 2e-5))],
     }
     for integrator in ("midpoint", "newmark", "backward-euler", "bdf2"):
@@ -183,7 +191,8 @@ def measure(name: str, out: Path, quick: bool) -> tuple[pd.DataFrame, dict[str, 
                             for (_, point), code in zip(labels, rows.exit)]
     if others := (PEERS_QUICK if quick else PEERS).get(name):
         ours = {study.place(folder, point) for (_, point), code in zip(labels, rows.exit) if code == 0}
-        found = pd.concat([found, _peers(case, others, best, histories[0], out / "peers", folder, ours).assign(case=name)], ignore_index=True)
+        found = pd.concat([found, _peers(case, others, best, histories[0], out / "peers", folder, ours).assign(case=name)],
+                          ignore_index=True)
     if case.scene == "disc-block":
         found = pd.concat([found, _two_bodies(case, best, histories[0], out / "peers", quick).assign(case=name)], ignore_index=True)
     return found, bars
@@ -201,30 +210,27 @@ def _words(point: study.Point) -> str:
     return ", ".join(filter(None, [sizes, *rest]))
 
 
-def _peers(case: Case, others: list[tuple], best: pd.Series, force: tuple[np.ndarray, np.ndarray], out: Path, folder: Path, ours: set[Path]) -> pd.DataFrame:
-    """The same rows for the settings `others` of other programs: one with the reason for each that is not installed or failed. force_from_ours: of the
-    force history against that of our run with the same sizes and step, where `folder` has it among `ours`."""
+def _peers(case: Case, others: list[tuple], best: pd.Series, force: tuple[np.ndarray, np.ndarray], out: Path, folder: Path,
+           ours: set[Path]) -> pd.DataFrame:
+    """The same rows for the settings `others` of other programs: one with the reason for each that is not installed or failed.
+    force_from_ours: of the force history against that of our run with the same sizes and step, where `folder` has it among `ours`."""
     rows = []
     for program, form, factor, dt in in_turn("others", others):
         sizes = sized(factor)
-        history = out / f"{case.scene}-{program}-{form}-{factor:g}-{dt:g}.csv"
-        history.parent.mkdir(parents=True, exist_ok=True)
-        row = {"program": f"{program}, {form}", "family": f"{program}, {form}", "setting": _words(sizes | {"dt": dt}), "exit": 1}
+        history = _history(out, f"{case.scene}-{program}-{form}-{factor:g}-{dt:g}")
+        row = {"program": f"{program}, {form}", "family": f"{program}, {form}", "setting": _words(sizes | {"dt": dt})}
         if program == "textbook":
             found, reason = _textbook(sizes, dt, out), ""
         else:
             found, reason = peers.run(program, form, sizes["mesh_size"], sizes["contact_mesh_size"], dt, LIMIT, scene=case.scene,
                                       history=str(history), **case.base)
-        if found:
-            row |= {"exit": 0, "dofs": found["dofs"], "steps": found["steps"], "seconds": found["cpu_seconds"]}
-            row |= {f"{answer}_error": 100 * abs(found[answer] / best[answer] - 1) for answer in ("impulse", "rebound_vy", "contact_time")
-                    if answer in found}
-            if history.exists():
-                t, values = np.loadtxt(history, delimiter=",", skiprows=1).T
-                row["force_error"] = 100 * distance(force, (t - dt / 2, values))
-                if (same := study.place(folder, sizes | {"dt": dt})) in ours:
-                    row["force_from_ours"] = 100 * distance((t - dt / 2, values), _force(same))
-        rows.append(row | {"message": reason})
+        row |= _other(found, reason, best, {answer: answer for answer in ("impulse", "rebound_vy", "contact_time")})
+        if found and history.exists():
+            t, values = np.loadtxt(history, delimiter=",", skiprows=1).T
+            row["force_error"] = 100 * distance(force, (t - dt / 2, values))
+            if (same := study.place(folder, sizes | {"dt": dt})) in ours:
+                row["force_from_ours"] = 100 * distance((t - dt / 2, values), _force(same))
+        rows.append(row)
     return pd.DataFrame(rows)
 
 
@@ -232,16 +238,27 @@ def _two_bodies(case: Case, best: pd.Series, force: tuple[np.ndarray, np.ndarray
     """The same rows for NGSolve's disc on a block, a row a refinement of its own mesh; one with the reason where there is no answer."""
     rows = []
     for refine in in_turn("NGSolve", REFINEMENTS_QUICK if quick else REFINEMENTS):
-        history = out / f"two-bodies-{refine:g}.csv"
-        history.parent.mkdir(parents=True, exist_ok=True)
+        history = _history(out, f"two-bodies-{refine:g}")
         found, reason = peers.two_bodies(LIMIT, refine=refine, history=str(history), **case.base)
-        row = {"program": "ngsolve", "family": "ngsolve, central differences", "setting": f"refine {refine:g}", "exit": 1, "message": reason}
+        rows.append({"program": "ngsolve", "family": "ngsolve, central differences", "setting": f"refine {refine:g}"}
+                    | _other(found, reason, best, NGSOLVE))
         if found:
-            t, values = np.loadtxt(history, delimiter=",", skiprows=1, usecols=(0, 1)).T
-            row |= {"exit": 0, "dofs": found["dofs"], "steps": found["steps"], "seconds": found["cpu_seconds"], "force_error": 100 * distance(force, (t, values))}
-            row |= {f"{answer}_error": 100 * abs(found[NGSOLVE[answer]] / best[answer] - 1) for answer in case.answers}
-        rows.append(row)
+            rows[-1]["force_error"] = 100 * distance(force, tuple(np.loadtxt(history, delimiter=",", skiprows=1, usecols=(0, 1)).T))
     return pd.DataFrame(rows)
+
+
+def _history(out: Path, name: str) -> Path:
+    """Where another program is to write its force history."""
+    out.mkdir(parents=True, exist_ok=True)
+    return out / f"{name}.csv"
+
+
+def _other(found: dict | None, reason: str, best: pd.Series, answers: dict[str, str]) -> dict:
+    """Of what another program found, which calls our answers so: size, seconds and errors [%]; or the reason why there is nothing."""
+    if not found:
+        return {"exit": 1, "message": reason}
+    return {"exit": 0, "message": reason, "dofs": found["dofs"], "steps": found["steps"], "seconds": found["cpu_seconds"]} | {
+        f"{ours}_error": 100 * abs(found[theirs] / best[ours] - 1) for ours, theirs in answers.items() if theirs in found}
 
 
 def _textbook(sizes: study.Point, dt: float, out: Path) -> dict:
@@ -249,8 +266,7 @@ def _textbook(sizes: study.Point, dt: float, out: Path) -> dict:
     wanted = scene.load("disc-normal").override(sizes | {"dt": dt, "end_time": 5.2e-3})
     path = out / f"textbook-{sizes['mesh_size']:g}.msh"
     mesh.write(mesh.disc(wanted.values["radius"], sizes["mesh_size"], sizes["contact_mesh_size"], half=True), path)
-    found = textbook.textbook(wanted, path)
-    return found | {"contact_time": found["contact_end"]}
+    return peers.textbook(wanted, path)
 
 
 # ---- the page
@@ -271,14 +287,16 @@ def page(name: str, rows: pd.DataFrame, bars: dict[str, float]) -> str:
         found = [{words: program} | {f"{level:g} %": cheapest(group, wanted, level) for level in LEVELS}
                  for program, group in rows.groupby("program", sort=False)]
         lines += [study.table(pd.DataFrame(found), dict.fromkeys(found[0], "")), ""]
-    asked = {answer: HEADLINE_CONTACT if answer.endswith("contact_time") else HEADLINE for answer in CASES[name].answers if answer != "friction_work"}
+    asked = {answer: HEADLINE_CONTACT if answer.endswith("contact_time") else HEADLINE for answer in CASES[name].answers
+             if answer != "friction_work"}
     headline = {f"{answer}_error": level for answer, level in asked.items()}
     found = [{"program": program, "cheapest": cheapest(group, list(headline), np.array(list(headline.values())))}
              for program, group in rows.groupby("program", sort=False)]
     lines += ["At most " + ", ".join(f"{level:g} % in {answer.replace('_', ' ')}" for answer, level in asked.items()) + ":", "",
               study.table(pd.DataFrame(found), dict.fromkeys(found[0], "")), ""]
     if "force_from_ours" in rows and rows.force_from_ours.notna().any():
-        lines += ["Force history against that of our run with the same sizes and step, in % (L2; GetFEM takes our mesh, NGSolve makes its own):", "",
+        lines += ["Force history against that of our run with the same sizes and step, in % (L2; GetFEM takes our mesh, NGSolve makes its "
+                  "own):", "",
                   study.table(rows[rows.force_from_ours.notna()], {"program": "", "setting": "", "force_from_ours": ".2f"}), ""]
     lines += ["All settings; errors in %:", ""]
     shown_rows = rows.rename(columns={column: words for column, words in columns.items()})
@@ -302,15 +320,16 @@ def draw(name: str, rows: pd.DataFrame, bars: dict[str, float], path: Path) -> N
     looks = {family: style for family, style in zip(rows.family.unique(), styles)}
     with plt.rc_context(STYLE):
         wide = 2 if len(columns) <= 4 else 3
-        figure, grid = plt.subplots(-(-len(columns) // wide), wide, figsize=(4.2 * wide, 3.2 * -(-len(columns) // wide)), squeeze=False, sharex=True)
+        figure, grid = plt.subplots(-(-len(columns) // wide), wide, figsize=(4.2 * wide, 3.2 * -(-len(columns) // wide)), squeeze=False,
+                                    sharex=True)
         for axes in grid.flat[len(columns):]:
             axes.set_axis_off()
         for axes, (column, words) in zip(grid.flat, columns.items()):
             for family, group in rows[rows.exit == 0].groupby("family", sort=False):
                 line, colour = looks[family]
                 group = group.sort_values("seconds")
-                axes.loglog(group.seconds, group[column].clip(lower=1e-4), color=colour, linestyle=line, marker="os^"[("-", "--", ":").index(line)],
-                            markersize=3.5, linewidth=1.1, label=family)
+                axes.loglog(group.seconds, group[column].clip(lower=1e-4), color=colour, linestyle=line,
+                            marker="os^"[("-", "--", ":").index(line)], markersize=3.5, linewidth=1.1, label=family)
             axes.axhspan(1e-4, max(1e-4, bars[column.removesuffix("_error")]), color=GREY, alpha=0.25, linewidth=0)
             axes.set(title=words, ylabel="error [%]")
             axes.grid(alpha=0.3)

@@ -1,4 +1,4 @@
-"""The disc on the free block (paper, section 3.2) with error bars: velocities, energies and contact times over law, nu, stiffness and mesh."""
+"""The disc on the free block (paper, section 3.2) with error bars: velocities, energies, contact times over law, nu, stiffness, mesh."""
 
 import itertools
 from collections.abc import Mapping
@@ -8,7 +8,6 @@ import pandas as pd
 
 from ..output import estimate
 from ..input.parameters import Value, whole
-from ..places import shown
 from ..progress import in_turn
 from ..output.results import read_scene
 from . import peers
@@ -26,7 +25,8 @@ VELOCITIES = ("v disc m/s", "v block m/s")
 SHARES = ("disc moves %", "block moves %", "disc vibrates %", "block vibrates %")
 TIMES = ("contact >1% ms", "contact ms")    # above 1 % of the peak force; from the first touch to the last
 ANSWERS = VELOCITIES + SHARES + TIMES
-# What every run must fulfil. The block's velocity lies between that of bodies that stay together (restitution 0) and of an elastic impact (1).
+# What every run must fulfil. The block's velocity lies between that of bodies that stay together (restitution 0) and of an elastic impact
+# (1).
 BLOCK = (-0.76, -0.38)      # m/s
 MOMENTUM = 1e-8             # of the disc's momentum
 ENERGY = 1e-9               # of the energy at the start
@@ -39,31 +39,31 @@ def main(argv: list[str]) -> int:
     """Prints answers, errors and checks, writes disc-block-errors.csv and disc-block-peers.csv; 0 if every run fulfils every check."""
     parser = study.command("disc-block-errors", __doc__, page=True)
     parser.add_argument("--cases", metavar="N", type=whole, default=len(CASES), help="the first N of them")
-    parser.add_argument("--accuracy", metavar="A", type=float, nargs="+", default=ACCURACIES, help="of the runs, the most accurate last (default: 0.02 0.005)")
+    parser.add_argument("--accuracy", metavar="A", type=float, nargs="+", default=ACCURACIES,
+                        help="of the runs, the most accurate last (default: 0.02 0.005)")
     options = parser.parse_args(argv)
     cases, out = CASES[:max(1, options.cases)], options.out
     table = compare(cases, tuple(options.accuracy), out)
-    study.save(table, out / "disc-block-errors.csv")
     others, reason = ask_peer([case for case in PEER_CASES if case in cases])
     study.save(others, out / "disc-block-peers.csv")
-    text = report(table, others, reason)
-    print(f"{text}\n{shown(out)}/disc-block-errors.csv")
-    study.page(options.page, "A disc on a free block, with error bars", ["disc-block-errors", *argv], text)
-    return 1 if violations(table) else 0
+    return study.finish(options, table, report(table, others, reason), not violations(table), argv,
+                        "A disc on a free block, with error bars")
 
 
 def compare(cases: list[study.Point], accuracies: tuple[float, ...], out: Path) -> pd.DataFrame:
-    """A row a case and accuracy, and one of its reference: size, processor seconds, ANSWERS, what the checks look at, and the exit's message."""
+    """A row a case and accuracy, and one of its reference: size, processor seconds, ANSWERS, what the checks look at, the message."""
     points = [case | {"accuracy": accuracy} for case in cases for accuracy in accuracies]
     runs = study.study(points, out, OPEN, LIMIT, "disc-block")
     last = range(len(accuracies) - 1, len(points), len(accuracies))
-    finer = [estimate.other(points[k], read_scene(study.place(out, points[k])), 1 / FINER) if runs.exit[k] == 0 else points[k] for k in last]
+    finer = [estimate.other(points[k], read_scene(study.place(out, points[k])), 1 / FINER) if runs.exit[k] == 0 else points[k]
+             for k in last]
     references = study.study(finer, out / "finer", OPEN, LIMIT, "disc-block")
     rows = []
     for k, case in enumerate(cases):
         found = [*runs.iloc[k * len(accuracies):(k + 1) * len(accuracies)].iterrows(), (None, references.iloc[k])]
         rows += [case | row(run, accuracy) for (_, run), accuracy in zip(found, (*accuracies, REFERENCE))]
-    return pd.DataFrame(rows).reindex(columns=[*CASES[0], "accuracy", "dofs", "steps", "seconds", *ANSWERS, "momentum", "energy drift", "message"])
+    return pd.DataFrame(rows).reindex(columns=[*CASES[0], "accuracy", "dofs", "steps", "seconds", *ANSWERS, "momentum",
+                                               "energy drift", "message"])
 
 
 def row(run: Mapping[str, Value], accuracy: float | str) -> dict:
@@ -78,8 +78,9 @@ def row(run: Mapping[str, Value], accuracy: float | str) -> dict:
         "momentum": abs(missing), "energy drift": run["energy_drift"], "message": ""}
 
 
-def answers(disc: tuple[float, float], block: tuple[float, float], vibration: tuple[float, float], energy: float, times: tuple[float, float]) -> dict[str, float]:
-    """ANSWERS, from mass [kg/m] and velocity [m/s] of both bodies, their energies of vibration and that at the start [J/m], both times [s]."""
+def answers(disc: tuple[float, float], block: tuple[float, float], vibration: tuple[float, float], energy: float,
+            times: tuple[float, float]) -> dict[str, float]:
+    """ANSWERS, from mass [kg/m] and velocity [m/s] of both bodies, their energies of vibration, that at the start [J/m], both times [s]."""
     moves = [mass / 2 * v**2 for mass, v in (disc, block)]
     return dict(zip(ANSWERS, (disc[1], block[1], *(100 * part / energy for part in (*moves, *vibration)), *(1e3 * time for time in times))))
 
@@ -92,7 +93,8 @@ def ask_peer(cases: list[study.Point]) -> tuple[pd.DataFrame, str]:
         if not found:
             break
         bodies = [(found[f"mass_{body}"], found[f"velocity_{body}"]) for body in ("upper", "lower")]
-        rows.append(case | {"refine": refine, "dofs": found["dofs"], "steps": found["steps"], "seconds": found["cpu_seconds"] + found["setup_cpu_seconds"]}
+        rows.append(case | {"refine": refine, "dofs": found["dofs"], "steps": found["steps"], "seconds": found["cpu_seconds"]
+                            + found["setup_cpu_seconds"]}
                     | answers(*bodies, (found["vibration_upper"], found["vibration_lower"]), found["energy_start"],
                               (found["contact_time_1_percent"], found["contact_time"])))
     return pd.DataFrame(rows, columns=[*CASES[0], "refine", "dofs", "steps", "seconds", *ANSWERS]), reason
@@ -116,7 +118,8 @@ def violations(table: pd.DataFrame) -> list[str]:
 
 def words(run: Mapping[str, Value]) -> str:
     """A case, with its accuracy where it has one, in words."""
-    which = f", {run['accuracy'] if run['accuracy'] == REFERENCE else 'accuracy ' + format(run['accuracy'], 'g')}" if "accuracy" in run else ""
+    which = run.get("accuracy")
+    which = "" if which is None else f", {which}" if which == REFERENCE else f", accuracy {which:g}"
     return f"{run['law']}, nu {run['nu']:g}, k {run['penalty']:g} Pa/m{which}"
 
 
@@ -139,7 +142,8 @@ def with_bars(table: pd.DataFrame) -> pd.DataFrame:
 def peer_with_bars(others: pd.DataFrame) -> pd.DataFrame:
     """A row a case of which both refinements are there: the finer's answers and, as <answer> bar, what the coarser differs by."""
     groups = [rows for _, rows in others.groupby(list(CASES[0]), sort=False) if len(rows) == len(REFINEMENTS)]
-    return pd.DataFrame([{**rows.iloc[-1], **{f"{answer} bar": abs(rows[answer].iloc[-1] - rows[answer].iloc[0]) for answer in ANSWERS}} for rows in groups])
+    return pd.DataFrame([{**rows.iloc[-1], **{f"{answer} bar": abs(rows[answer].iloc[-1] - rows[answer].iloc[0]) for answer in ANSWERS}}
+                         for rows in groups])
 
 
 def disagreements(ours: pd.DataFrame, theirs: pd.DataFrame) -> list[str]:
@@ -165,27 +169,35 @@ def report(table: pd.DataFrame, others: pd.DataFrame, reason: str) -> str:
     """Answers with bars, errors beside processor seconds, NGSolve's answers beside ours, the checks."""
     columns = {"law": "", "nu": "g", "penalty": "g"}
     ours = with_bars(table)
-    cells = pd.DataFrame([{name: values[name] for name in columns} | {answer: bar(values, answer) for answer in ANSWERS} for _, values in ours.iterrows()])
+    cells = pd.DataFrame([{name: values[name] for name in columns} | {answer: bar(values, answer) for answer in ANSWERS}
+                          for _, values in ours.iterrows()])
     errors = differences(table).assign(accuracy=lambda rows: rows.accuracy.astype(float))
     digits = dict.fromkeys(VELOCITIES, ".5f") | dict.fromkeys(SHARES, ".3f") | dict.fromkeys(TIMES, ".2f")
     size = {"dofs": ".0f", "steps": ".0f", "seconds": ".1f"}
     fine = table[table.accuracy == REFERENCE]
     wrong = violations(table)
     return "\n".join([
-        f"The disc of radius 0.5 m comes down at {SPEED:g} m/s on the middle of the free block of 10 m x 2 m. Velocities upwards, after the impact; energies of the",
-        "motion of the centres of mass and of the vibration about it in % of the energy at the start; contact time above 1 % of the peak force, and from the first",
-        f"touch to the last. k: penalty [Pa/m]. Answers are those of the reference, with {FINER} times smaller elements and steps than the most accurate run; ± is what",
-        f"that run differs by from it. The reference has an error of its own, at second order {1 / (FINER**2 - 1):.1f} times the bar, and two runs can be close by",
+        f"The disc of radius 0.5 m comes down at {SPEED:g} m/s on the middle of the free block of 10 m x 2 m. Velocities upwards, after "
+        f"the impact; energies of the",
+        "motion of the centres of mass and of the vibration about it in % of the energy at the start; contact time above 1 % of the peak "
+        "force, and from the first",
+        f"touch to the last. k: penalty [Pa/m]. Answers are those of the reference, with {FINER} times smaller elements and steps than the "
+        f"most accurate run; ± is what",
+        f"that run differs by from it. The reference has an error of its own, at second order {1 / (FINER**2 - 1):.1f} times the bar, and "
+        f"two runs can be close by",
         "chance: a bar far below those of its column says little.", "",
         study.table(cells, columns | dict.fromkeys(ANSWERS, "")), "",
-        "What the runs differ by from the reference, in the units of the answers, and their processor seconds (beside other work on the machine up to",
+        "What the runs differ by from the reference, in the units of the answers, and their processor seconds (beside other work on the "
+        "machine up to",
         "several times those of a quiet one):", "",
         study.table(errors, columns | {"accuracy": "g"} | size | digits), "",
         f"The references: {cost(fine)}", "",
         "## NGSolve beside it", *beside(table, others, reason, columns, size | digits, disagreements(ours, peer_with_bars(others))), "",
         "## Checks",
-        f"Every run: the block's velocity between {BLOCK[0]} and {BLOCK[1]} m/s (bodies that stay together, an elastic impact), the disc rebounds, momentum to {MOMENTUM:g}",
-        f"of the disc's, energy drift below {ENERGY:g}. Largest found: momentum {table.momentum.max():.1e}, energy drift {table['energy drift'].max():.1e}.", "",
+        f"Every run: the block's velocity between {BLOCK[0]} and {BLOCK[1]} m/s (bodies that stay together, an elastic impact), the disc "
+        f"rebounds, momentum to {MOMENTUM:g}",
+        f"of the disc's, energy drift below {ENERGY:g}. Largest found: momentum {table.momentum.max():.1e}, energy drift "
+        f"{table['energy drift'].max():.1e}.", "",
         *[f"- {sentence}" for sentence in wrong], f"{len(table)} runs: the requirement {'FAILS' if wrong else 'holds'}"])
 
 
@@ -201,10 +213,14 @@ def beside(table: pd.DataFrame, others: pd.DataFrame, reason: str, columns: dict
     if others.empty:
         return lines
     ours = table.merge(others[list(columns)].drop_duplicates(), on=list(columns)).assign(
-        program="ours", setting=lambda rows: [REFERENCE if accuracy == REFERENCE else f"accuracy {accuracy:g}" for accuracy in rows.accuracy])
+        program="ours",
+        setting=lambda rows: [REFERENCE if accuracy == REFERENCE else f"accuracy {accuracy:g}" for accuracy in rows.accuracy])
     theirs = others.assign(program="NGSolve", setting=[f"refine {refine:g}" for refine in others.refine])
     both = pd.concat([ours, theirs]).sort_values(list(columns), kind="stable")
-    return [*lines, "Central differences on its own mesh, contact from both sides (verification/peers/ngsolve_two_bodies.py); its processor seconds with set-up.", "",
+    return [*lines, "Central differences on its own mesh, contact from both sides (verification/peers/ngsolve_two_bodies.py); its "
+                    "processor seconds with set-up.", "",
             study.table(both, columns | {"program": "", "setting": ""} | formats), "",
-            *([f"Its error bar is what refine {REFINEMENTS[0]:g} and {REFINEMENTS[1]:g} differ by. Further apart than both error bars together:", "", *[f"- {sentence}" for sentence in apart]]
-              if apart else [f"No answer is further apart than both error bars together (its own: what refine {REFINEMENTS[0]:g} and {REFINEMENTS[1]:g} differ by)."])]
+            *([f"Its error bar is what refine {REFINEMENTS[0]:g} and {REFINEMENTS[1]:g} differ by. Further apart than both error bars "
+               f"together:", "", *[f"- {sentence}" for sentence in apart]]
+              if apart else [f"No answer is further apart than both error bars together (its own: what refine {REFINEMENTS[0]:g} and "
+                             f"{REFINEMENTS[1]:g} differ by)."])]

@@ -5,9 +5,10 @@ import random
 from ..sweeps.study import Point
 
 # young [Pa], density [kg/m3], nu: from gel to steel, round values of handbooks
-MATERIALS = {"gel": (3e4, 1050.0, 0.45), "soft rubber": (1e5, 1000.0, 0.4), "foam": (1e6, 100.0, 0.0), "rubber": (7e6, 1722.0, 0.45), "cork": (3e7, 200.0, 0.05),
-             "ptfe": (5e8, 2200.0, 0.46), "nylon": (2.5e9, 1150.0, 0.4), "wood": (1e10, 700.0, 0.3), "lead": (1.6e10, 11340.0, 0.44),
-             "glass": (7e10, 2500.0, 0.22), "aluminium": (7e10, 2700.0, 0.33), "steel": (2.1e11, 7850.0, 0.3)}
+MATERIALS = {"gel": (3e4, 1050.0, 0.45), "soft rubber": (1e5, 1000.0, 0.4), "foam": (1e6, 100.0, 0.0), "rubber": (7e6, 1722.0, 0.45),
+             "cork": (3e7, 200.0, 0.05), "ptfe": (5e8, 2200.0, 0.46), "nylon": (2.5e9, 1150.0, 0.4), "wood": (1e10, 700.0, 0.3),
+             "lead": (1.6e10, 11340.0, 0.44), "glass": (7e10, 2500.0, 0.22), "aluminium": (7e10, 2700.0, 0.33),
+             "steel": (2.1e11, 7850.0, 0.3)}
 # Of a mixture of all dimensions: the share of each scene in sixty, and accuracies that are asked for; bodies and three dimensions are dear.
 MIXTURE = {"disc-normal": (24, (0.005, 0.01, 0.02)), "disc-block": (10, (0.01, 0.02, 0.05)), "ball-axisymmetric": (12, (0.005, 0.01, 0.02)),
            "two-discs": (10, (0.01, 0.02, 0.05)), "ball": (4, (0.1,))}
@@ -31,8 +32,8 @@ def draw(seed: int, count: int, hard: bool = False, scene: str = "disc-normal") 
 
 
 def mixture(seed: int, count: int) -> list[tuple[str, Point]]:
-    """About `count` scenes of all dimensions, with and without friction, of one body and two, the kinds spread evenly: each scene's name and what it
-    is overridden by."""
+    """About `count` scenes of all dimensions, with and without friction, of one body and two, the kinds spread evenly: each scene's name
+    and what it is overridden by."""
     found = []
     for scene, (share, accuracies) in MIXTURE.items():
         chance = random.Random(f"{seed} {scene}")
@@ -64,13 +65,15 @@ def _on_another(chance: random.Random, point: Point) -> Point:
     apart, off = radius + other, chance.choice([0, 0.2, 0.4, 0.6]) * (radius + other)
     drift = [_round(chance.uniform(-2, 2) * speed) for _ in "xy"]
     found = {name: point[name] for name in ("law", "young", "density", "nu")}
-    found |= {"body.1.radius": radius, "body.2.radius": other, "body.1.position": [0.0, 0.0], "body.2.position": [_round(1.05 * apart), _round(off)],
-              "body.1.velocity": [speed + drift[0], drift[1]], "body.2.velocity": drift}
+    found |= {"body.1.radius": radius, "body.2.radius": other, "body.1.position": [0.0, 0.0],
+              "body.2.position": [_round(1.05 * apart), _round(off)], "body.1.velocity": [speed + drift[0], drift[1]],
+              "body.2.velocity": drift}
     if chance.random() < 0.3:
         found["body.2.young"] = 10 * point["young"]
     if "spin" in point:
         found["body.1.spin"] = point["spin"]
-    contact = {"friction_static": 0.0, "friction_dynamic": 0.0} | {name: point[name] for name in ("friction_static", "friction_dynamic", "exponent") if name in point}
+    contact = {"friction_static": 0.0, "friction_dynamic": 0.0} | {
+        name: point[name] for name in ("friction_static", "friction_dynamic", "exponent") if name in point}
     return found | {f"contact.{name}": value for name, value in contact.items()}
 
 
@@ -80,19 +83,22 @@ def _in_space(chance: random.Random, point: Point) -> Point:
     return kept | {"law": "neohookean", "speed": _round(min(point["speed"], 0.05 * bar_speed(point["young"], point["density"])))}
 
 
-SCENES = {"disc-normal": _on_plane, "disc-block": _on_block, "ball-axisymmetric": _of_revolution, "two-discs": _on_another, "ball": _in_space}
+SCENES = {"disc-normal": _on_plane, "disc-block": _on_block, "ball-axisymmetric": _of_revolution, "two-discs": _on_another,
+          "ball": _in_space}
 
 
 def words(point: Point) -> str:
     """A scene as a line of a table reads it best: law, material, speed over c, what is special."""
     named = {value[:2]: name for name, value in MATERIALS.items()}
-    told = {"law", "young", "density", "nu", "speed", "friction_static", "friction_dynamic", "body.1.position", "body.1.velocity", "body.2.velocity"}
+    told = {"law", "young", "density", "nu", "speed", "friction_static", "friction_dynamic", "body.1.position", "body.1.velocity",
+            "body.2.velocity"}
     point = {name.removeprefix("contact."): value for name, value in point.items()}
     speed = point["speed"] if "speed" in point else point["body.1.velocity"][0] - point["body.2.velocity"][0]
     parts = [point["law"], named[point["young"], point["density"]], f"v/c {speed / bar_speed(point['young'], point['density']):.2g}"]
     if point.get("friction_static"):
         parts.append(f"friction {point['friction_static']:g}, {point['friction_dynamic']:g}")
-    return ", ".join(parts + [f"{name} {value:g}" if isinstance(value, float) else f"{name} {value}" for name, value in point.items() if name not in told])
+    return ", ".join(parts + [f"{name} {value:g}" if isinstance(value, float) else f"{name} {value}" for name, value in point.items()
+                              if name not in told])
 
 
 def _scene(chance: random.Random, hard: bool) -> Point:

@@ -1,8 +1,9 @@
-"""Disc and ball over the angle of incidence, with one coefficient of friction: nearly rigid, of the paper's material at its speed, and slow, beside
-rigid bodies with Coulomb friction and elastic ones, of which the ball is that of Maw, Barber and Fawcett (1976). Angles are from the plane: 90 degrees is normal.
+"""Disc and ball over the angle of incidence, with one coefficient of friction: nearly rigid, of the paper's material at its speed, and
+slow, beside rigid bodies with Coulomb friction and elastic ones, of which the ball is that of Maw, Barber and Fawcett (1976). Angles are
+from the plane: 90 degrees is normal.
 
-psi_1 = 2 (1 - nu) v_s/(mu (2 - nu) v_n), v_s the velocity along the plane of the point that touches and v_n the one across it before the impact; psi_2 the
-same with v_s after it. Error bars: what elements and steps 1.4 times larger change.
+psi_1 = 2 (1 - nu) v_s/(mu (2 - nu) v_n), v_s the velocity along the plane of the point that touches and v_n the one across it before the
+impact; psi_2 the same with v_s after it. Error bars: what elements and steps 1.4 times larger change.
 """
 
 import itertools
@@ -20,7 +21,6 @@ from verification.rigid_disc import STIFF
 
 from ..output import estimate
 from ..failure import BadInput
-from ..places import shown
 from ..progress import in_turn
 from ..report.figures import BLACK, BLUE, DASHED, GREEN, ORANGE, STYLE, save
 from ..output.results import read_scene
@@ -31,19 +31,21 @@ BASE = {"law": "neohookean", "nu": NU, "fields": 0}
 PAPER = {"young": YOUNG, "density": DENSITY, "radius": RADIUS}
 SLOW = PAPER | {"speed": 0.2, "slip_velocity": 2e-4, "penalty": "auto"}
 KINDS = {"stiff": {"disc": STIFF | {"nu": NU, "penalty": 1e10}, "ball": RIGID | {"nu": NU}},
-         "paper": {"disc": PAPER | {"speed": 12, "penalty": 1e10, "accuracy": 0.005}, "ball": PAPER | {"speed": 12, "penalty": 1e10, "accuracy": 0.05}},
+         "paper": {"disc": PAPER | {"speed": 12, "penalty": 1e10, "accuracy": 0.005},
+                   "ball": PAPER | {"speed": 12, "penalty": 1e10, "accuracy": 0.05}},
          "slow": {"disc": SLOW | {"accuracy": 0.01}, "ball": SLOW | {"accuracy": 0.1}}}
 WORDS = {"stiff": "E = 10 GPa, 1 m/s", "paper": "E = 7 MPa, 12 m/s", "slow": "E = 7 MPa, 0.2 m/s"}
 COLOURS = {"stiff": BLUE, "paper": ORANGE, "slow": GREEN}
 ANGLES, FRICTION = (20.0, 30.0, 40.0, 50.0, 60.0, 75.0), 0.3
 LEAST, MOST, MANY = 5.0, 85.0, 40                         # degrees; how many angles
 LIMIT = 900.0                                             # seconds a run may take
-ASKED = 0.05                                              # largest deviation of the slip that is lost and regained backwards, as in V17,
-FINITE = 1.5                                              # and for an elastic ball that sticks so many times the contact's radius over the ball's more, as a ball is
-                                                          # no half-space: at 0.125 V17 measures 0.8 (psi_1 = 1.2) to 1.8 (0.6, finer elements) times that
+# largest deviation of the slip that is lost and regained backwards, as in V17, and for an elastic ball that sticks so many times the
+# contact's radius over the ball's more, as a ball is no half-space: at 0.125 V17 measures 0.8 (psi_1 = 1.2) to 1.8 (0.6, finer elements)
+# times that
+ASKED, FINITE = 0.05, 1.5
 MEASURED = ("e", "along", "psi_2")
-FORMATS = {"body": "", "kind": "", "angle": "g", "psi_1": ".3f", "e": ".4f", "along": ".4f", "psi_2": ".3f", "psi_2_error": ".3f", "rigid": ".3f",
-           "off rigid [%]": "+.1f", "elastic": ".3f", "off elastic [%]": "+.1f", "asked [%]": ".1f", "verdict": ""}
+FORMATS = {"body": "", "kind": "", "angle": "g", "psi_1": ".3f", "e": ".4f", "along": ".4f", "psi_2": ".3f", "psi_2_error": ".3f",
+           "rigid": ".3f", "off rigid [%]": "+.1f", "elastic": ".3f", "off elastic [%]": "+.1f", "asked [%]": ".1f", "verdict": ""}
 
 
 def main(argv: list[str]) -> int:
@@ -62,12 +64,8 @@ def main(argv: list[str]) -> int:
     out = options.out
     cases = in_turn("oblique-angles", itertools.product(bodies, kinds))
     table = judge(pd.concat([impacts(body, kind, friction[0], angles, out) for body, kind in cases], ignore_index=True))
-    study.save(table, out / "oblique-angles.csv")
     draw(table, out / "oblique-angles.png")
-    text = report(table)
-    print(f"{text}\n{shown(out)}/oblique-angles.{{csv,png}}")
-    study.page(options.page, "Disc and ball over the angle of incidence", ["oblique-angles", *argv], text)
-    return 0 if holds(table) else 1
+    return study.finish(options, table, report(table), holds(table), argv, "Disc and ball over the angle of incidence", "{csv,png}")
 
 
 def numbers(name: str, text: str, low: float, high: float) -> list[float]:
@@ -80,7 +78,8 @@ def numbers(name: str, text: str, low: float, high: float) -> list[float]:
             number = math.nan
         if not low <= number <= high or number in found or len(found) == MANY:
             why = "is given twice" if number in found else f"is one more than {MANY}" if len(found) == MANY else "is not accepted"
-            raise BadInput(f"{name}: '{each.strip()}' {why} (accepted: numbers from {low:g} to {high:g}, each once, with commas between them)")
+            raise BadInput(f"{name}: '{each.strip()}' {why} (accepted: numbers from {low:g} to {high:g}, each once, with commas "
+                           f"between them)")
         found.append(number)
     return sorted(found)
 
@@ -97,11 +96,12 @@ def words(name: str, text: str, known: list[str]) -> list[str]:
 # ---- the runs
 
 def impacts(body: str, kind: str, friction: float, angles: list[float], out: Path) -> pd.DataFrame:
-    """A row an angle: psi_1, and with error bars MEASURED of the run and <name>_error, from a coarser one; without numbers where the run failed."""
+    """A row an angle: psi_1, and with error bars MEASURED of the run and <name>_error, from a coarser one; no numbers where it failed."""
     place, base, name = out / f"{body}-{kind}", BASE | KINDS[kind][body], f"{body}-oblique"
     points = [{"angle": angle, "friction_static": friction, "friction_dynamic": friction} for angle in angles]
     fine = study.study(points, place, base, LIMIT, name)
-    coarser = [estimate.other(point, read_scene(study.place(place, point)), estimate.COARSER) if code == 0 else point for point, code in zip(points, fine.exit)]
+    coarser = [estimate.other(point, read_scene(study.place(place, point)), estimate.COARSER) if code == 0 else point
+               for point, code in zip(points, fine.exit)]
     coarse = study.study(coarser, place / "coarser", base, LIMIT, name)
     rows = []
     for angle, (_, run), (_, other) in zip(angles, fine.iterrows(), coarse.iterrows()):
@@ -129,7 +129,7 @@ def number(ratio: ArrayLike, friction: float) -> ArrayLike:
 
 
 def sliding(psi: ArrayLike, e: ArrayLike, inertia: float) -> np.ndarray:
-    """psi_2 of a body on which friction acts one way all the time: it loses mu (1 + e)(1 + R^2/k^2) v_n of its slip, and so may turn it round."""
+    """psi_2 of a body on which friction acts one way all the time: it loses mu (1 + e)(1 + R^2/k^2) v_n of its slip, and may turn it."""
     return psi - number((1 + inertia) * (1 + np.asarray(e)), 1)
 
 
@@ -139,8 +139,9 @@ def rigid(psi: ArrayLike, e: ArrayLike, inertia: float) -> np.ndarray:
 
 
 def elastic(psi: ArrayLike, e: ArrayLike, inertia: float) -> np.ndarray:
-    """psi_2 of an elastic body that is pressed in little: beyond 4 chi - 1 it slides throughout; below, of a ball, by Maw, Barber and Fawcett, e = 1; of a disc nan:
-    springs side by side stand for axisymmetric contacts alone, and the approach of a half-plane hangs on the point it is measured from."""
+    """psi_2 of an elastic body that is pressed in little: beyond 4 chi - 1 it slides throughout; below, of a ball, by Maw, Barber and
+    Fawcett, e = 1; of a disc nan: springs side by side stand for axisymmetric contacts alone, and the approach of a half-plane hangs on the
+    point it is measured from."""
     psi = np.asarray(psi, dtype=float)
     sticks = psi * (1 - springs(psi, NU)) if inertia == INERTIA["ball"] else np.nan
     return np.where(slides_throughout(psi, NU, inertia), sliding(psi, e, inertia), sticks)
@@ -155,8 +156,9 @@ def judge(rows: pd.DataFrame) -> pd.DataFrame:
     """The rows with what rigid() and elastic() expect for psi_2, with the measured e; the deviation from it of the slip that is lost
     and regained backwards; what is asked, where the theory is one of such a body, and the verdict.
 
-    Asked are ASKED of the stiff ones beside rigid ones and of the slow ones beside elastic ones: they agree. Balls that stick are allowed FINITE times the contact's radius
-    more, as the theory is of half-spaces: beyond ASKED they agree partly. Nothing is asked at the paper's speed, where strains are large, nor of slow discs that stick.
+    Asked are ASKED of the stiff ones beside rigid ones and of the slow ones beside elastic ones: they agree. Balls that stick are allowed
+    FINITE times the contact's radius more, as the theory is of half-spaces: beyond ASKED they agree partly. Nothing is asked at the paper's
+    speed, where strains are large, nor of slow discs that stick.
     """
     table = rows.copy()
     for name, theory in (("rigid", rigid), ("elastic", elastic)):
@@ -166,7 +168,8 @@ def judge(rows: pd.DataFrame) -> pd.DataFrame:
         table[f"off {name} [%]"] = 100 * ((table.psi_1 - table.psi_2) / (table.psi_1 - table[name]) - 1)
     stiff, slow = table.kind == "stiff", table.kind == "slow"
     sticks = slow & ~slides_throughout(table.psi_1, NU, table.body.map(INERTIA))
-    size = [hertz.impact(MASS, RADIUS, YOUNG / (1 - NU**2), speed * math.sin(math.radians(angle)))[2] / RADIUS for speed, angle in zip(table.speed, table.angle)]
+    size = [hertz.impact(MASS, RADIUS, YOUNG / (1 - NU**2), speed * math.sin(math.radians(angle)))[2] / RADIUS
+            for speed, angle in zip(table.speed, table.angle)]
     table["asked [%]"] = 100 * (ASKED + sticks * FINITE * np.array(size)).where(stiff | (slow & ~(sticks & (table.body == "disc"))))
     off = table["off rigid [%]"].where(stiff, table["off elastic [%]"])
     table["verdict"] = np.select([table.psi_2.isna(), table["asked [%]"].isna(), off.abs() <= 100 * ASKED, off.abs() <= table["asked [%]"]],
@@ -185,22 +188,31 @@ def report(table: pd.DataFrame) -> str:
     """The table, what it says, and the verdict."""
     kinds = "; ".join(f"{kind}: {WORDS[kind]}" for kind in table.kind.unique())
     lines = [f"One coefficient of friction, static = dynamic = {table.friction.iloc[0]:g}; nu = {NU:g}, neo-Hookean. {kinds}.", "",
-             "- angle: of incidence, from the plane [degrees]; e: restitution; along: speed of the centre along the plane, after over before.",
-             "- psi_1 = 2 (1 - nu) v_s/(mu (2 - nu) v_n), v_s the speed of the point that touches; psi_2: the same after the impact, with its error bar.",
+             "- angle: of incidence, from the plane [degrees]; e: restitution; along: speed of the centre along the plane, after "
+             "over before.",
+             "- psi_1 = 2 (1 - nu) v_s/(mu (2 - nu) v_n), v_s the speed of the point that touches; psi_2: the same after the impact, with "
+             "its error bar.",
              "- rigid: psi_2 of a rigid body with Coulomb friction and the measured e.",
-             "- elastic: sliding throughout for psi_1 > 4 chi - 1, chi = (1 - nu)(1 + R^2/k^2)/(2 - nu); below that, of balls, the theory of Maw, Barber and Fawcett.",
-             "- off: difference from that theory over psi_1 - psi_2, the slip that is lost and regained backwards.", "", study.table(table, FORMATS), ""]
+             "- elastic: sliding throughout for psi_1 > 4 chi - 1, chi = (1 - nu)(1 + R^2/k^2)/(2 - nu); below that, of balls, the theory "
+             "of Maw, Barber and Fawcett.",
+             "- off: difference from that theory over psi_1 - psi_2, the slip that is lost and regained backwards.", "",
+             study.table(table, FORMATS), ""]
     failed = table.verdict == "failed"
-    lines += [f"failed, exit {row.exit}: {row.body}, {row.kind}, {row.angle:g} degrees: {row.message}" for row in table[failed].itertuples()]
-    lines += [f"- {body}, {kind}: {'; '.join(findings(body, kind, group))}." for (body, kind), group in table[~failed].groupby(["body", "kind"], sort=False)]
+    lines += [f"failed, exit {row.exit}: {row.body}, {row.kind}, {row.angle:g} degrees: {row.message}"
+              for row in table[failed].itertuples()]
+    lines += [f"- {body}, {kind}: {'; '.join(findings(body, kind, group))}."
+              for (body, kind), group in table[~failed].groupby(["body", "kind"], sort=False)]
     if found := study.warned(table.warnings):
         lines.append(f"- Warnings: {found}.")
     if "disc" in set(table.body):
-        lines.append("- No theory of an elastic disc that sticks is known to us: the model of independent springs holds for axisymmetric contacts alone, and the approach of a\n"
-                     "  half-plane depends on the point it is measured from. A disc that slides throughout loses what friction in one direction takes, as the ball does.")
+        lines.append("- No theory of an elastic disc that sticks is known to us: the model of independent springs holds for axisymmetric "
+                     "contacts alone, and the approach of a\n  half-plane depends on the point it is measured from. A disc that slides "
+                     "throughout loses what friction in one direction takes, as the ball does.")
     agree, partly, asked = (table.verdict == "agrees").sum(), (table.verdict == "partly").sum(), table["asked [%]"].notna().sum()
-    lines += ["", f"{agree} of {asked} that a theory is asked of agree, to {100 * ASKED:g} % of the slip that is lost, as in V17; {partly} agree partly: slow balls that stick, within",
-              f"{FINITE:g} times the contact's radius over the ball's on top, as a ball is no half-space. The requirement {'holds' if holds(table) else 'FAILS'}."]
+    lines += ["", f"{agree} of {asked} that a theory is asked of agree, to {100 * ASKED:g} % of the slip that is lost, as in V17; {partly} "
+                  f"agree partly: slow balls that stick, within",
+              f"{FINITE:g} times the contact's radius over the ball's on top, as a ball is no half-space. The requirement "
+              f"{'holds' if holds(table) else 'FAILS'}."]
     return "\n".join(lines)
 
 
@@ -227,8 +239,10 @@ def draw(table: pd.DataFrame, path: Path) -> None:
             draw_theory(panels, body, group)
             for kind, rows in group.groupby("kind", sort=False):
                 for panel, x, y in zip(panels, ("psi_1", "angle", "angle"), ("psi_2", "along", "e")):
-                    panel.errorbar(rows[x], rows[y], rows[f"{y}_error"], fmt="o", color=COLOURS[kind], markersize=4, capsize=2, linewidth=1, label=WORDS[kind])
-            for panel, x, y in zip(panels, ("$\\psi_1$", *["angle to the plane [°]"] * 2), ("$\\psi_2$", "$v_x'/v_x$ of the centre", "restitution $e = v_y'/v_y$")):
+                    panel.errorbar(rows[x], rows[y], rows[f"{y}_error"], fmt="o", color=COLOURS[kind], markersize=4, capsize=2, linewidth=1,
+                                   label=WORDS[kind])
+            for panel, x, y in zip(panels, ("$\\psi_1$", *["angle to the plane [°]"] * 2),
+                                   ("$\\psi_2$", "$v_x'/v_x$ of the centre", "restitution $e = v_y'/v_y$")):
                 panel.set(xlabel=x, ylabel=y, title=body)
                 panel.grid(alpha=0.3)
             panels[0].legend(fontsize=7)

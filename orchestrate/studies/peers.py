@@ -1,4 +1,5 @@
-"""Other programs on the same disc or ball, or the same two bodies (verification/peers/): found where they are installed, run one process at a time.
+"""Other programs on the same disc or ball, or the same two bodies, and a plain textbook script of FreeFEM (verification/peers/): found
+where they are installed, run one process at a time.
 
 NGSolve: `pip install ngsolve==6.2.2608`, in this Python or in the one that $NGSOLVE_PYTHON names. GetFEM: Debian's python3-getfem,
 in /usr/bin/python3 or in $GETFEM_PYTHON. Nothing else needs them.
@@ -13,16 +14,20 @@ from functools import cache, partial
 from pathlib import Path
 from signal import SIGKILL
 
-from ..mesh import mesh
-from ..freefem.freefem import die_with_parent
+from ..failure import Failure
+from ..freefem import freefem
 from ..input.parameters import Value
-from ..places import INSTALLED, ROOT
+from ..mesh import mesh
+from ..places import INSTALLED, ROOT, shown
+from ..scene import Scene
 
 PYTHONS = {"ngsolve": ("NGSOLVE_PYTHON", sys.executable), "getfem": ("GETFEM_PYTHON", "/usr/bin/python3")}
 INSTALL = {"ngsolve": "pip install ngsolve==6.2.2608", "getfem": "apt-get install python3-getfem"}
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 RADIUS = 0.05               # m, of disc-normal and the peers' default
-BODIES = {"disc-normal": "disc", "ball-axisymmetric": "ball", "ball": "ball_3d"}    # our scenes, and the script <program>_<body>.py beside each
+TEXTBOOK = "../verification/peers/textbook"
+# our scenes, and the script <program>_<body>.py beside each
+BODIES = {"disc-normal": "disc", "ball-axisymmetric": "ball", "ball": "ball_3d"}
 
 
 @cache
@@ -41,8 +46,8 @@ def run(program: str, form: str, mesh_size: float, contact_mesh_size: float, dt:
         **flags: Value) -> tuple[dict | None, str]:
     """(what the peer prints, "") or (None, the reason there is nothing).
 
-    program: ngsolve or (the disc alone) getfem; form: plain, tuned or (NGSolve) newmark or tuned-realcompile; sizes [m], step dt [s], limit [s]; scene: of BODIES.
-    Further flags by the names of the peers: law, nu, speed, penalty, young, density, tolerance, history.
+    program: ngsolve or (the disc alone) getfem; form: plain, tuned or (NGSolve) newmark or tuned-realcompile; sizes [m], step dt [s], limit
+    [s]; scene: of BODIES. Further flags by the names of the peers: law, nu, speed, penalty, young, density, tolerance, history.
     """
     flags |= {"form": form, "dt": dt, "mesh_size": mesh_size, "contact_mesh_size": contact_mesh_size}
     with tempfile.TemporaryDirectory() as folder:
@@ -68,10 +73,24 @@ def _printed(program: str, script: str, folder: str, limit: float, flags: dict[s
     words = [word for name, value in flags.items() for word in (f"--{name.replace('_', '-')}", str(value))]
     try:
         done = subprocess.run([python, ROOT / "verification/peers" / script, *words], env=os.environ | ONE_THREAD, cwd=folder,
-                              capture_output=True, text=True, timeout=limit, preexec_fn=partial(die_with_parent, os.getpid(), SIGKILL))
+                              capture_output=True, text=True, timeout=limit,
+                              preexec_fn=partial(freefem.die_with_parent, os.getpid(), SIGKILL))
     except subprocess.TimeoutExpired:
         return None, f"no end after {limit:g} s: killed"
     said, complaint = done.stdout.strip().splitlines(), done.stderr.strip().splitlines()
     if done.returncode != 0 or not said:
         return None, f"exit code {done.returncode}: {complaint[-1] if complaint else 'no output'}"
     return json.loads(said[-1]), ""
+
+
+def textbook(wanted: Scene, mesh_file: Path) -> dict:
+    """What the textbook script prints of a disc on a mesh, under the names of summary.json. Seconds: processor time without set-up."""
+    log = mesh_file.with_suffix(".log")
+    flags = [text for name, value in wanted.values.items() for text in (f"-{name}", str(value))]
+    code, _ = freefem.run(freefem.find(), TEXTBOOK, [*flags, "-mesh", str(mesh_file)], log)
+    said = log.read_text().strip().splitlines()
+    words = said[-1].split() if said else []
+    if code != 0 or words[:1] != ["textbook"]:
+        raise Failure(f"textbook: the textbook script ended with exit code {code}; its output is in {shown(log)}")
+    names = ("dofs", "steps", "newton_iterations", "cpu_seconds", "impulse", "rebound_vy", "contact_time", "energy_drift")
+    return dict(zip(names, map(float, words[1:])))

@@ -11,13 +11,13 @@ from .. import run, scene
 from ..output import estimate
 from ..failure import Failure, TooLong
 from ..input.parameters import Value, whole
-from ..places import shown
 from ..output.results import read_answers
 from . import draws
 from ..sweeps import study
 
 SEED, COUNT = 67, 240       # other scenes than those that sizes (seeds 1, 2, 5, 40; 7) and stated errors (60, 61, 64, 66) are calibrated on
-FINER = {"ball": 2}         # elements and steps of the reference are so many times smaller than the first run's; 3 where it is no matter of hours
+# elements and steps of the reference are so many times smaller than the first run's; 3 where it is no matter of hours
+FINER = {"ball": 2}
 LIMIT = 1800.0              # seconds a scene may take
 KEPT = 0.95                 # share of the scenes in which the promise must be kept, and of the cases that a stated error must cover
 NEAR, FAR = 0.1, 1.0        # between which the median error must lie, over the accuracy asked for: who asks for little shall pay little
@@ -31,26 +31,26 @@ def main(argv: list[str]) -> int:
     parser = study.command("promise", __doc__, page=True)
     parser.add_argument("--scenes", metavar="N", type=whole, default=COUNT, help=f"how many (default: {COUNT})")
     parser.add_argument("--seed", metavar="N", type=whole, default=SEED, help=f"other scenes (default: {SEED})")
-    parser.add_argument("--hard", action="store_true", help="also gravity, other integrators, linear elements ...: nothing above what was asked without a warning")
+    parser.add_argument("--hard", action="store_true",
+                        help="also gravity, other integrators, linear elements ...: nothing above what was asked without a warning")
     parser.add_argument("--of", metavar="SCENE", choices=draws.SCENES, help=f"of one kind only: {', '.join(draws.SCENES)}")
     options = parser.parse_args(argv)
     count, of = max(1, options.scenes), options.of or "disc-normal"
-    drawn = [(of, point) for point in draws.draw(options.seed, count, options.hard, of)] if options.hard or options.of else draws.mixture(options.seed, count)
+    alike = options.hard or options.of
+    drawn = [(of, point) for point in draws.draw(options.seed, count, options.hard, of)] if alike else draws.mixture(options.seed, count)
     table = compare(drawn, options.out)
-    study.save(table, options.out / "promise.csv")
     good = silent(table) == 0 if options.hard else kept(table) and covered(table)
     text = report(table) + f"; {'the requirement' if options.hard else 'the promise'} {'is kept' if good else 'IS NOT KEPT'}"
-    print(f"{text}\n{shown(options.out)}/promise.csv")
     title = ("Hard scenes" if options.hard else "Whether accuracy means what it says") + (f" of {options.of}" if options.of else "")
-    study.page(options.page, title, ["promise", *argv], text)
-    return 0 if good else 1
+    return study.finish(options, table, text, good, argv, title)
 
 
 def compare(drawn: list[Drawn], out: Path) -> pd.DataFrame:
-    """A row a scene: what it is, of each promised answer the error and the stated one, and the largest of each, over the accuracy asked for; warnings;
-    processor seconds of the run with its estimate, and of the reference; nan where one of them failed."""
+    """A row a scene: what it is, of each promised answer the error and the stated one, and the largest of each, over the accuracy asked
+    for; warnings; processor seconds of the run with its estimate, and of the reference; nan where one of them failed."""
     acts = {k: partial(_row, out, *one) for k, one in enumerate(drawn)}
-    rows = {k: {"message": str(found)} if isinstance(found, Failure) else found for k, found in study.side_by_side(acts, study.CORES, out.name)}
+    rows = {k: {"message": str(found)} if isinstance(found, Failure) else found
+            for k, found in study.side_by_side(acts, study.CORES, out.name)}
     rows = [{"scene": f"{name}: {draws.words(point)}", "warnings": ""} | rows[k] for k, (name, point) in enumerate(drawn)]
     columns = [each for name in estimate.PROMISED for each in (name, f"{name} stated")]
     return pd.DataFrame(rows).reindex(columns=["scene", *columns, "error", "estimated", "seconds", "finer seconds", "warnings", "message"])
@@ -93,9 +93,12 @@ def _compared(wanted: scene.Scene, folder: Path) -> dict:
         best = read_answers(finer).summary | {"largest_energy": answers.summary["largest_energy"]}
     apart = estimate.difference(best, answers.summary, answers.speed, answers.used.get("radius"))
     stated = found["estimated_error"]
-    row = {answer: apart[answer] / asked for answer in estimate.PROMISED} | {f"{answer} stated": stated[answer] / asked for answer in stated or {} if answer in estimate.PROMISED}
-    return row | {"error": max(apart[answer] for answer in estimate.PROMISED) / asked, "estimated": estimate.largest(stated) / asked if stated else float("nan"),
-                  "seconds": seconds, "finer seconds": paid[0] - seconds, "warnings": "; ".join(answers.summary.get("warnings", []) + found["warnings"]), "message": ""}
+    row = {answer: apart[answer] / asked for answer in estimate.PROMISED}
+    row |= {f"{answer} stated": stated[answer] / asked for answer in estimate.PROMISED if answer in (stated or {})}
+    return row | {"error": max(row[answer] for answer in estimate.PROMISED), "message": "",
+                  "estimated": estimate.largest(stated) / asked if stated else float("nan"),
+                  "seconds": seconds, "finer seconds": paid[0] - seconds,
+                  "warnings": "; ".join(answers.summary.get("warnings", []) + found["warnings"])}
 
 
 def silent(table: pd.DataFrame) -> int:
@@ -110,14 +113,14 @@ def kept(table: pd.DataFrame) -> bool:
 
 
 def cover(table: pd.DataFrame) -> pd.DataFrame:
-    """Of each promised answer how many cases there are (with an error, and one stated), the share within what is stated, and how many times the stated
-    error is the true one, in the median; and of all together. needed: what stated errors (estimate.BOUND) were to be multiplied by to cover just enough:
-    with other seeds than the page's that is how they are calibrated."""
+    """Of each promised answer how many cases there are (with an error, and one stated), the share within what is stated, and how many times
+    the stated error is the true one, in the median; and of all together. needed: what stated errors (estimate.BOUND) were to be multiplied
+    by to cover just enough: with other seeds than the page's that is how they are calibrated."""
     cases = {name: table[[name, f"{name} stated"]].dropna().set_axis(["error", "stated"], axis=1) for name in estimate.PROMISED}
     cases = {name: case[case.max(axis=1) > LEAST] for name, case in cases.items()}
     cases["all"] = pd.concat(cases.values())
-    return pd.DataFrame([{"answer": name, "cases": len(case), "within": (case.error <= case.stated).mean(), "times": (case.stated / case.error).median(),
-                          "needed": (case.error / case.stated).quantile(KEPT)}
+    return pd.DataFrame([{"answer": name, "cases": len(case), "within": (case.error <= case.stated).mean(),
+                          "times": (case.stated / case.error).median(), "needed": (case.error / case.stated).quantile(KEPT)}
                          for name, case in cases.items()])
 
 
@@ -132,13 +135,16 @@ def report(table: pd.DataFrame) -> str:
     ended = table.error.dropna()
     shown = table.assign(warnings=table.warnings.fillna("").str.len() > 0)
     for name in estimate.PROMISED:
-        shown[name] = [f"{error:.2f} of {stated:.2f}" if error == error else "" for error, stated in zip(table[name], table[f"{name} stated"])]
+        shown[name] = [f"{error:.2f} of {stated:.2f}" if error == error else ""
+                       for error, stated in zip(table[name], table[f"{name} stated"])]
     return "\n".join([
-        "A row a scene. `0.02 of 0.07`: the error is 0.02 of the accuracy asked for, 0.07 was stated; `error`, `estimated`: the largest of the row. "
-        "Errors are those against 3 times smaller elements and steps (in three dimensions twice)", "",
-        study.table(shown, {"scene": ""} | dict.fromkeys(estimate.PROMISED, "") | {"error": ".2f", "estimated": ".2f", "seconds": ".1f", "finer seconds": ".1f", "warnings": "",
-                                                                                    "message": ""}), "",
-        f"Stated errors: share of the cases within them (wanted: {KEPT:.0%} of each), and how many times too large they are in the median (wanted: up to {WIDEST} of all)", "",
+        "A row a scene. `0.02 of 0.07`: the error is 0.02 of the accuracy asked for, 0.07 was stated; `error`, `estimated`: the largest "
+        "of the row. Errors are those against 3 times smaller elements and steps (in three dimensions twice)", "",
+        study.table(shown, {"scene": ""} | dict.fromkeys(estimate.PROMISED, "")
+                    | {"error": ".2f", "estimated": ".2f", "seconds": ".1f", "finer seconds": ".1f", "warnings": "",
+                        "message": ""}), "",
+        f"Stated errors: share of the cases within them (wanted: {KEPT:.0%} of each), and how many times too large they are in the median "
+        f"(wanted: up to {WIDEST} of all)", "",
         study.table(cover(table), {"answer": "", "cases": "", "within": ".1%", "times": ".1f", "needed": ".2f"}), "",
-        f"{(ended <= 1).sum()} of {len(ended)} within what was asked (promised: {KEPT:.0%}), {silent(table)} above it without a warning; median {ended.median():.2f} of "
-        f"it (promised: {NEAR:g} to {FAR:g})"])
+        f"{(ended <= 1).sum()} of {len(ended)} within what was asked (promised: {KEPT:.0%}), {silent(table)} above it without a warning; "
+        f"median {ended.median():.2f} of it (promised: {NEAR:g} to {FAR:g})"])

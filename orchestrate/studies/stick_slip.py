@@ -1,6 +1,6 @@
-"""For which slip velocity, contact stiffness and Poisson's ratio does the oblique disc slide first and stick in the last
-third of the contact with its energy constant, and stay 4.5 ms, as the paper tells (section 3.1)? It states none of the
-three. Its angle pi/3 is 60 degrees from the plane, as it calls normal incidence pi/2; 30 degrees, pi/3 from the normal, is searched as well."""
+"""For which slip velocity, contact stiffness and Poisson's ratio does the oblique disc slide first and stick in the last third of the
+contact with its energy constant, and stay 4.5 ms, as the paper tells (section 3.1)? It states none of the three. Its angle pi/3 is 60
+degrees from the plane, as it calls normal incidence pi/2; 30 degrees, pi/3 from the normal, is searched as well."""
 
 import itertools
 from pathlib import Path
@@ -12,13 +12,13 @@ from matplotlib.image import AxesImage
 from matplotlib.patches import Rectangle
 
 from ..failure import Unreadable
-from ..places import shown
 from ..report.figures import LAWS, SMALL, STYLE, save
 from ..output.results import read_history
 from ..sweeps import study
 
 AXES = {"angle": (60.0, 30.0), "slip_velocity": (0.03, 0.3, 1.0, 3.0), "penalty": (1e8, 1e9, 1e10), "nu": (0.3, 0.4, 0.45)}
-LAW = {"svk": {"degree": 1, "mesh_size": 0.01, "contact_mesh_size": 0.005, "breakdown": "continue", "accuracy": 0.0025},   # as the paper may have run it
+# as the paper may have run it
+LAW = {"svk": {"degree": 1, "mesh_size": 0.01, "contact_mesh_size": 0.005, "breakdown": "continue", "accuracy": 0.0025},
        "neohookean": {"accuracy": 0.005}}
 SCENE, BASE = "disc-oblique", {"fields": 0}
 PAPER = 4.5e-3, 0.02        # contact time [s] and how near counts as met
@@ -40,11 +40,8 @@ def main(argv: list[str]) -> int:
     rows["order"] = as_told(rows)
     rows["quiet"] = rows.work_last <= QUIET
     rows["time"] = (rows.contact_time / PAPER[0] - 1).abs() <= PAPER[1]
-    study.save(rows, out / "stick-slip.csv")
     draw(rows, axes, out / "stick-slip.png")
-    print(report(rows))
-    print(f"\n{shown(out)}/stick-slip.{{csv,png}}")
-    return 0
+    return study.finish(options, rows, report(rows) + "\n", True, files="{csv,png}")
 
 
 def grid(axes: dict[str, tuple[float, ...]]) -> list[study.Point]:
@@ -97,13 +94,14 @@ def report(rows: pd.DataFrame) -> str:
 
 
 def draw(rows: pd.DataFrame, axes: dict[str, tuple[float, ...]], path: Path) -> None:
-    """A column a law and angle, a row a nu: cells over slip velocity and penalty, coloured by the contact time; in each cell three bars, the share that slides in
-    the first, second and last third of the contact, on a common axis from 0 to 100 %; framed where the paper's order is met."""
+    """A column a law and angle, a row a nu: cells over slip velocity and penalty, coloured by the contact time; in each cell three bars,
+    the share that slides in the first, second and last third of the contact, on a common axis from 0 to 100 %; framed where the paper's
+    order is met."""
     low, high = 1e3 * rows.contact_time.min(), 1e3 * rows.contact_time.max()
     columns = list(itertools.product(LAW, axes["angle"]))
     with plt.rc_context(STYLE):
-        figure, grid = plt.subplots(len(axes["nu"]), len(columns), figsize=(4.1 * len(columns) + 0.4, 1.9 * len(axes["nu"]) + 1.2), squeeze=False,
-                                    sharex=True, sharey=True)
+        figure, grid = plt.subplots(len(axes["nu"]), len(columns), figsize=(4.1 * len(columns) + 0.4, 1.9 * len(axes["nu"]) + 1.2),
+                                    squeeze=False, sharex=True, sharey=True)
         for panels, (law, angle) in zip(grid.T, columns):
             for panel, nu in zip(panels, axes["nu"]):
                 here = rows[(rows.law == law) & (rows.angle == angle) & (rows.nu == nu)].set_index(["penalty", "slip_velocity"])
@@ -115,8 +113,10 @@ def draw(rows: pd.DataFrame, axes: dict[str, tuple[float, ...]], path: Path) -> 
             panel.set_ylabel("k [Pa/m]")
         bar = figure.colorbar(picture, ax=grid, label="contact time [ms]", shrink=0.6)
         bar.ax.axhline(1e3 * PAPER[0], color="#d55e00", linewidth=2)
-        figure.suptitle("Share of the normal load that slides [%], a bar each for the first, second and last third of the contact (full height: 100 %);\n"
-                        f"framed ({rows['order'].sum()} of {len(rows)}): slides first, sticks last, as in the paper, whose contact time is {1e3 * PAPER[0]:g} ms (line in the bar of colours)")
+        figure.suptitle("Share of the normal load that slides [%], a bar each for the first, second and last third of the contact (full "
+                        "height: 100 %);\n"
+                        f"framed ({rows['order'].sum()} of {len(rows)}): slides first, sticks last, as in the paper, whose contact time is "
+                        f"{1e3 * PAPER[0]:g} ms (line in the bar of colours)")
         save(figure, path)
 
 
@@ -137,7 +137,7 @@ def _cells(panel: plt.Axes, here: pd.DataFrame, axes: dict[str, tuple[float, ...
 
 
 def _bars(panel: plt.Axes, column: int, row: int, run: pd.Series) -> None:
-    """The shares of a run in its cell, each a white bar with its number [%] above it, from the lower edge (0 %) up to 0.6 of the cell (100 %)."""
+    """The shares of a run in its cell, each a white bar with its number [%] above it, from its lower edge up to 0.6 of it (100 %)."""
     if run.exit:
         panel.text(column, row, "failed", ha="center", va="center", fontsize=SMALL)
         return

@@ -2,17 +2,10 @@
 
 import itertools
 import random
-from pathlib import Path
 
-import matplotlib.pyplot as plt
-import numpy as np
 import pandas as pd
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import LogNorm
 
 from ..input.parameters import whole
-from ..places import shown
-from ..report.figures import LAWS, STYLE, save
 from ..sweeps import study
 
 AXES = {"law": ("svk", "neohookean"), "nu": (0.0, 0.3, 0.45, 0.49), "speed": (0.5, 4.0, 10.0), "penalty": (1e9, 1e10, 1e12),
@@ -22,8 +15,6 @@ CLOSED = 1e-8               # largest energy drift of a finished run
 LIMIT = 120.0               # seconds a run may take
 READ = ("energy_drift", "max_penetration", "wall_seconds", "newton_iterations", "steps")   # of the summaries
 KINDS = ("closed", "open", "no step", "breakdown", "other")   # outcomes, in the words of the table
-LETTERS = {"open": ("o", "balance open"), "no step": ("s", "no convergence, or chatter (exit 11)"),
-           "breakdown": ("b", "material broke down (exit 12)"), "other": ("!", "anything else")}   # in the figure
 
 
 def main(argv: list[str]) -> int:
@@ -37,11 +28,7 @@ def main(argv: list[str]) -> int:
     rows = study.study(points, options.out, BASE, LIMIT)
     rows = rows.reindex(columns=rows.columns.union(READ, sort=False))   # also where every run crashed
     rows["outcome"] = rows.apply(outcome, axis=1)
-    study.save(rows, options.out / "stress.csv")
-    draw(rows, options.out / "stress.png")
-    print(report(rows))
-    print(f"\n{shown(options.out)}/stress.{{csv,png}}")
-    return 0 if holds(rows).all() else 1
+    return study.finish(options, rows, report(rows) + "\n", holds(rows).all())
 
 
 def outcome(row: pd.Series) -> str:
@@ -89,48 +76,3 @@ def _name(row: pd.Series) -> str:
 def _short(name: str, value) -> str:
     """A value as it is read best; dt = 0 is adaptive."""
     return "adaptive" if name == "dt" and value == 0 else f"{value:g}" if isinstance(value, float) else value
-
-
-def draw(rows: pd.DataFrame, path: Path) -> None:
-    """A map of all sets: a panel a law and nu, in it speed and dt across, exponent and penalty up, Newton iterations
-    a step as colour; sets that did not end with a closed balance are grey and have a letter."""
-    rows = rows.assign(effort=rows.newton_iterations / rows.steps)
-    norm = LogNorm(1, 32)
-    with plt.rc_context(STYLE):
-        figure, grid = plt.subplots(2, 4, figsize=(10.4, 6), sharex=True, sharey=True)
-        for axes, (law, nu) in zip(grid.flat, itertools.product(AXES["law"], AXES["nu"])):
-            panel = rows[(rows.law == law) & (rows.nu == nu)]
-            _map(axes, panel, norm)
-            axes.set_title(f"{LAWS[law]}, ν = {nu:g}")
-        bar = figure.colorbar(ScalarMappable(norm, "viridis"), ax=grid, label="Newton iterations a step", aspect=40,
-                              ticks=[1, 2, 4, 8, 16, 32], format="%d", extend="max")
-        bar.minorticks_off()
-        figure.supxlabel("time step [µs], by speed", fontsize=9)
-        figure.supylabel("penalty, by exponent", fontsize=9)
-        figure.suptitle("; ".join(f"{letter}: {meaning}" for letter, meaning in LETTERS.values()) + "; empty: not run", fontsize=8)
-        save(figure, path)
-
-
-def _map(axes: plt.Axes, panel: pd.DataFrame, norm: LogNorm) -> None:
-    """A cell a set; lines between the groups."""
-    columns = list(itertools.product(AXES["speed"], AXES["dt"]))
-    lines = list(itertools.product(AXES["exponent"], AXES["penalty"]))
-    image = np.full((len(lines), len(columns)), np.nan)
-    for row in panel.itertuples():
-        line, column = lines.index((row.exponent, row.penalty)), columns.index((row.speed, row.dt))
-        if row.outcome == "closed":
-            image[line, column] = row.effort
-        else:
-            axes.add_patch(plt.Rectangle((column - 0.5, line - 0.5), 1, 1, color="#d0d0d0"))
-            axes.text(column, line, LETTERS[row.outcome][0], ha="center", va="center_baseline", weight="bold")
-    axes.imshow(image, norm=norm, cmap="viridis", aspect="auto", origin="lower")
-    for edge in (2.5, 5.5):
-        axes.axhline(edge, color="white", linewidth=2)
-        axes.axvline(edge, color="white", linewidth=2)
-    small = {"fontsize": 6.5, "linespacing": 1.5}
-    steps = {dt: f"{1e6 * dt:g}" if dt else "auto" for dt in AXES["dt"]}
-    axes.set_xticks(range(9), [steps[dt] + f"\n{speed:g} m/s" * (dt == AXES["dt"][1]) for speed, dt in columns], **small)
-    axes.set_yticks(range(9), [f"m = {m:g}   " * (k == AXES["penalty"][1]) + f"$10^{{{np.log10(k):.0f}}}$" for m, k in lines],
-                    **small)
-    axes.tick_params(length=0)
-    axes.spines[:].set_visible(False)

@@ -1,6 +1,6 @@
-"""Exact solutions (verification/): every case over element size, time step or what else its error comes from, judged by tolerances that were
-fixed beforehand. results/verify/verify.csv has all numbers, a figure a case beside it. One case a core at a time (the three-dimensional one, V17, takes
-the longest, in parts); what the present code left is taken as it is."""
+"""Exact solutions (verification/): every case over element size, time step or what else its error comes from, judged by tolerances that
+were fixed beforehand. results/verify/verify.csv has all numbers, a figure a case beside it. One case a core at a time (the
+three-dimensional one, V17, takes the longest, in parts); what the present code left is taken as it is."""
 
 import hashlib
 import json
@@ -65,7 +65,8 @@ def there(out: Path) -> bool:
 def code_hash() -> str:
     """sha256 of the core, the verification scripts and what runs and judges them."""
     digest = hashlib.sha256(run.code_hash().encode())
-    cases = [path for path in (ROOT / "verification").iterdir() if path.suffix in (".edp", ".idp", ".py") and not path.name.startswith("test_")]
+    cases = [path for path in (ROOT / "verification").iterdir() if path.suffix in (".edp", ".idp", ".py")
+             and not path.name.startswith("test_")]
     for path in [*sorted(cases), Path(__file__), REFERENCE / "converged.toml"]:
         digest.update(path.read_bytes())
     return digest.hexdigest()
@@ -200,7 +201,8 @@ def draw_errors(axes: plt.Axes, case: Case, rows: list[Row]) -> None:
         group, line = name.partition(":")[0], series(rows, name)
         groups[group] = groups.get(group, -1) + 1
         axes.loglog([row.size for row in line], [max(row.error, SHOWN) for row in line], label=name,
-                    color=COLOURS[list(groups).index(group) % len(COLOURS)], linewidth=max(0.8, 2.6 - 0.3 * k), **LOOKS[groups[group] % len(LOOKS)])
+                    color=COLOURS[list(groups).index(group) % len(COLOURS)], linewidth=max(0.8, 2.6 - 0.3 * k),
+                    **LOOKS[groups[group] % len(LOOKS)])
     for order in dict.fromkeys(row.order for row in rows if row.order):
         line = max((series(rows, row.what) for row in rows if row.order == order), key=lambda line: line[-1].error)
         sizes = np.array([row.size for row in line])

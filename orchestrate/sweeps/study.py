@@ -26,7 +26,7 @@ from ..output import estimate as estimates
 from ..failure import BadInput, Busy, Failure, TooLong, Unreadable
 from ..input.parameters import Value
 from ..output.folder import result_folder
-from ..places import COMMAND, RESULTS
+from ..places import COMMAND, RESULTS, shown
 from ..progress import Line, forward
 from ..output.results import read_json
 
@@ -44,10 +44,10 @@ def study(points: list[Point], folder: Path, base: Point, limit: float, name: st
     """A row for each of `points`, in their order: its parameters, exit, message, warnings (joined by "; "), reused, and
     the numbers of its summary.
 
-    Every run is the scene `name` with `base` and the point's parameters on top, in folder/runs/, and may take `limit`
-    seconds; `cores` of them run at a time; with `estimate` each estimates its error (estimated_error: the largest promised one). What is there already is not run again: finished runs, and failures of the same scene and code. A run
-    that fails is a row like any other, with its exit code and message; NotInstalled, without FreeFem++, is raised.
-    Several studies may share a folder: what one is running, the others leave to it.
+    Every run is the scene `name` with `base` and the point's parameters on top, in folder/runs/, and may take `limit` seconds; `cores` of
+    them run at a time; with `estimate` each estimates its error (estimated_error: the largest promised one). What is there already is not
+    run again: finished runs, and failures of the same scene and code. A run that fails is a row like any other, with its exit code and
+    message; NotInstalled, without FreeFem++, is raised. Several studies may share a folder: what one is running, the others leave to it.
     """
     places = [place(folder, point) for point in points]
     given = scene.load(name)
@@ -85,8 +85,8 @@ def place(folder: Path, point: Point) -> Path:
 
 def side_by_side(acts: dict[Key, Callable], cores: int, name: str, before: int = 0) -> Iterator[tuple[Key, Any]]:
     """(key, what its act returns) as they are ready, `cores` at a time, a process each; a Failure where the process was lost. An act that
-    returns None is asked again later. Leaving this in any way ends them and their FreeFem++. A line of progress, by its `name`, says which of how
-    many, `before` of which were there already.
+    returns None is asked again later. Leaving this in any way ends them and their FreeFem++. A line of progress, by its `name`, says which
+    of how many, `before` of which were there already.
     """
     context = multiprocessing.get_context("fork")
     waiting, running, done = deque(acts), {}, before
@@ -199,12 +199,24 @@ def _failed_before(wanted: scene.Scene, folder: Path) -> dict | None:
 
 
 def command(name: str, doc: str, page: bool = False, folder: str = "") -> argparse.ArgumentParser:
-    """The command line of a study: --out, its result folder, checked; --page where what it prints may become a page of docs/."""
+    """The command line of a study: --out, its result folder, checked; --page where what it prints may become a page. For finish()."""
     parser = argparse.ArgumentParser(prog=f"{COMMAND} {name}", description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", metavar="DIR", type=lambda text: result_folder(Path(text)), default=str(RESULTS / (folder or name)), help="the result folder")
+    parser.add_argument("--out", metavar="DIR", type=lambda text: result_folder(Path(text)), default=str(RESULTS / (folder or name)),
+                        help="the result folder")
     if page:
         parser.add_argument("--page", metavar="FILE", type=Path, help="also write what is printed as a page")
+    parser.set_defaults(command=name, table=folder or name)
     return parser
+
+
+def finish(options: argparse.Namespace, rows: pd.DataFrame, text: str, good: bool, argv: list[str] | None = None, title: str = "",
+           files: str = "csv") -> int:
+    """The end of a study: saves its table, prints what it says and where its `files` are, and writes the page where one is asked for; the
+    exit code."""
+    save(rows, options.out / f"{options.table}.csv")
+    print(f"{text}\n{shown(options.out)}/{options.table}.{files}")
+    page(getattr(options, "page", None), title, [options.command, *(argv or [])], text)
+    return 0 if good else 1
 
 
 def warned(warnings: Iterable[str]) -> str:

@@ -193,13 +193,15 @@ def _sweep(path: Path, given: dict, text: str) -> Sweep:
     limit = given.get("limit", LIMIT)
     if type(limit) not in (int, float) or not 1 <= limit <= 1e6:
         raise BadInput(f"limit: {brief(limit)} (accepted: 1 to 1e6 seconds)")
-    figure = sweep_figures.check(tables["figure"], points, wanted, of.columns) | {"per": per_metre({"script": of.script})} if tables["figure"] else {}
+    figure = sweep_figures.check(tables["figure"], points, wanted,
+                                 of.columns) | {"per": per_metre({"script": of.script})} if tables["figure"] else {}
     base = {"fields": 0} | base
     return Sweep(path.stem, str(given.get("title", path.stem)), name, base, points, refine, wanted, float(limit), figure, sample, text)
 
 
 def _sample(of: scene.Scene, base: study.Point, points: list[study.Point]) -> scene.Scene:
-    """The scene of the first point that is accepted; BadInput, as of the first point, where none is. One that is refused keeps no other from its run."""
+    """The scene of the first point that is accepted; BadInput, as of the first point, where none is. One that is refused keeps no other
+    from its run."""
     refused = None
     for point in points:
         try:
@@ -316,7 +318,8 @@ def report(wanted: Sweep, rows: pd.DataFrame, out: Path) -> str:
             text[name] = ["" if np.isnan(value) else f"{value:.5g}" for value in rows[name]]
             if wanted.refine:
                 text[name] += ["" if np.isnan(error) else f" ± {error:.0e}" for error in rows[f"{name}_error"]]
-        lines += [study.table(text, {name: "g" if name in wanted.axes and pd.api.types.is_numeric_dtype(rows[name]) else "" for name in text}), ""]
+        lines += [study.table(text, {name: "g" if name in wanted.axes and pd.api.types.is_numeric_dtype(rows[name]) else ""
+                                     for name in text}), ""]
     failed = rows[rows.exit != 0]
     for (code, message), group in failed.groupby(["exit", "message"], sort=False):
         where = "; ".join(study.place(Path(), point).name for point in group[wanted.axes].to_dict("records"))

@@ -1,7 +1,8 @@
 """The figure of a sweep, and what it shows in words. [figure] of a sweep file is one of
 
     kind = "lines"      x, y (one name or several), by: y over x, a line for each value of `by`, with error bars (default)
-    kind = "map"        x, y, colour, by, panel: a column of maps for each value of `by`, a row for each of `panel`; level, band: where colour = level +- band
+    kind = "map"        x, y, colour, by, panel: a column of maps for each value of `by`, a row for each of `panel`;
+                        level, band: where colour = level +- band
     kind = "histories"  y (a column of history.csv), panel, by: y over time, a panel a value of `panel`, a line a value of `by`
 
 x, y of a map, by and panel are parameters that vary and together tell all points apart; the y of lines and colour are numbers
@@ -33,7 +34,8 @@ COLOURS, MARKERS = (BLUE, ORANGE, GREEN, PURPLE, GREY), "osd^v"
 
 
 def check(given: dict, points: list[dict], collected: list[str], columns: list[str]) -> dict:
-    """The [figure] of a sweep, completed; empty if none was given; `columns` are those of its histories. BadInput where it cannot be drawn or would mix points up."""
+    """The [figure] of a sweep, completed; empty if none was given; `columns` are those of its histories. BadInput where it cannot be drawn
+    or would mix points up."""
     if not given:
         return {}
     kind, varied = given.get("kind", "lines"), list(points[0])
@@ -61,7 +63,8 @@ def check(given: dict, points: list[dict], collected: list[str], columns: list[s
     used = [figure[key] for key in (*axes, "by", "panel") if figure[key] is not None]
     if len(set(used)) < len(used) or len({tuple(point[name] for name in used) for point in points}) < len(points):
         raise BadInput(f"figure: {', '.join(used) or 'nothing'} does not tell the points apart (accepted: different names for "
-                       f"{', '.join((*axes, *(key for key in ('by', 'panel') if key in KINDS[kind])))}, that together do; {', '.join(varied)} vary)")
+                       f"{', '.join((*axes, *(key for key in ('by', 'panel') if key in KINDS[kind])))}, that together do; "
+                       f"{', '.join(varied)} vary)")
     if kind == "map":
         _check_map(figure, points)
     return figure
@@ -178,15 +181,17 @@ def _lines(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
     x, names = sweep.figure["x"], sweep.figure["y"]
     figure, grid = plt.subplots(len(names), figsize=(6.4, 3.9 if len(names) == 1 else 2.6 * len(names)), sharex=True, squeeze=False)
     for axes, y in zip(grid[:, 0], names):
-        for k, ((words, group), colour, marker) in enumerate(zip(_groups(sweep, rows, "by"), itertools.cycle(COLOURS), itertools.cycle(MARKERS))):
+        for k, ((words, group), colour,
+                marker) in enumerate(zip(_groups(sweep, rows, "by"), itertools.cycle(COLOURS), itertools.cycle(MARKERS))):
             group = group.sort_values(x)
             there = group.exit == 0
             errors = _factor(y) * bars(group[there], y)
-            axes.errorbar(group[x][there], _factor(y) * group[y][there], None if np.isnan(errors).all() else errors, color=colour, marker=marker,
-                          markersize=3, linewidth=1.1, elinewidth=0.9, capsize=1.5, label=words or None)
+            axes.errorbar(group[x][there], _factor(y) * group[y][there], None if np.isnan(errors).all() else errors, color=colour,
+                          marker=marker, markersize=3, linewidth=1.1, elinewidth=0.9, capsize=1.5, label=words or None)
             if not there.all():
                 axes.plot(group[x][~there], np.full((~there).sum(), -0.03 - 0.03 * k), marker="x", linestyle="", markersize=4, color=colour,
-                          transform=axes.get_xaxis_transform(), clip_on=False, label=f"{words}: {_why(group.exit[~there])}".removeprefix(": "))
+                          transform=axes.get_xaxis_transform(), clip_on=False,
+                          label=f"{words}: {_why(group.exit[~there])}".removeprefix(": "))
                 axes.tick_params(axis="x", pad=3.5 + 9 * (k + 1))     # its row of marks is below the axis, where no value can be
         _published(axes, sweep, x, y)
         axes.set_ylabel(label(y, sweep.figure["per"]))
@@ -211,7 +216,8 @@ def _why(codes: pd.Series) -> str:
 
 
 def _published(axes: plt.Axes, sweep, x: str, y: str) -> None:
-    """The numbers of the paper for y, whose contact time is that while the force is not zero: a star at its x, or a line over all x where it states none."""
+    """The numbers of the paper for y, whose contact time is that while the force is not zero: a star at its x, or a line over all x where
+    it states none."""
     for at, value, words in numbers_of_the_paper(sweep.sample.given, y.removeprefix("thresholded_"), over=x):
         words = f"{words}: {_factor(y) * value:.3g}{_unit(y, sweep.figure['per'])}"
         if at is None:
@@ -282,8 +288,8 @@ def trend(group: pd.DataFrame, x: str, y: str, words: str, per: str = "/m") -> s
     if not found:
         return f"{name}: too few points for a trend"
     size = abs(group[group.exit == 0][y]).mean()
-    text = (f"{name}: {'falls' if found.falls else 'rises'} from {factor * found.first:.5g} to {factor * found.last:.5g}{unit}; of {found.steps} "
-            f"steps {found.against} {'rise' if found.falls else 'fall'}")
+    text = (f"{name}: {'falls' if found.falls else 'rises'} from {factor * found.first:.5g} to {factor * found.last:.5g}{unit}; of "
+            f"{found.steps} steps {found.against} {'rise' if found.falls else 'fall'}")
     if np.isnan(found.typical):
         return text + " (no error bars: no [refine], or no finished refined run)"
     text += f", {found.beyond} of them by more than their error bar, {found.established} by more than twice that"
@@ -298,10 +304,12 @@ def _map(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
     wanted = sweep.figure
     x, y, colour = (wanted[key] for key in ("x", "y", "colour"))
     parts = [(panel, list(_groups(sweep, part, "by"))) for panel, part in _groups(sweep, rows, "panel")]
-    figure, grid = plt.subplots(len(parts), len(parts[0][1]), figsize=(1.2 + 3.4 * len(parts[0][1]), 0.8 + 2.8 * len(parts)), sharex=True, sharey=True, squeeze=False)
+    figure, grid = plt.subplots(len(parts), len(parts[0][1]), figsize=(1.2 + 3.4 * len(parts[0][1]), 0.8 + 2.8 * len(parts)), sharex=True,
+                                sharey=True, squeeze=False)
     values = _factor(colour) * rows[colour]
     low, high = values.min(), values.max()
-    for axes, (words, group) in zip(grid.flat, [(", ".join(filter(None, (panel, words))), group) for panel, groups in parts for words, group in groups]):
+    for axes, (words, group) in zip(grid.flat, [(", ".join(filter(None, (panel, words))), group) for panel, groups in parts
+                                                for words, group in groups]):
         table = group.pivot(index=y, columns=x, values=colour) * _factor(colour)
         cells = np.where(group.pivot(index=y, columns=x, values="exit") == 0, table, np.nan)   # evenly spaced, whatever the values
         picture = axes.imshow(cells, origin="lower", aspect="auto", cmap="viridis", vmin=low, vmax=high)
