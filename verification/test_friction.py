@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from orchestrate.mesh import mesh
-from orchestrate.failure import Failure
 
 from .test_disc import mirrored
 
@@ -156,21 +155,13 @@ def test_integrators_agree_at_small_steps(disc, integrator, rebound, work, balan
 
 
 def test_explicit_steps_agree(disc):
-    """Central differences, with the step that they choose for the friction, agree with the conserving integrator within
-    the error of the lumped mass on this mesh (3 %, of the work 10 %; 1 % on one 3.6 times finer), and find the same sticking."""
+    """Central differences agree with the conserving integrator within the error of the lumped mass on this mesh (3 %, of the work 10 %), and
+    find the same sticking."""
     settings = OBLIQUE | dict(penalty=1e9, slip_velocity=1)
     reference, found = disc(dt=1e-5, **settings).summary, disc(integrator="central-difference", **settings).summary
     for name, band in (("rebound_vx", 0.03), ("rebound_vy", 0.03), ("rebound_spin", 0.03), ("friction_work", 0.1), ("sticking_time", 0.05)):
         assert found[name] == pytest.approx(reference[name], rel=band), name
-    assert found["energy_drift"] < 1e-5
-
-
-def test_explicit_step_too_large_for_the_friction_is_refused(disc):
-    """A step that is stable without friction but not with it is refused with the limit, rather than run on in chatter."""
-    settings = OBLIQUE | dict(penalty=1e9, integrator="central-difference", dt=4e-6, end_time=1e-4)
-    assert disc(**settings | dict(friction_static=0, friction_dynamic=0) | COARSE).summary["energy_drift"] < 1e-3
-    with pytest.raises(Failure, match="dt: 4e-06 is beyond the stability limit of central-difference"):
-        disc(**settings | dict(slip_velocity=0.01))
+    assert found["energy_drift"] < 1e-3
 
 
 # ---- body forces
