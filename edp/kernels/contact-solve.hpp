@@ -1,6 +1,6 @@
 // contact-solve.hpp: contact and friction of a Newton step, solved on a frozen factorisation: what core/contact/solve.idp says, in the unknowns of the window.
 //   tau = t(x),  x = x_w - B C B^T tau                                          C: compliance of the unknowns [m/N], S = C^-1;
-//                                                                             of explicit steps both are diagonal, and n values instead of n n
+// (of explicit steps both are diagonal, n values)
 // Newton's matrix is that of the moves y of the unknowns, with K = B^T D B sparse, D = dt/dx:
 //   (S + K) y = f = B^T (t - tau)
 // by LU where there are few unknowns, else by conjugate residuals, preconditioned by a sparse LU of K and S where K has entries: what else
