@@ -138,18 +138,18 @@ public:
   }
 
   // G' (w P) + M (massScale d - history) - deadLoad, 0 at what is held [N/m, N]: the inertia, the inner forces and the dead load of (2) at the increment
-  // d, and the deformation that they are taken at. `breaks`: det F <= 0 ends a step.
-  int forces(const double *d, const double *history, const double *deadLoad, double massScale, int where, bool breaks, const Deformation &at,
-             double *residual) const {
-    return D == 3 ? forces<3, 0>(d, history, deadLoad, massScale, where, breaks, at, residual)
-      : H == 1 ? forces<2, 1>(d, history, deadLoad, massScale, where, breaks, at, residual)
-      : forces<2, 0>(d, history, deadLoad, massScale, where, breaks, at, residual);
+  // d, and the deformation that they are taken at. `rate`: 1/dt, 0 where no body is damped; `breaks`: det F <= 0 ends a step.
+  int forces(const double *d, const double *history, const double *deadLoad, double massScale, double rate, int where, bool breaks,
+             const Deformation &at, double *residual) const {
+    return D == 3 ? forces<3, 0>(d, history, deadLoad, massScale, rate, where, breaks, at, residual)
+      : H == 1 ? forces<2, 1>(d, history, deadLoad, massScale, rate, where, breaks, at, residual)
+      : forces<2, 0>(d, history, deadLoad, massScale, rate, where, breaks, at, residual);
   }
 
-  // The blocks of massScale M + stiffnessScale K, K the derivative of G' (w F S) at F, S.
-  void tangent(const double *F, const double *S, double massScale, double stiffnessScale) {
+  // The blocks of massScale M + stiffnessScale K, K the derivative of G' (w F S) at F, S, and of the viscous moduli times rate.
+  void tangent(const double *F, const double *S, double massScale, double stiffnessScale, double rate) {
     std::fill(block.begin(), block.end(), 0.);
-    if (D == 3) stiffness<3, 0>(F, S, stiffnessScale); else if (H == 1) stiffness<2, 1>(F, S, stiffnessScale); else stiffness<2, 0>(F, S, stiffnessScale);
+    if (D == 3) stiffness<3, 0>(F, S, stiffnessScale, rate); else if (H == 1) stiffness<2, 1>(F, S, stiffnessScale, rate); else stiffness<2, 0>(F, S, stiffnessScale, rate);
     for (int a = 0; a < nodes; a++)
       for (int e = massRow[a]; e < massRow[a + 1]; e++) if (massColumn[e] <= a)
         for (int i = 0; i < D; i++) block[size_t(pairOfMass[e]) * D * D + i * D + i] += massScale * massValue[e];
@@ -193,15 +193,15 @@ private:
 
   mutable std::vector<double> nodal, pull;
 
-  template<int D, int H> int forces(const double *d, const double *history, const double *deadLoad, double massScale, int where, bool breaks,
-                                    const Deformation &at, double *residual) const {
+  template<int D, int H> int forces(const double *d, const double *history, const double *deadLoad, double massScale, double rate, int where,
+                                    bool breaks, const Deformation &at, double *residual) const {
     nodal.resize(nodes * D);
     pull.assign(nodes * D, 0.);
     for (int i = 0; i < nodes * D; i++) nodal[i] = d[unknown[i]];
     double smallest = stretched<D, H>(where, at);
     if (smallest != smallest) return notANumber;
     if (smallest <= 0 && breaks) return inverted;
-    stressed<D, H>(where, at);
+    stressed<D, H>(where, rate, at);
     for (int i = 0; i < nodes * D; i++) nodal[i] = massScale * nodal[i] - history[unknown[i]];
     for (int a = 0; a < nodes; a++)
       for (int e = massRow[a]; e < massRow[a + 1]; e++)
@@ -239,7 +239,7 @@ private:
   }
 
   // C1, Ss and pull += G' (w Fs Ss).
-  template<int D, int H> void stressed(int where, const Deformation &at) const {
+  template<int D, int H> void stressed(int where, double rate, const Deformation &at) const {
     typedef Stored<D, H> T;
     for (size_t g = 0; g + 1 < firstNode.size(); g++) {
       int n = firstNode[g + 1] - firstNode[g];
@@ -256,6 +256,13 @@ private:
           laws::algorithmicStress(material[q], C0, C1, S);
         }
         else laws::stress(material[q], C1, S);
+        if (rate > 0) {
+          double ends[6];
+          whole<D, H>(at.F1, q, F);
+          laws::rightCauchyGreen(F, ends);
+          for (int k = 0; k < T::C; k++) C0[T::symmetric(k)] = at.C0[k * nq + q];
+          laws::addViscousStress(material[q], C0, ends, rate, S);
+        }
         for (int k = 0; k < T::C; k++) at.C1[k * nq + q] = C1[T::symmetric(k)];
         for (int k = 0; k < T::C; k++) at.Ss[k * nq + q] = S[T::symmetric(k)];
         laws::nominalStress(Fs, S, P);
@@ -277,7 +284,7 @@ private:
   }
 
   // block += scale times sum over points of w N_a,J dP_iJ/dF_kL N_b,L.
-  template<int D, int H> void stiffness(const double *F, const double *S, double scale) {
+  template<int D, int H> void stiffness(const double *F, const double *S, double scale, double rate) {
     typedef Stored<D, H> T;
     for (size_t g = 0; g + 1 < firstNode.size(); g++) {
       int n = firstNode[g + 1] - firstNode[g];
@@ -290,6 +297,11 @@ private:
         laws::Moduli moduli(material[q], f, s);
         for (int k = 0; k < T::F; k++)
           for (int l = 0; l < T::F; l++) A[k][l] = scale * weight[q] * moduli(T::row(k), T::column(k), T::row(l), T::column(l));
+        if (rate > 0) {
+          laws::Moduli viscous(material[q], f, rate);
+          for (int k = 0; k < T::F; k++)
+            for (int l = 0; l < T::F; l++) A[k][l] += weight[q] * viscous(T::row(k), T::column(k), T::row(l), T::column(l));
+        }
         const int *to = &pairOf[firstPair[g]];
         for (int a = 0; a < n; a++) {
           double Y[D][T::F] = {};          // sum over J of N_a,J dP_iJ/dF

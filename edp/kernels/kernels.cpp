@@ -20,10 +20,10 @@ static bodies::Triplets entries(Sparse A) {
 
 static void addBodies() {
   add("kernelComponent", +[](long i, long dimensions, Sparse pick) { body.component(int(i), int(dimensions), entries(pick)); });
-  add("kernelMaterial", +[](Reals lambda, Reals mu, Ints neohookean, Reals weight) {
+  add("kernelMaterial", +[](Reals lambda, Reals mu, Reals eta, Reals zeta, Ints neohookean, Reals weight) {
     body.weight = copied<double>(weight);
     body.material.resize(weight.N());
-    for (int q = 0; q < weight.N(); q++) body.material[q] = {lambda[q], mu[q], neohookean[q] == 1};
+    for (int q = 0; q < weight.N(); q++) body.material[q] = {lambda[q], mu[q], eta[q], zeta[q], neohookean[q] == 1};
   });
   add("kernelBodies", +[](Sparse gradient, Sparse mass, Reals free) {
     body.free = copied<double>(free);
@@ -35,8 +35,8 @@ static void addBodies() {
   add("kernelDeformation", +[](Reals F0, Reals C0, Reals F1, Reals C1, Reals jacobian1, Reals Fs, Reals Ss) {
     deformation = {F0, C0, F1, C1, jacobian1, Fs, Ss};
   });
-  add("kernelForces", +[](Reals d, Reals history, Reals deadLoad, double massScale, long where, bool breaks, Reals residual) {
-    return long(body.forces(d, history, deadLoad, massScale, int(where), breaks, deformation, residual));
+  add("kernelForces", +[](Reals d, Reals history, Reals deadLoad, double massScale, double rate, long where, bool breaks, Reals residual) {
+    return long(body.forces(d, history, deadLoad, massScale, rate, int(where), breaks, deformation, residual));
   });
   add("kernelEnergy", +[](Reals C, Reals W) { body.energies(C, W); });
   add("kernelSmallestStretch", +[](Reals C, Reals stretch) { body.smallestStretches(C, stretch); });
@@ -45,8 +45,8 @@ static void addBodies() {
 }
 
 static void addFactor() {
-  add("kernelTangent", +[](Reals F, Reals S, double massScale, double stiffnessScale) {
-    body.tangent(F, S, massScale, stiffnessScale);
+  add("kernelTangent", +[](Reals F, Reals S, double massScale, double stiffnessScale, double rate) {
+    body.tangent(F, S, massScale, stiffnessScale, rate);
     factor.numbers(body);
   });
   add("kernelTangentProduct", +[](Reals x, Reals y) { factor.product(x, y); });

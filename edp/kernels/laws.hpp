@@ -10,6 +10,7 @@ const int sym[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};   // (J, L) of a symmet
 
 struct Material {
   double lambda, mu;
+  double eta, zeta;                        // viscosities [Pa s]
   bool neohookean;                         // or St. Venant-Kirchhoff
 };
 
@@ -95,6 +96,26 @@ inline void algorithmicStress(const Material &m, const double *C0, const double 
   for (int k = 0; k < 6; k++) S[k] += e * H[k];
 }
 
+// S += S_v, the viscous stress of a step from C0 to C1 at rate = 1/dt: with C their mean, T = C^-1 (C1 - C0),
+// rate [eta T C^-1 + zeta/2 tr(T) C^-1], as viscousStress() of damping.idp.
+inline void addViscousStress(const Material &m, const double *C0, const double *C1, double rate, double *S) {
+  double C[6], inverse[6], T[3][3] = {};
+  for (int k = 0; k < 6; k++) C[k] = 0.5 * (C0[k] + C1[k]);
+  double det = determinantOf(C);
+  cofactor(C, inverse);
+  for (int k = 0; k < 6; k++) inverse[k] /= det;
+  for (int J = 0; J < 3; J++)
+    for (int L = 0; L < 3; L++)
+      for (int K = 0; K < 3; K++) T[J][L] += inverse[sym[J][K]] * (C1[sym[K][L]] - C0[sym[K][L]]);
+  double bulk = m.zeta / 2 * (T[0][0] + T[1][1] + T[2][2]);
+  for (int J = 0; J < 3; J++)
+    for (int L = J; L < 3; L++) {
+      double TB = 0;
+      for (int K = 0; K < 3; K++) TB += T[J][K] * inverse[sym[K][L]];
+      S[sym[J][L]] += rate * (m.eta * TB + bulk * inverse[sym[J][L]]);
+    }
+}
+
 // W(C) [J/m3], as accurate for small strains as for large ones: neohookeanEnergy() of neohookean.idp.
 inline double energy(const Material &m, const double *C) {
   double M[6], H[6], S[6];
@@ -170,7 +191,18 @@ struct Moduli {
         for (int k = i; k < 3; k++) B[sym[i][k]] = F[3 * i] * F[3 * k] + F[3 * i + 1] * F[3 * k + 1] + F[3 * i + 2] * F[3 * k + 2];
       return;
     }
-    double C[6], J = determinant(F);       // Q = F^-T, B = I, D = C^-1
+    n = m.mu - m.lambda / 2 * std::log(inverted(F));
+  }
+
+  // Of the viscous stress, without that itself: viscousModuli() of damping.idp.
+  Moduli(const Material &m, const double *F, double rate) : l(rate * m.zeta), n(rate * m.eta), S(nullptr) {
+    for (int k = 0; k < 6; k++) B[k] = k < 3;
+    inverted(F);
+  }
+
+  // Q = F^-T, D = C^-1 (B = I); det C.
+  double inverted(const double *F) {
+    double C[6], J = determinant(F);
     rightCauchyGreen(F, C);
     double det = determinantOf(C);
     cofactor(C, D);
@@ -180,12 +212,12 @@ struct Moduli {
         int i1 = (i + 1) % 3, i2 = (i + 2) % 3, L1 = (L + 1) % 3, L2 = (L + 2) % 3;
         Q[3 * i + L] = (F[3 * i1 + L1] * F[3 * i2 + L2] - F[3 * i1 + L2] * F[3 * i2 + L1]) / J;
       }
-    n = m.mu - m.lambda / 2 * std::log(det);
+    return det;
   }
 
   double operator()(int i, int J, int k, int L) const {
     double a = l * Q[3 * i + J] * Q[3 * k + L] + n * (B[sym[i][k]] * D[sym[J][L]] + Q[3 * i + L] * Q[3 * k + J]);
-    return i == k ? a + S[sym[J][L]] : a;
+    return i == k && S ? a + S[sym[J][L]] : a;
   }
 };
 

@@ -13,8 +13,8 @@ from ..scenes import obstacles
 from ..scenes.obstacles import Obstacle
 from ..input.parameters import Value
 from ..output.results import body_names, suffixes
-from .figures import (BLACK, BLUE, GREEN, GREY, ORANGE, ORIGIN, PURPLE, Body, as_written, balance_error, deformed, instants, is_half,
-                      least, material, over_time, per_metre, side_by_side)
+from .figures import (BLACK, BLUE, GREEN, GREY, ORANGE, ORIGIN, PURPLE, VISCOUS, Body, as_written, balance_error, deformed, instants,
+                      is_half, least, material, over_time, per_metre, side_by_side)
 
 ALONE = ("disc-plane", "ball-axisymmetric", "ball-plane")     # scripts of one body on the plane
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, "#56b4e9", "#e69f00")    # of bodies
@@ -103,11 +103,12 @@ def energies(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fig
         together.plot(t, history["elastic"], color=ORANGE, linewidth=2.3, label="elastic")
     total, words = history["kinetic"] + history["elastic"] + history["contact"], "total"
     lines = {"contact": (history["contact"], "#56b4e9")}
-    for name, column, words_of_it, sign in (("lost to friction", "friction_work", "+ lost", 1),
-                                            ("external work", "external_work", "− work", -1)):
-        if history[column].any():
-            lines[name] = history[column], {"friction_work": "#d4a017", "external_work": "#888888"}[column]
-            total, words = total + sign * history[column], f"{words} {words_of_it}"
+    for name, column, words_of_it, sign, colour in (("lost to friction", "friction_work", "+ lost", 1, "#d4a017"),
+                                                    ("lost to viscosity", "viscous_work", "+ lost", 1, VISCOUS),
+                                                    ("external work", "external_work", "− work", -1, "#888888")):
+        if np.any(history.get(column, 0)):
+            lines[name] = history[column], colour
+            total, words = total + sign * history[column], words if words.endswith(words_of_it) else f"{words} {words_of_it}"
     largest = max(np.abs(values).max() for values in (total, *(values for values, _ in lines.values()), history["kinetic"],
                                                       history["elastic"]))
     for k, (name, (values, colour)) in enumerate(lines.items()):          # thinner and thinner, so that one on another is seen

@@ -41,6 +41,7 @@ ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 1), "handlelength": 1.6,
 BELOW = {"loc": "upper center", "bbox_to_anchor": (0.5, 0), "borderaxespad": 5.5}
 BARE = {"xticks": [], "yticks": []}                               # of a panel without axes: its ticks would still be laid out
 BAND = "#c8c8c8"   # of what other curves run along
+VISCOUS = "#882255"
 DASHED = (0, (4, 2))
 ORIGIN = np.zeros(2)
 # letters, as is all that pictures say: to parse formulas takes as long as to draw one
@@ -84,7 +85,8 @@ def footer(figure: plt.Figure, warnings: list[str]) -> None:
 def material(one: dict[str, Value]) -> str:
     """Law with its own numbers, E, nu and density of a body."""
     own = "" if one.get("law_parameters", "none") == "none" else f" ({one['law_parameters']})"
-    return f"{LAWS.get(one['law'], one['law'])}{own}, E = {1e-6 * one['young']:g} MPa, ν = {one['nu']:g}, ρ = {one['density']:g} kg/m³"
+    viscosities = "".join(f", {sign} = {one[name]:.3g} Pa s" for name, sign in (("viscosity", "η"), ("bulk_viscosity", "ζ")) if one.get(name))
+    return f"{LAWS.get(one['law'], one['law'])}{own}, E = {1e-6 * one['young']:g} MPa, ν = {one['nu']:g}, ρ = {one['density']:g} kg/m³{viscosities}"
 
 
 def as_written(text: str) -> str:
@@ -150,9 +152,10 @@ def _energies(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fi
     lines = {"kinetic": (history["kinetic"], BLUE), "elastic": (history["elastic"], ORANGE),
              "contact": (history["contact"], GREEN)}
     balance, words = total, "total"
-    if history["friction_work"].any():
-        lines["lost to friction"] = history["friction_work"], PURPLE
-        balance, words = balance + history["friction_work"], words + " + lost"
+    for name, taken, colour in (("lost to friction", history["friction_work"], PURPLE), ("lost to viscosity", history.get("viscous_work", 0 * t), VISCOUS)):
+        if taken.any():
+            lines[name] = taken, colour
+            balance, words = balance + taken, words + (" + lost" if "lost" not in words else "")
     if history["external_work"].any():
         lines["work of gravity"] = history["external_work"], "#e69f00"
         balance, words = balance - history["external_work"], words + " − work"

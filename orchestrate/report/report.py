@@ -63,6 +63,7 @@ def rows(per_metre: bool) -> list[Quantity]:
         Quantity("vibration_energy", "  in vibration", f"J{per}"),
         Quantity("friction_work", "lost to friction", f"J{per}"),
         Quantity("creep_work", "  of it in creep", f"J{per}"),
+        Quantity("viscous_work", "lost to viscosity", f"J{per}"),
         Quantity("energy_drift", "energy drift", "of the start", digits=".1e"),
         Quantity("max_penetration", "largest penetration", "mm", 1e3, ".3g"),
         Quantity("min_jacobian", "smallest det F", digits=".3f"),

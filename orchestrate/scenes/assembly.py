@@ -95,7 +95,7 @@ def assemble(scene: Scene, rule: Rule | None = None, met: list[Meeting] | None =
     asked for a disc, or a ball, of the pair's radius that hits a plane. `met`: the scene's meetings, where they are known already."""
     ask = Asker(scene, meetings(scene) if met is None else met, rule or partial(describe, script=scene.dimension.like))
     values = scene.values | contact_values(scene.bodies, scene.contact, ask, "contact")
-    scene = replace(scene, pairs=_with_small_obstacles(scene, ask))
+    scene = replace(scene, pairs=_with_small_obstacles(scene, ask), bodies=[_with_viscosity(k, ask) for k in range(len(scene.bodies))])
     pairs = [pair_values(pair, ask, values) for pair in scene.pairs]
     sizes = [None if body.mesh else _sizes(k, ask) for k, body in enumerate(scene.bodies)]
     together, regions, centres, rounds = (_solids if scene.dimension is SOLID else _sections)(scene, sizes)
@@ -231,15 +231,30 @@ def _symmetry(scene: Scene) -> dict[str, str]:
     return {"symmetry": next(word for word, count in COPIES.items() if count == copies(scene))} if scene.dimension is SOLID else {}
 
 
+def _with_viscosity(k: int, ask: Asker) -> Body:
+    """Body k, with the viscosity that its loss asks for."""
+    body = ask.scene.bodies[k]
+    if body.loss == 0:
+        return body
+    used = _of_body(k, ask, loss=body.loss, viscosity=body.viscosity)
+    return replace(body, viscosity=float(used["viscosity"]))
+
+
+def _of_body(k: int, ask: Asker, **given: Value) -> dict:
+    """What the rule makes of a disc or ball as thick as body k."""
+    body = ask.scene.bodies[k]
+    try:
+        return ask.answer([body], body.outline.half_thickness, **given)["used"]
+    except BadInput as error:
+        raise BadInput(f"body.{k + 1}.{error} (of a {'disc' if ask.scene.dimension is PLANE_STRAIN else 'ball'} as thick as "
+                       f"'{body.name}')") from None
+
+
 def _sizes(k: int, ask: Asker) -> Sizes:
     """The element sizes of body k: in the bulk for its own thickness, in the contacts as each pair asks for."""
     body = ask.scene.bodies[k]
     given = {name: value for name, value in (("mesh_size", body.mesh_size), ("contact_mesh_size", body.contact_mesh_size)) if value}
-    try:
-        bulk = float(ask.answer([body], body.outline.half_thickness, **given)["used"]["mesh_size"])
-    except BadInput as error:
-        raise BadInput(f"body.{k + 1}.{error} (of a {'disc' if ask.scene.dimension is PLANE_STRAIN else 'ball'} as thick as "
-                       f"'{body.name}')") from None
+    bulk = float(_of_body(k, ask, **given)["mesh_size"])
     hits = [_hit(body, k, one, ask) for one in ask.met if k in (one.first, one.second)]
     contact = body.contact_mesh_size or min([bulk, *(size for size, *_ in hits)])
     near = np.vstack([np.empty((0, ask.scene.dimension.axes)), *(points for _, points, _ in hits)])
@@ -331,6 +346,7 @@ def data_file(scene: Scene, disc: dict[str, Value], centres: np.ndarray, rounds:
         files F        body                                                                             whose mesh is that of a file
         obstacles M    name kind count p1 ... pcount vx vy
         pairs K        a b penalty friction_static friction_dynamic                             a, b: body, or -1 - obstacle (a = b: itself)
+        damping D      body viscosity bulk_viscosity                                            of those that are damped; none where none is
     centre: of the area in the mesh; place: where it is at the start; the angle of the disc in degrees. In three dimensions
         ffimpact-bodies-3d 1
         copies 1, 2 or 4                                                            how often the mesh makes the whole bodies
@@ -353,6 +369,8 @@ def data_file(scene: Scene, disc: dict[str, Value], centres: np.ndarray, rounds:
     lines += [(one.name, "circle" if one.kind == "sphere" and scene.dimension is not SOLID else one.kind, len(one.numbers), *one.numbers,
                *one.velocity) for one in scene.obstacles]
     lines += [("pairs", len(pairs)), *((pair.first, pair.second, *own.values()) for pair, own in zip(scene.pairs, pairs))]
+    damped = [(k, body.viscosity, body.bulk_viscosity) for k, body in enumerate(scene.bodies) if body.damped]
+    lines += [("damping", len(damped)), *damped] if damped else []
     return "".join(" ".join(map(_token, line)) + "\n" for line in lines)
 
 

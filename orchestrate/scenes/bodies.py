@@ -12,6 +12,7 @@ revolution and in three dimensions shapes and motions are those of revolution.py
     velocity = [0, -10]          # [m/s], or: speed = 10, direction = -90 [deg], counter-clockwise from x
     spin = 0                     # [rad/s], counter-clockwise
     young = 7e6                  # law, young, nu, density, law_parameters: those at the top of the file where they are left out
+    viscosity = 20               # and viscosity, bulk_viscosity [Pa s], or loss, the loss factor at the first mode of a disc or ball as thick as it
     mesh_size = 0.1              # mesh_size, contact_mesh_size [m]: from the accuracy where they are left out
 """
 
@@ -29,10 +30,12 @@ from ..failure import BadInput, brief
 from ..geometry.outlines import Outline
 from ..mesh.solid_mesh import SolidMesh
 from ..mesh.solids import Solid
+from ..input.parameters import Value
 from ..input.tables import SHORTEST, Table
 
 GEOMETRY = {PLANE_STRAIN: flat, AXISYMMETRIC: revolution, SOLID: solids}     # SHAPES with their entries, shape(), MOTION, motion()
-MATERIAL = ("law", "young", "nu", "density", "law_parameters")
+OPTIONAL = ("law_parameters", "viscosity", "bulk_viscosity", "loss")
+MATERIAL = ("law", "young", "nu", "density", *OPTIONAL)
 SIZES = ("mesh_size", "contact_mesh_size")
 COMMON = ("name", "shape", "position", "velocity", *MATERIAL, *SIZES)
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_.-]*")
@@ -55,8 +58,15 @@ class Body:
     nu: float
     density: float
     law_parameters: str
+    viscosity: float
+    bulk_viscosity: float
+    loss: float
     mesh_size: float
     contact_mesh_size: float
+
+    @property
+    def damped(self) -> bool:
+        return max(self.viscosity, self.bulk_viscosity, self.loss) > 0
 
     @property
     def placed(self) -> Outline | Solid:
@@ -83,10 +93,9 @@ def _body(path: str, given: dict, top: dict, folder: Path, geometry: ModuleType)
     outline, body_mesh = geometry.shape(table, folder)
     if not outline.half_thickness >= SHORTEST:
         raise BadInput(f"{path}: is {2 * outline.half_thickness:.3g} m thick (accepted: from {2 * SHORTEST:g} m)")
-    material = dict(zip(MATERIAL, _material(table, top)))
     bulk, contact = _sizes(table, top)
     return Body(checked_name(path, given.get("name", path.replace(".", ""))), outline, body_mesh, **geometry.motion(table),
-                **material, mesh_size=bulk, contact_mesh_size=contact)
+                **_material(table, top), mesh_size=bulk, contact_mesh_size=contact)
 
 
 def checked_name(path: str, name) -> str:
@@ -96,15 +105,17 @@ def checked_name(path: str, name) -> str:
     return name
 
 
-def _material(table: Table, top: dict) -> tuple[str, float, float, float, str]:
-    """What MATERIAL names: the body's own, else those at the top of the file; BadInput where one is in neither."""
-    found = []
+def _material(table: Table, top: dict) -> dict[str, Value]:
+    """What MATERIAL names: the body's own, else those at the top of the file; BadInput where one is in neither. A viscosity of its own takes the place of a loss
+    at the top, and the other way."""
+    found = {}
     for key in MATERIAL:
-        rule = parameters.table()[key]
-        if key not in table and key not in top and rule.kind != "numbers":
+        rule, other = parameters.table()[key], {"viscosity": "loss", "loss": "viscosity"}.get(key)
+        if key not in table and key not in top and key not in OPTIONAL:
             raise BadInput(f"{table.path}.{key}: is missing, here and at the top of the file (accepted: {rule.accepted})")
-        found.append(table.parameter(key, rule) if key in table else rule.check(top.get(key, rule.default)))
-    return tuple(found)
+        common = rule.default if other and other in table else top.get(key, rule.default)
+        found[key] = table.parameter(key, rule) if key in table else rule.check(common)
+    return found
 
 
 def _sizes(table: Table, top: dict) -> tuple[float, float]:

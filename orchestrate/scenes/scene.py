@@ -3,7 +3,7 @@ whose script makes the bodies of its parameters, all at the top of the file.
 
     title = "..."
     dimension = "plane-strain"   # or axisymmetric (dimension.py)
-    young = 7e6                  # law, young, nu, density, mesh_size, contact_mesh_size: of the bodies that say nothing else
+    young = 7e6                  # law, young, nu, density ..., mesh_size, contact_mesh_size: of the bodies that say nothing else
     gravity = 9.81               # [m/s2], along -y; beside it the parameters of a run: end_time, dt, accuracy, fields ...
     [[body]]                     # see bodies.py
     [[obstacle]]                 # see obstacles.py; with penalty, friction_static, friction_dynamic of its own
@@ -117,7 +117,13 @@ class Scene:
         """Columns or numbers; those of each of several bodies have the suffixes _1, _2 ..."""
         said = describe_results(script=self.script)
         bodies = len(self.bodies) or said["bodies"]
-        return said[what] + [f"{name}_{b}" for b in range(1, bodies + 1) for name in said[f"body_{what}"] if bodies > 1]
+        more = said["damped"] if self.damped else []
+        return said[what] + more + [f"{name}_{b}" for b in range(1, bodies + 1) for name in said[f"body_{what}"] + more if bodies > 1]
+
+    @property
+    def damped(self) -> bool:
+        """Whether a body is."""
+        return any(body.damped for body in self.bodies) or any(self.values.get(name) for name in ("viscosity", "bulk_viscosity", "loss"))
 
     @property
     def of_files(self) -> bool:

@@ -1,0 +1,112 @@
+"""Kelvin-Voigt damping (edp/core/law/damping.idp): exact decays, objective, counted exactly, in scripts and kernels."""
+
+import numpy as np
+import pytest
+
+from orchestrate.failure import BadInput
+from orchestrate.freefem.describe import describe
+from orchestrate.places import ROOT
+from orchestrate.scene import read
+from orchestrate.scenes import assembly
+from verification.measure import bodies, disc, measure
+
+IMPACT = {"law": "neohookean", "nu": 0.4, "speed": 4, "angle": 60, "friction_static": 0.3, "accuracy": 0.1}
+NU = 0.3
+ETA = 100.0
+PROPORTIONAL = {"nu": NU, "viscosity": ETA, "bulk_viscosity": ETA * 2 * NU / (1 - 2 * NU)}      # zeta/lambda = eta/mu: eta_E/E, too
+MODES = {"extension": ("damped-mode", {"nu": 0.0, "loss": 0.1}), "with volume": ("damped-mode", {"law": "neohookean"} | PROPORTIONAL),
+         "midpoint": ("damped-mode", {"integrator": "midpoint"} | PROPORTIONAL),
+         "shear": ("damped-mode-3d", {"symmetry": "full", "nu": NU, "loss": 0.1, "mesh_size": 0.03, "contact_mesh_size": 0.03})}
+
+
+@pytest.mark.parametrize("name", MODES)
+def test_a_mode_decays_as_theory_has_it(name):
+    """A free body's first mode decays as exp(-eta omega^2 t/(2 mu)) to 1 %, in shear whatever zeta is; each step takes energy, the balance closes; rotations take
+    nothing, and turn neither stress nor work."""
+    script, flags = MODES[name]
+    found = measure(script, **{"mesh_size": 0.015, "contact_mesh_size": 0.015, "tolerance": 1e-12} | flags)
+    assert found["state"] == 0 and found["decay"] == pytest.approx(1, abs=0.01)
+    assert found["balance"] < 1e-9 and found["least"] > 0
+    assert found["turned"] < 1e-12 and found["objective"] < 1e-12
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.45])
+def test_loss_is_that_of_the_first_mode(nu):
+    """`loss` is eta omega/mu at the first mode of the disc, and the scene as used says the viscosity."""
+    found = measure("damped-mode", nu=nu, loss=0.1, mesh_size=0.015, contact_mesh_size=0.015, tolerance=1e-12)
+    assert found["tangent"] == pytest.approx(0.1, rel=0.01)
+    mu, rho, radius = 7e6 / (2 * (1 + nu)), 1722, 0.05
+    assert describe({"nu": nu, "loss": 0.1})["used"]["viscosity"] == pytest.approx(0.1 * radius * np.sqrt(mu * rho) / 2.35)
+
+
+@pytest.mark.parametrize("script, flags", [("disc-plane", {}), ("disc-plane", {"law": "svk"}), ("ball-axisymmetric", {"angle": None}),
+                                           ("ball-plane", {"end_time": 5e-4})])
+def test_an_impact_with_friction_closes_its_balance(tmp_path, script, flags):
+    """viscous_work never falls, is in the balance to 1e-9, and within the contact what contacts.csv has; with kernels as without."""
+    given = {name: value for name, value in (IMPACT | {"viscosity": 20, "bulk_viscosity": 10} | flags).items() if value is not None}
+    run, scripted = (disc(tmp_path / without, script, **given | {"tolerance": 1e-14}, without=without) for without in ("none", "kernels"))
+    work = run.history["viscous_work"]
+    assert run.summary["energy_drift"] < 1e-9 and np.diff(work).min() >= 0 and work[-1] == run.summary["viscous_work"] > 1e-3 * run.summary["energy_initial"]
+    assert "damping" not in run.summary["skipped"]
+    for column in ("viscous_work", "normal_force", "kinetic", "elastic"):
+        assert run.history[column] == pytest.approx(scripted.history[column], rel=0, abs=1e-9 * max(abs(run.history[column]))), column
+    rows = np.genfromtxt(tmp_path / "none/contacts.csv", delimiter=",", names=True)
+    assert 0 < np.sum(rows["viscous_work"]) <= work[-1] * (1 + 1e-9)
+
+
+def test_restitution_falls_with_viscosity(tmp_path):
+    """The more viscous, the less rebound; without viscosity nothing is said of it but that it was skipped."""
+    runs = [disc(tmp_path / str(eta), **IMPACT | {"angle": 90, "friction_static": 0}, viscosity=eta) for eta in (0, 20, 80, 300)]
+    assert (np.diff([run.summary["restitution"] for run in runs]) < -1e-3).all()
+    assert "viscous_work" not in runs[0].summary and "viscous_work" not in runs[0].history and "damping" in runs[0].summary["skipped"]
+
+
+def scene(**more):
+    body = {"shape": "disc", "radius": 0.05, "velocity": [0, -3], "law": "neohookean", "young": 7e6, "nu": 0.4, "density": 1722.0}
+    return {"accuracy": 0.2, "end_time": 6e-3, "body": [body | {"name": "damped", "position": [0, 0.051]} | more, body | {"name": "elastic", "position": [0.2, 0.051], "loss": 0}],
+            "obstacle": [{"kind": "plane", "point": [0, 0], "normal": [0, 1]}]}
+
+
+def test_each_body_has_its_own(tmp_path):
+    """Of two bodies one is damped: its work is its own, and all of it; the columns are those the scene knows of."""
+    run = bodies(tmp_path, scene(viscosity=20))
+    assert run.summary["viscous_work_1"] == run.summary["viscous_work"] > 0 == run.summary["viscous_work_2"]
+    assert run.summary["energy_drift"] < 1e-9 and list(run.history) == read(scene(viscosity=20), ROOT, "scene").columns
+    assert not read(scene(), ROOT, "scene").damped
+
+
+def test_a_body_has_the_viscosity_of_its_loss():
+    """A loss becomes the viscosity of a disc as thick, told in the scene as used, which is read again as the same; a body's own loss stands before a viscosity
+    at the top."""
+    made = assembly.assemble(read({"viscosity": 3.0} | scene(loss=0.1), ROOT, "scene"))
+    damped, elastic = made.used["body"]
+    assert damped["viscosity"] == pytest.approx(describe({"nu": 0.4, "loss": 0.1})["used"]["viscosity"]) and elastic["viscosity"] == 0
+    assert made.data.endswith(f"damping 1\n0 {damped['viscosity']!r} 0.0\n")
+    assert assembly.assemble(read(made.used, ROOT, "scene")).data == made.data
+
+
+@pytest.mark.parametrize("flags, said", [({"viscosity": -1}, "viscosity: -1 is out of range"), ({"bulk_viscosity": "nan"}, "bulk_viscosity: 'nan' is not a number"),
+                                         ({"loss": 11}, "loss: 11 is out of range"), ({"loss": 0.1, "viscosity": 3}, "accepted: one of the two")])
+def test_bad_values_are_refused(flags, said):
+    """Negative, no number, too large, two that contradict each other: one line with what is accepted, of a disc and of a body."""
+    with pytest.raises(BadInput, match=said):
+        describe(flags)
+    with pytest.raises(BadInput, match=said):
+        assembly.assemble(read(scene(**flags), ROOT, "scene"))
+
+
+def test_integrators_that_would_not_count_it_are_refused(tmp_path):
+    """Damping is of the integrators that take forces in the middle of a step."""
+    with pytest.raises(Exception, match="integrator: newmark takes no viscosity"):
+        disc(tmp_path, viscosity=1, integrator="newmark")
+
+
+@pytest.mark.parametrize("law, integrator", [("svk", "energy-momentum"), ("neohookean", "midpoint")])
+@pytest.mark.parametrize("script, flags", [("tangent-disc", {"accuracy": 0.1}), ("tangent-ball", {"accuracy": 0.1}),
+                                           ("tangent-3d", {"mesh_size": 0.025, "contact_mesh_size": 0.015})])
+def test_kernels_are_the_scripts(script, flags, law, integrator):
+    """Residual, tangent and factor with viscosity are the same in kernels and scripts, to round-off."""
+    found = measure(script, law=law, nu=0.3, integrator=integrator, viscosity=50, bulk_viscosity=30, **flags)
+    if not found["built"]:
+        pytest.skip("no compiler here")
+    assert found["refused"] == 0 and max(found[name] for name in ("deformed", "forces", "product", "solve")) < 1e-12
