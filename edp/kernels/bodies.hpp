@@ -149,7 +149,9 @@ public:
   // The blocks of massScale M + stiffnessScale K, K the derivative of G' (w F S) at F, S, and of the viscous moduli times rate.
   void tangent(const double *F, const double *S, double massScale, double stiffnessScale, double rate) {
     std::fill(block.begin(), block.end(), 0.);
-    if (D == 3) stiffness<3, 0>(F, S, stiffnessScale, rate); else if (H == 1) stiffness<2, 1>(F, S, stiffnessScale, rate); else stiffness<2, 0>(F, S, stiffnessScale, rate);
+    if (D == 3) stiffness<3, 0>(F, S, stiffnessScale, rate);
+    else if (H == 1) stiffness<2, 1>(F, S, stiffnessScale, rate);
+    else stiffness<2, 0>(F, S, stiffnessScale, rate);
     for (int a = 0; a < nodes; a++)
       for (int e = massRow[a]; e < massRow[a + 1]; e++) if (massColumn[e] <= a)
         for (int i = 0; i < D; i++) block[size_t(pairOfMass[e]) * D * D + i * D + i] += massScale * massValue[e];
@@ -193,8 +195,8 @@ private:
 
   mutable std::vector<double> nodal, pull;
 
-  template<int D, int H> int forces(const double *d, const double *history, const double *deadLoad, double massScale, double rate, int where,
-                                    bool breaks, const Deformation &at, double *residual) const {
+  template<int D, int H> int forces(const double *d, const double *history, const double *deadLoad, double massScale, double rate,
+                                    int where, bool breaks, const Deformation &at, double *residual) const {
     nodal.resize(nodes * D);
     pull.assign(nodes * D, 0.);
     for (int i = 0; i < nodes * D; i++) nodal[i] = d[unknown[i]];

@@ -13,8 +13,8 @@ from ..places import ROOT as ROOT
 Value = float | int | str
 
 # What a scene fixes for others of its entries: where one of those is set and it is not, it is open again, as by default (auto, 0).
-# friction_static alone sets both coefficients, loss the viscosity; a penalty is of a material, a size and an exponent; a step and meshes are of
-# a size. slip_velocity and end_time stay, with their warnings.
+# friction_static alone sets both coefficients, loss the viscosity; a penalty is of a material, a size and an exponent; a step and meshes
+# are of a size. slip_velocity and end_time stay, with their warnings.
 FOLLOWS = {"friction_dynamic": ("friction_static",), "viscosity": ("loss",),
            "penalty": ("young", "density", "radius", "exponent"), "dt": ("young", "density", "radius"),
            **dict.fromkeys(("mesh_size", "contact_mesh_size", "block_width", "block_height"), ("radius",))}

@@ -85,8 +85,10 @@ def footer(figure: plt.Figure, warnings: list[str]) -> None:
 def material(one: dict[str, Value]) -> str:
     """Law with its own numbers, E, nu and density of a body."""
     own = "" if one.get("law_parameters", "none") == "none" else f" ({one['law_parameters']})"
-    viscosities = "".join(f", {sign} = {one[name]:.3g} Pa s" for name, sign in (("viscosity", "η"), ("bulk_viscosity", "ζ")) if one.get(name))
-    return f"{LAWS.get(one['law'], one['law'])}{own}, E = {1e-6 * one['young']:g} MPa, ν = {one['nu']:g}, ρ = {one['density']:g} kg/m³{viscosities}"
+    viscosities = "".join(f", {sign} = {one[name]:.3g} Pa s" for name, sign in (("viscosity", "η"), ("bulk_viscosity", "ζ"))
+                          if one.get(name))
+    law = LAWS.get(one["law"], one["law"])
+    return f"{law}{own}, E = {1e-6 * one['young']:g} MPa, ν = {one['nu']:g}, ρ = {one['density']:g} kg/m³{viscosities}"
 
 
 def as_written(text: str) -> str:
@@ -152,7 +154,8 @@ def _energies(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fi
     lines = {"kinetic": (history["kinetic"], BLUE), "elastic": (history["elastic"], ORANGE),
              "contact": (history["contact"], GREEN)}
     balance, words = total, "total"
-    for name, taken, colour in (("lost to friction", history["friction_work"], PURPLE), ("lost to viscosity", history.get("viscous_work", 0 * t), VISCOUS)):
+    for name, taken, colour in (("lost to friction", history["friction_work"], PURPLE),
+                                ("lost to viscosity", history.get("viscous_work", 0 * t), VISCOUS)):
         if taken.any():
             lines[name] = taken, colour
             balance, words = balance + taken, words + (" + lost" if "lost" not in words else "")

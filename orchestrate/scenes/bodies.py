@@ -12,7 +12,7 @@ revolution and in three dimensions shapes and motions are those of revolution.py
     velocity = [0, -10]          # [m/s], or: speed = 10, direction = -90 [deg], counter-clockwise from x
     spin = 0                     # [rad/s], counter-clockwise
     young = 7e6                  # law, young, nu, density, law_parameters: those at the top of the file where they are left out
-    viscosity = 20               # and viscosity, bulk_viscosity [Pa s], or loss, the loss factor at the first mode of a disc or ball as thick as it
+    viscosity = 20               # and viscosity, bulk_viscosity [Pa s], or loss, the loss factor at the first mode of a disc as thick
     mesh_size = 0.1              # mesh_size, contact_mesh_size [m]: from the accuracy where they are left out
 """
 
@@ -106,8 +106,8 @@ def checked_name(path: str, name) -> str:
 
 
 def _material(table: Table, top: dict) -> dict[str, Value]:
-    """What MATERIAL names: the body's own, else those at the top of the file; BadInput where one is in neither. A viscosity of its own takes the place of a loss
-    at the top, and the other way."""
+    """What MATERIAL names: the body's own, else those at the top of the file; BadInput where one is in neither.
+    A viscosity of its own takes the place of a loss at the top, and the other way."""
     found = {}
     for key in MATERIAL:
         rule, other = parameters.table()[key], {"viscosity": "loss", "loss": "viscosity"}.get(key)
