@@ -23,7 +23,7 @@ from ..places import INSTALLED, ROOT, shown
 from ..scene import Scene
 
 PYTHONS = {"ffimpact": ("", sys.executable), "ngsolve": ("NGSOLVE_PYTHON", sys.executable), "getfem": ("GETFEM_PYTHON", "/usr/bin/python3")}
-INSTALL = {"ngsolve": "pip install 'ngsolve>=6.2.2406,<6.3'", "getfem": "apt-get install python3-getfem"}
+INSTALL = {"ngsolve": "pip install ngsolve==6.2.2608", "getfem": "apt-get install python3-getfem"}
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 RADIUS = 0.05               # m, of disc-normal and the peers' default
 TEXTBOOK = "../verification/peers/textbook"
