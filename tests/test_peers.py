@@ -4,13 +4,14 @@ import pytest
 
 from orchestrate import run, scene
 from orchestrate.input.parameters import ROOT
-from orchestrate.studies import bench, peers
+from orchestrate.studies import bench, equal_errors, peers
 
 
 def test_every_scene_has_its_script():
     """NGSolve has all bodies, GetFEM the disc; whoever is asked in the bench is there."""
     there = {path.stem for path in (ROOT / "verification/peers").glob("*.py")}
     assert {f"ngsolve_{body}" for body in peers.BODIES.values()} | {"getfem_disc"} <= there
+    assert {"ngsolve_two_bodies", "ffimpact_run"} <= there
     for asked in (bench.PEERS, bench.PEERS_QUICK):
         for name, others in asked.items():
             body = peers.BODIES[bench.CASES[name].scene]
@@ -31,3 +32,26 @@ def test_ngsolve_says_the_same(name, sizes, step, form, tmp_path):
     assert theirs, reason
     assert theirs["impulse"] == pytest.approx(ours["impulse"], rel=5e-3) and theirs["rebound_vy"] == pytest.approx(ours["rebound_vy"], rel=5e-3)
     assert theirs["contact_time"] == pytest.approx(ours["contact_time"], rel=0.02)
+
+
+def test_ngsolve_says_the_same_with_friction(tmp_path):
+    """The oblique disc, static and dynamic coefficient: rebound, spin and impulse within 0.5 % of ours, in both forms, and the energy with the work of friction kept."""
+    if not peers.find("ngsolve"):
+        pytest.skip("ngsolve is not installed")
+    sizes, given = (0.016, 0.005), {"law": "neohookean", "speed": 12.0}
+    case = equal_errors.CASES["oblique"]
+    ours = equal_errors.answers(case, equal_errors.OURS, peers.ours(60, "disc-oblique", mesh_size=sizes[0], contact_mesh_size=sizes[1], dt=1e-4, fields=0, **given)[0])
+    for form, limit in (("tuned", 0.5), ("plain", 0.7)):     # plain takes mu of the step before
+        theirs, reason = peers.run("ngsolve", form, *sizes, 1e-4, 120, scene="disc-oblique", tolerance=1e-8, **given)
+        assert theirs, reason
+        assert equal_errors.errors(case, equal_errors.answers(case, form, theirs), ours)["error"] < limit
+        assert theirs["energy_drift"] < 1e-4 and theirs["friction_work"] > 30
+
+
+def test_ours_beside_the_peers():
+    """This program runs by the peers' interface: its summary, and imports, set-up and march that add up to its process."""
+    found, reason = peers.ours(60, "disc-normal", accuracy=0.1, fields=0)
+    assert found, reason
+    parts = [found[f"{part}_seconds"] for part in ("imports", "setup", "cpu")]
+    assert min(parts) > 0 and sum(parts) == pytest.approx(found["process_seconds"], abs=0.15) and found["impulse"] == pytest.approx(208.2, rel=0.01)
+    assert peers.ours(60, "disc-normal", speed=-1)[1].startswith("exit code")

@@ -94,7 +94,7 @@ def ask_peer(cases: list[study.Point]) -> tuple[pd.DataFrame, str]:
             break
         bodies = [(found[f"mass_{body}"], found[f"velocity_{body}"]) for body in ("upper", "lower")]
         rows.append(case | {"refine": refine, "dofs": found["dofs"], "steps": found["steps"], "seconds": found["cpu_seconds"]
-                            + found["setup_cpu_seconds"]}
+                            + found["setup_seconds"]}
                     | answers(*bodies, (found["vibration_upper"], found["vibration_lower"]), found["energy_start"],
                               (found["contact_time_1_percent"], found["contact_time"])))
     return pd.DataFrame(rows, columns=[*CASES[0], "refine", "dofs", "steps", "seconds", *ANSWERS]), reason

@@ -1,12 +1,13 @@
 """Other programs on the same disc or ball, or the same two bodies, and a plain textbook script of FreeFEM (verification/peers/): found
-where they are installed, run one process at a time.
+where they are installed, run one process at a time. This program beside them runs as they do (ffimpact_run.py).
 
-NGSolve: `pip install ngsolve==6.2.2608`, in this Python or in the one that $NGSOLVE_PYTHON names. GetFEM: Debian's python3-getfem,
+NGSolve: the extra `peers` of pyproject.toml, in this Python or in the one that $NGSOLVE_PYTHON names. GetFEM: Debian's python3-getfem,
 in /usr/bin/python3 or in $GETFEM_PYTHON. Nothing else needs them.
 """
 
 import json
 import os
+import resource
 import subprocess
 import sys
 import tempfile
@@ -21,13 +22,13 @@ from ..mesh import mesh
 from ..places import INSTALLED, ROOT, shown
 from ..scene import Scene
 
-PYTHONS = {"ngsolve": ("NGSOLVE_PYTHON", sys.executable), "getfem": ("GETFEM_PYTHON", "/usr/bin/python3")}
+PYTHONS = {"ffimpact": ("", sys.executable), "ngsolve": ("NGSOLVE_PYTHON", sys.executable), "getfem": ("GETFEM_PYTHON", "/usr/bin/python3")}
 INSTALL = {"ngsolve": "pip install ngsolve==6.2.2608", "getfem": "apt-get install python3-getfem"}
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 RADIUS = 0.05               # m, of disc-normal and the peers' default
 TEXTBOOK = "../verification/peers/textbook"
 # our scenes, and the script <program>_<body>.py beside each
-BODIES = {"disc-normal": "disc", "ball-axisymmetric": "ball", "ball": "ball_3d"}
+BODIES = {"disc-normal": "disc", "disc-oblique": "disc_oblique", "ball-axisymmetric": "ball", "ball": "ball_3d"}
 
 
 @cache
@@ -35,6 +36,8 @@ def find(program: str) -> str | None:
     """The Python that imports `program` (ngsolve or getfem), None where there is none."""
     variable, usual = PYTHONS[program]
     python = os.environ.get(variable, usual)
+    if program == "ffimpact":
+        return python
     try:
         found = subprocess.run([python, "-c", f"import {program}"], capture_output=True, timeout=60).returncode == 0
     except (OSError, subprocess.TimeoutExpired):
@@ -63,14 +66,22 @@ def two_bodies(limit: float, **flags: Value) -> tuple[dict | None, str]:
         return _printed("ngsolve", "ngsolve_two_bodies.py", folder, limit, flags)
 
 
+def ours(limit: float, scene: str, **given: Value) -> tuple[dict | None, str]:
+    """The same of a run of this program without an estimate: its summary, and how its seconds part."""
+    with tempfile.TemporaryDirectory() as folder:
+        return _printed("ffimpact", "ffimpact_run.py", folder, limit, {"scene": scene, "given": json.dumps(given)})
+
+
 def _printed(program: str, script: str, folder: str, limit: float, flags: dict[str, Value]) -> tuple[dict | None, str]:
-    """(the last line that the script prints, read as JSON, "") or (None, the reason there is nothing)."""
+    """(the last line that the script prints, read as JSON, and process_seconds: user and system time of it and of what it started, "") or
+    (None, the reason there is nothing)."""
     if INSTALLED:
         return None, "the scripts of other programs are in the source folder (verification/peers/)"
     python = find(program)
     if not python:
         return None, f"{program} is not installed ({INSTALL[program]})"
     words = [word for name, value in flags.items() for word in (f"--{name.replace('_', '-')}", str(value))]
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
     try:
         done = subprocess.run([python, ROOT / "verification/peers" / script, *words], env=os.environ | ONE_THREAD, cwd=folder,
                               capture_output=True, text=True, timeout=limit,
@@ -80,7 +91,8 @@ def _printed(program: str, script: str, folder: str, limit: float, flags: dict[s
     said, complaint = done.stdout.strip().splitlines(), done.stderr.strip().splitlines()
     if done.returncode != 0 or not said:
         return None, f"exit code {done.returncode}: {complaint[-1] if complaint else 'no output'}"
-    return json.loads(said[-1]), ""
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return json.loads(said[-1]) | {"process_seconds": after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime}, ""
 
 
 def textbook(wanted: Scene, mesh_file: Path) -> dict:

@@ -101,7 +101,7 @@ class Body:
         self.space = ng.VectorH1(self.mesh, order=2, **shape.held)
         self.free, self.dofs = self.space.FreeDofs(), self.space.ndof
         self.u, self.u0, self.v0 = (ng.GridFunction(self.space) for _ in range(3))
-        self.v0.Set(ng.CF(tuple(-options.speed * (i == 1) for i in range(self.mesh.dim))))
+        self.v0.Set(ng.CF(self.start()))
         self.residual, self.change = self.u.vec.CreateVector(), self.u.vec.CreateVector()
         self.newton_iterations = self.factorizations = 0
         self.bulk, self.weighted = dx(bonus_intorder=shape.more[0]), options.density * shape.share
@@ -112,6 +112,14 @@ class Body:
         self.points = self.mesh.MapToAllElements(ng.IntegrationRule(ng.SEGM if self.mesh.dim == 2 else ng.TRIG, 4), self.mesh.Boundaries("arc"))
         self.increment = (self.dt * self.v0.vec).Evaluate()
         self.energy0 = self.energy()
+
+    def start(self) -> tuple[float, ...]:
+        """The velocity before [m/s]."""
+        return tuple(-self.o.speed * (i == 1) for i in range(self.mesh.dim))
+
+    def reported(self) -> dict[str, float]:
+        """What is printed beside the march's own numbers."""
+        return {}
 
     def deformation(self, u):
         """F of a displacement."""
@@ -226,26 +234,32 @@ class Tuned(Body):
         u, w = self.space.TnT()
         os.environ["PATH"] = f"{sys.prefix}/bin:" + os.environ["PATH"]   # of NGSolve's compiler script
         how = dict(realcompile=True, wait=True) if options.form == "tuned-realcompile" else {}
-        stressed = self.stress_form(u, w).Compile(**how) * self.bulk
         contact = self.contact_form(u, w).Compile(**how) * self.outline("arc")
-        # the residual, for the displacement in self.u
-        self.force = ng.BilinearForm(self.space, nonassemble=True)
-        self.force += stressed
+        stressed, inertia = self.body_forms(how)
         self.force += contact
-        # the tangent of the midpoint rule, which is symmetric and differs by the order of dt
-        middle = 0.5 * (self.deformation(u) + self.deformation(self.u0))
-        inertia = (2 / self.dt ** 2 * self.weighted * InnerProduct(u, w)).Compile() * self.bulk
-        self.symmetric = ng.BilinearForm(self.space, symmetric=True)
-        self.symmetric += Variation((2 * shape.share * strain_energy(middle.trans * middle, options)).Compile(**how) * self.bulk)
-        self.symmetric += inertia
         self.symmetric += contact
         # the tangent itself, used from the first step on that does not converge with the other
         self.exact = ng.BilinearForm(self.space)
         self.exact += stressed
         self.exact += inertia
         self.exact += contact
-        self.inertia, self.predicted, self.start = (self.u.vec.CreateVector() for _ in range(3))
+        self.tried = self.u.vec.CreateVector()
         self.tangent, self.inverse = (self.symmetric, "sparsecholesky"), None
+
+    def body_forms(self, how: dict):
+        """Without contact: force, the residual's stress for the displacement in self.u, and symmetric, the tangent of the midpoint rule, which
+        differs by the order of dt from that of its own; gives the forms of stress and inertia."""
+        u, w = self.space.TnT()
+        stressed = self.stress_form(u, w).Compile(**how) * self.bulk
+        self.force = ng.BilinearForm(self.space, nonassemble=True)
+        self.force += stressed
+        middle = 0.5 * (self.deformation(u) + self.deformation(self.u0))
+        inertia = (2 / self.dt ** 2 * self.weighted * InnerProduct(u, w)).Compile() * self.bulk
+        self.symmetric = ng.BilinearForm(self.space, symmetric=True)
+        self.symmetric += Variation((2 * self.shape.share * strain_energy(middle.trans * middle, self.o)).Compile(**how) * self.bulk)
+        self.symmetric += inertia
+        self.inertia, self.predicted = (self.u.vec.CreateVector() for _ in range(2))
+        return stressed, inertia
 
     def factorize(self):
         form, solver = self.tangent
@@ -261,7 +275,7 @@ class Tuned(Body):
 
     def solve(self):
         self.predicted.data = self.u0.vec + self.dt * self.v0.vec
-        self.start.data = self.u.vec
+        self.tried.data = self.u.vec
         self.out_of_balance()
         work_before, fresh = math.inf, False
         if self.inverse is None:
@@ -269,7 +283,7 @@ class Tuned(Body):
         for iteration in range(200):
             if iteration == PATIENCE:
                 self.tangent, work_before, fresh = (self.exact, "umfpack"), 0.0, False
-                self.u.vec.data = self.start
+                self.u.vec.data = self.tried
                 self.out_of_balance()
             self.change.data = self.inverse * self.residual
             self.newton_iterations += 1
@@ -292,10 +306,13 @@ class Tuned(Body):
         raise peer.StepFailed("no convergence")
 
 
-def main(scene: str, build: Callable[[argparse.Namespace], Shape]) -> None:
-    """Runs the body that `build` makes of the flags, in the form that they ask for; `scene` is the one of ours that it stands beside."""
-    options = peer.arguments("NGSolve", ("plain", "newmark", "tuned", "tuned-realcompile"), scene)
+def main(scene: str, build: Callable[[argparse.Namespace], Shape], forms: dict[str, type[Body]] | None = None,
+         more: dict[str, tuple[float, str]] | None = None) -> None:
+    """Runs the body that `build` makes of the flags, those of `more` (default, unit) among them, in the form that they ask for; `scene` is the
+    one of ours that it stands beside."""
+    forms = forms or {"plain": Plain, "newmark": Newmark, "tuned": Tuned, "tuned-realcompile": Tuned}
+    options = peer.arguments("NGSolve", tuple(forms), scene, more or {})
     if options.mesh:
         raise SystemExit("mesh: netgen makes its own, give --mesh-size and --contact-mesh-size")
     ng.SetNumThreads(1)
-    peer.main(lambda o: {"plain": Plain, "newmark": Newmark}.get(o.form, Tuned)(build(o), o), options)
+    peer.main(lambda o: forms[o.form](build(o), o), options)

@@ -43,6 +43,9 @@ class Model(Protocol):
     def velocity(self) -> float:
         """Mean of v_y over the mass [m/s]."""
 
+    def reported(self) -> dict[str, float]:
+        """What is printed beside the march's own numbers."""
+
 
 class StepFailed(Exception):
     """Newton's method did not converge, or a stress is not a number."""
@@ -55,8 +58,9 @@ def small(work: float, accepted: float) -> bool:
     return abs(work) <= accepted
 
 
-def arguments(program: str, forms: tuple[str, ...], scene: str = "disc-normal") -> argparse.Namespace:
-    """The flags that all peers take, with lame_lambda and lame_mu [Pa] added."""
+def arguments(program: str, forms: tuple[str, ...], scene: str = "disc-normal",
+              more: dict[str, tuple[float, str]] | None = None) -> argparse.Namespace:
+    """The flags that all peers take and those of `more`, with lame_lambda and lame_mu [Pa] added."""
     parser = argparse.ArgumentParser(description=f"{scene} with {program}; ends with a line of JSON")
     parser.add_argument("--form", choices=forms, default="tuned", help="how the program is used (default tuned)")
     parser.add_argument("--mesh", type=Path, help="mesh of the half disc (.msh of orchestrate.mesh.mesh) in place of sizes")
@@ -65,7 +69,7 @@ def arguments(program: str, forms: tuple[str, ...], scene: str = "disc-normal") 
                "radius": (0.05, "m"), "tolerance": (5e-12, "largest work of the residual in a step, over the energy")}
     parser.add_argument("--law", choices=("svk", "neohookean"), default="svk")
     parser.add_argument("--history", type=Path, help="writes t,normal_force there: whole body, mean of the step that ends at t")
-    return with_numbers(parser, numbers)
+    return with_numbers(parser, numbers | (more or {}))
 
 
 def with_numbers(parser: argparse.ArgumentParser, numbers: dict[str, tuple[float, str]]) -> argparse.Namespace:
@@ -101,19 +105,20 @@ def middles(half: mesh.Mesh, radius: float) -> tuple[np.ndarray, np.ndarray]:
 
 def main(build: Callable[[argparse.Namespace], Model], options: argparse.Namespace) -> None:
     """Builds the model and marches; exit code 11 and one line where a step fails, as our own runs do."""
-    start = time.perf_counter()
+    imports = time.process_time()
     try:
         model = build(options)
-        march(model, options, time.perf_counter() - start)
+        march(model, options, {"imports_seconds": imports, "setup_seconds": time.process_time() - imports})
     except StepFailed as failure:
         print(failure, file=sys.stderr)
         raise SystemExit(11) from None
 
 
-def march(model: Model, options: argparse.Namespace, setup_seconds: float) -> None:
+def march(model: Model, options: argparse.Namespace, before_it: dict[str, float]) -> None:
     """Marches from the first touch (t = 0) until the contact is over; prints the line of JSON, writes the history.
 
-    Contact begins and ends where the largest penetration, linear in a step, is zero. Seconds are of the steps alone.
+    Contact begins and ends where the largest penetration, linear in a step, is zero. wall_seconds and cpu_seconds are of the steps alone;
+    before_it: processor seconds of imports and set-up.
     """
     dt, t, first, last = options.dt, 0.0, None, None
     rows, energy0, drift, before = [], model.energy(), 0.0, model.penetration()
@@ -139,6 +144,6 @@ def march(model: Model, options: argparse.Namespace, setup_seconds: float) -> No
         np.savetxt(options.history, rows, delimiter=",", header="t,normal_force", comments="", fmt="%.17g")
     print(json.dumps({
         "program": model.program, "version": model.version, "form": options.form, "dofs": model.dofs, "steps": len(rows),
-        "contact_time": last - first if last is not None else None, "impulse": dt * forces.sum(), "rebound_vy": model.velocity(),
+        "contact_time": last - first if last is not None else None, **model.reported(), "impulse": dt * forces.sum(), "rebound_vy": model.velocity(),
         "peak_force": forces.max(), "energy_drift": drift, "wall_seconds": wall, "cpu_seconds": cpu,
-        "setup_seconds": setup_seconds, "newton_iterations": model.newton_iterations, "factorizations": model.factorizations}))
+        **before_it, "newton_iterations": model.newton_iterations, "factorizations": model.factorizations}))

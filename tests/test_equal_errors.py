@@ -1,0 +1,75 @@
+"""Who takes how long at equal errors: what counts as reaching a level, references that must agree, the verdict, the page. No other program is needed."""
+
+import math
+
+import pandas as pd
+import pytest
+
+from orchestrate.studies import equal_errors as equal
+
+CASE = equal.CASES["normal"]
+FINE = {equal.OURS: [{"impulse": 208.1, "vy": 7.39}, {"impulse": 208.22, "vy": 7.394}, {"impulse": 208.2, "vy": 7.394}],
+        equal.TUNED: [{"impulse": 208.0, "vy": 7.38}, {"impulse": 208.15, "vy": 7.39}, {"impulse": 208.18, "vy": 7.393}]}
+
+
+def rows(program: str, *settings: tuple[float, float]) -> pd.DataFrame:
+    """Settings of a program from coarse to fine: error [%] and processor seconds of the process; the march takes half of it."""
+    return pd.DataFrame([{"program": program, "setting": f"{n}", "exit": 0, "message": "", "error": error, "cpu_seconds": seconds / 2, "process_seconds": seconds}
+                         for n, (error, seconds) in enumerate(settings)])
+
+
+def test_luck_is_no_accuracy():
+    """A setting counts from which on all finer ones keep the level: one that is below it by chance, or before a failed one, does not; the quickest of those that count."""
+    table = rows(equal.OURS, (0.05, 1.0), (0.3, 2.0), (0.08, 5.0), (0.02, 4.0))
+    assert equal.safe(table, equal.OURS, 0.1).setting == "3" and equal.safe(table, equal.OURS, 0.5).setting == "0"
+    assert equal.safe(table, equal.OURS, 0.01) is None
+    assert equal.safe(table.assign(exit=[0, 0, 1, 0]), equal.OURS, 0.5).setting == "3"
+    assert equal.safe(table.assign(exit=[0, 0, 0, 1]), equal.OURS, 0.5) is None
+    assert equal.safe(table, equal.TUNED, 0.5) is None and equal.safe(table.drop(columns="error").assign(exit=1), equal.OURS, 1.0) is None
+
+
+def test_errors_are_relative_to_what_the_page_says():
+    """The impulse relative to itself, velocities to that of the impact, the spin to it as the rim's; the largest of them is the error."""
+    found = equal.errors(CASE, {"impulse": 206.0, "vy": 7.4}, {"impulse": 200.0, "vy": 7.0})
+    assert found == pytest.approx({"impulse %": 3.0, "vy %": 5.0, "error": 5.0})
+    oblique = equal.CASES["oblique"]
+    still = dict.fromkeys(oblique.answers, 1.0)
+    rim = math.pi * 1722 * 0.05**4 / 2 / 0.05 * 12.0
+    assert equal.errors(oblique, still | {"spin": 1.0 + 0.01 * rim}, still)["spin %"] == pytest.approx(1.0)
+
+
+def test_references_agree_within_their_bars():
+    """The bar is the largest difference of a program's finest run from the two next; references farther apart than both bars do not agree, whichever is off."""
+    table = equal.compare(CASE, FINE)
+    assert table.agree.all() and table["its bar %"][0] == pytest.approx(0.05) and table["bar %"][0] == pytest.approx(100 * 0.013 / 8)
+    for program in FINE:
+        off = [run | {"vy": run["vy"] + 0.05} for run in FINE[program]]
+        assert equal.compare(CASE, FINE | {program: off}).agree.tolist() == [True, False]
+    assert equal.compare(CASE, FINE | {equal.TUNED: [None] * 3}).empty
+
+
+def test_verdict_says_who_is_quicker():
+    """Ratios are the quickest other over ours at the same level; below 1 it is not ours that is quicker, and a level that one side misses is no comparison."""
+    table = pd.concat([rows(equal.OURS, (0.9, 1.0), (0.4, 2.0)), rows(equal.TUNED, (0.8, 0.5), (0.4, 6.0), (0.05, 9.0))], ignore_index=True)
+    ratios = equal.beside(table)
+    assert ratios[1.0] == pytest.approx((0.5, 0.5)) and ratios[0.5] == pytest.approx((3.0, 3.0)) and all(map(math.isnan, ratios[0.1]))
+    said = equal.verdict({"normal": True, "ball": False}, {"normal": ratios})
+    assert "agree within their bars in 1 of 2 cases (not: ball)" in said and "march is the quickest in 1 of 2 comparisons, our whole process in 1" in said
+    assert "1 %: 0.5 / 0.5, 0.5 %: 3.0 / 3.0, 0.1 %: -" in said
+
+
+@pytest.mark.parametrize("installed, code", [(True, 0), (False, 1)])
+def test_page(monkeypatch, tmp_path, capsys, installed, code):
+    """Every program's seconds and errors, its command and commit, and what is not installed; without a peer no agreement is claimed."""
+    def once(case, program, point):
+        if program != equal.OURS and not (installed and program == equal.TUNED):
+            return None, f"{program} is not installed (pip)"
+        off = 1e-4 * (1 + list(case.settings[program]).index(point)) if point in case.settings[program] else 0.0
+        return {"dofs": 100, "steps": 10, "impulse": 208.2 * (1 + off), "rebound_vy": 7.394, "imports_seconds": 0.2, "setup_seconds": 0.1, "cpu_seconds": 1.0,
+                "process_seconds": 1.3}, ""
+    monkeypatch.setattr(equal, "once", once)
+    assert equal.main(["normal", "--out", str(tmp_path / "out"), "--page", str(tmp_path / "bench.md")]) == code
+    page = (tmp_path / "bench.md").read_text()
+    assert "Written by `python -m orchestrate equal-errors normal" in page and "at commit" in page and "1.00 / 1.30 (accuracy 0.1)" in page
+    assert "- getfem, tuned, h 16 mm, dt 150 us: getfem, tuned is not installed (pip)" in page and ("References" in page) == installed
+    assert f"agree within their bars in {int(installed)} of 1 cases" in page and len(pd.read_csv(tmp_path / "out/equal-errors.csv")) == (16 if installed else 11)
