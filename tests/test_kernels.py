@@ -75,6 +75,14 @@ def equal(found: dict) -> None:
     assert found["refused"] == 0 and max(found[name] for name in ("deformed", "forces", "product", "solve", "response", "compliance")) < SAME
 
 
+def test_numbers_are_those_of_a_stream(tmp_path):
+    """Numbers of any size, ties and runs of nines are written to the byte as a stream of nine digits writes them."""
+    found = measure("kernels-numbers", out=tmp_path)
+    if not found["built"]:
+        pytest.skip("no compiler here")
+    assert found["differing"] == 0
+
+
 TIGHT = {"law": "neohookean", "nu": 0.4, "accuracy": 0.3, "tolerance": 1e-14}
 RUBBED = {"friction_static": 0.3, "angle": 60}
 MARCHES = {"disc": ("disc-plane", {}), "rubbing disc": ("disc-plane", RUBBED), "svk": ("disc-plane", {"law": "svk", "integrator": "midpoint", "speed": 2, "end_time": 1e-3}),
