@@ -14,7 +14,8 @@ from .places import COMMAND, from_source, shown
 
 # the commands with a module of their own, which has a main(argv), by its package
 PACKAGES = {"sweeps": ("sweep",), "report": ("friction-laws", "compare", "movie", "pages"), "paper": ("paper",),
-            "studies": ("verify", "stick-slip", "oblique-angles", "stress", "bench", "promise", "pairing-comparison", "disc-block-errors", "equal-errors")}
+            "studies": ("verify", "stick-slip", "oblique-angles", "stress", "bench", "promise", "pairing-comparison", "disc-block-errors",
+                        "equal-errors")}
 FROM_SOURCE = ("verify", "pages", "paper", "bench", "equal-errors", "oblique-angles")   # these need the source folder
 OWN_MAIN = {name: f"{package}.{name.replace('-', '_')}" for package, names in PACKAGES.items() for name in names}
 

@@ -1,5 +1,5 @@
-"""Who takes how long at equal errors: four impacts by this program and, where they are installed (peers.py), by NGSolve and GetFEM, from coarse
-to fine settings; processor seconds of the march and of the whole process for 1, 0.5 and 0.1 %."""
+"""Who takes how long at equal errors: four impacts by this program and, where they are installed (peers.py), by NGSolve and GetFEM,
+from coarse to fine settings; processor seconds of the march and of the whole process for 1, 0.5 and 0.1 %."""
 
 import math
 from collections.abc import Iterator
@@ -16,7 +16,7 @@ from . import peers
 LEVELS = (1.0, 0.5, 0.1)    # % of error
 LIMIT = 300.0               # seconds a run may take
 REPEATS, LONG = 3, 2.0      # runs of which the least times count; one alone where it takes longer [s]
-TOLERANCE = 1e-8            # of the peers' Newton: its work over the energy; at 5e-12 answers differ by 1e-5 at most and runs take a quarter longer
+TOLERANCE = 1e-8            # of the peers' Newton: its work over the energy; 5e-12 changes answers by 1e-5 and costs a quarter more
 SECONDS = {"imports_seconds": "imports", "setup_seconds": "set-up", "cpu_seconds": "march", "process_seconds": "process"}
 OURS, TUNED, USUAL = "ffimpact", "ngsolve, tuned", "ngsolve, as written by users"
 GETFEM, GETFEM_USUAL = "getfem, tuned", "getfem, as written by users"
@@ -26,8 +26,8 @@ Measured = dict[str, float]  # answers
 
 @dataclass(frozen=True)
 class Case:
-    """An impact: what is asked of all programs, the names of its answers by program and what their errors are relative to (None: itself), settings by
-    program from coarse to fine, and by program two finer ones, which with the last of those make its reference."""
+    """An impact: what is asked of all programs, the names of its answers by program and what their errors are relative to (None:
+    itself), settings by program from coarse to fine, and by program two finer ones, which with the last of those make its reference."""
 
     title: str
     scene: str
@@ -62,7 +62,8 @@ CASES = {
          GETFEM: sizes((2, 1.5e-4), (1, 1e-4), (1, 5e-5), (1, 2e-5)), GETFEM_USUAL: sizes((2, 1.5e-4), (1, 1e-4))},
         {OURS: accuracies(0.0003, 0.00015), TUNED: sizes((0.7, 1e-5), (0.5, 7e-6))}),
     "oblique": Case(
-        "Disc, oblique impact with static and dynamic friction, neo-Hookean, 12 m/s at 60 degrees", "disc-oblique", {"law": "neohookean"}, 12.0,
+        "Disc, oblique impact with static and dynamic friction, neo-Hookean, 12 m/s at 60 degrees", "disc-oblique",
+        {"law": "neohookean"}, 12.0,
         body(12.0) | {"vx": ("rebound_vx", "rebound_vx", 12.0), "spin": ("angular_momentum", "angular_momentum", 12.0 * RIM)},
         {OURS: accuracies(0.1, 0.05, 0.02, 0.01, 0.005, 0.0025, 0.00125),
          TUNED: sizes((3, 1.5e-4), (2, 1e-4), (2, 5e-5), (1, 5e-5), (1, 3e-5), (1, 2e-5)),
@@ -70,29 +71,35 @@ CASES = {
         {OURS: accuracies(0.0006, 0.0003), TUNED: sizes((1, 1.5e-5), (0.6, 1.5e-5))}, {"speed": 12.0}),
     "block": Case(
         "Disc on a free block, St. Venant-Kirchhoff, 10 m/s", "disc-block", {"law": "svk", "penalty": 1e9}, 10.0,
-        {"impulse": ("impulse", "impulse", None), "vy disc": ("rebound_vy_1", "velocity_upper", 10.0), "vy block": ("rebound_vy_2", "velocity_lower", 10.0)},
+        {"impulse": ("impulse", "impulse", None), "vy disc": ("rebound_vy_1", "velocity_upper", 10.0),
+         "vy block": ("rebound_vy_2", "velocity_lower", 10.0)},
         {OURS: accuracies(0.1, 0.05, 0.02, 0.01, 0.005, 0.0025, 0.00125), TUNED: [{"refine": value} for value in (0.15, 0.25, 0.5, 0.75)],
          USUAL: [{"refine": value, "contact": "ngsolve"} for value in (0.25, 0.5, 0.75)]},
         {OURS: accuracies(0.0009, 0.0006), TUNED: [{"refine": 1.0}, {"refine": 1.25}]}),
     "ball": Case(
-        "Ball of revolution, normal impact, neo-Hookean, 8 m/s", "ball-axisymmetric", {"law": "neohookean", "nu": 0.45, "speed": 8.0, "penalty": 1.5e10}, 8.0,
+        "Ball of revolution, normal impact, neo-Hookean, 8 m/s", "ball-axisymmetric",
+        {"law": "neohookean", "nu": 0.45, "speed": 8.0, "penalty": 1.5e10}, 8.0,
         body(8.0),
-        {OURS: accuracies(0.1, 0.05, 0.02, 0.01, 0.005, 0.0025, 0.00125), TUNED: sizes((3, 1.5e-4), (2, 1.5e-4), (2, 1e-4), (1, 1e-4), (1, 5e-5), (1, 2e-5)),
+        {OURS: accuracies(0.1, 0.05, 0.02, 0.01, 0.005, 0.0025, 0.00125),
+         TUNED: sizes((3, 1.5e-4), (2, 1.5e-4), (2, 1e-4), (1, 1e-4), (1, 5e-5), (1, 2e-5)),
          USUAL: sizes((3, 1.5e-4), (2, 1.5e-4), (2, 1e-4), (1, 1e-4), (1, 5e-5))},
         {OURS: accuracies(0.0006, 0.0003), TUNED: sizes((0.7, 1e-5), (0.5, 7e-6))}),
 }
 
-HEAD = """Processor time, user and system, in seconds on one thread: march / whole process. The march is the time steps alone: of FreeFem++ from its first step on, of
-the peers their loop. The whole process is all that a script of a user costs: imports, mesh, set-up, of ours also FreeFem++ that Python starts. Least of
-{repeats} runs, of one where it takes above {long:g} s; our runs make no estimate of their error.
+HEAD = """Processor time, user and system, in seconds on one thread: march / whole process. The march is the time steps alone: of
+FreeFem++ from its first step on, of the peers their loop. The whole process is all that a script of a user costs: imports,
+mesh, set-up, of ours also FreeFem++ that Python starts. Least of {repeats} runs, of one where it takes above {long:g} s; our
+runs make no estimate of their error.
 
-A setting has a level where it and all finer ones of its program are below it in all answers: being below it by chance does not count.
-Errors are those of the impulse relative to itself, of velocities to that of the impact, of the spin as the speed of the rim (angular momentum over I/R) to it, and
-against our finest run. NGSolve's finest has to agree with it within both error bars: what the finest run of a program differs by from its two next ones.
+A setting has a level where it and all finer ones of its program are below it in all answers: being below it by chance does
+not count. Errors are those of the impulse relative to itself, of velocities to that of the impact, of the spin as the speed
+of the rim (angular momentum over I/R) to it, and against our finest run. NGSolve's finest has to agree with it within both
+error bars: what the finest run of a program differs by from its two next ones.
 
-NGSolve, tuned: energy-momentum step, sparse Cholesky factorisation kept as long as it serves, contact on the arc alone, with friction on a dense compliance of
-the few unknowns that touch; on the block central differences with contact by hand. As written by users: one form, Newton's method with UMFPACK, with
-friction damped and mu by the velocity of the step before; on the block NGSolve's own ContactBoundary."""
+NGSolve, tuned: energy-momentum step, sparse Cholesky factorisation kept as long as it serves, contact on the arc alone, with
+friction on a dense compliance of the few unknowns that touch; on the block central differences with contact by hand. As
+written by users: one form, Newton's method with UMFPACK, with friction damped and mu by the velocity of the step before; on
+the block NGSolve's own ContactBoundary."""
 
 
 def main(argv: list[str]) -> int:
@@ -137,7 +144,8 @@ def measure(case: Case) -> tuple[pd.DataFrame, pd.DataFrame]:
         raise study.Failure(f"equal-errors: the reference of {case.title} failed", 11)
     for row in rows:
         if of_it := found[row["program"], row["setting"]]:
-            row |= {name: of_it[name] for name in ("dofs", "steps", *SECONDS)} | errors(case, answers(case, row["program"], of_it), fine[OURS][-1])
+            row |= {name: of_it[name] for name in ("dofs", "steps", *SECONDS)}
+            row |= errors(case, answers(case, row["program"], of_it), fine[OURS][-1])
     return pd.DataFrame(rows), compare(case, fine)
 
 
@@ -167,19 +175,21 @@ def answers(case: Case, program: str, found: Found | None) -> Measured | None:
 
 def errors(case: Case, measured: Measured, reference: Measured) -> dict[str, float]:
     """In %, of each answer and the largest."""
-    found = {f"{answer} %": 100 * abs(measured[answer] - reference[answer]) / (unit or abs(reference[answer])) for answer, (*_, unit) in case.answers.items()}
+    found = {f"{answer} %": 100 * abs(measured[answer] - reference[answer]) / (unit or abs(reference[answer]))
+             for answer, (*_, unit) in case.answers.items()}
     return found | {"error": max(found.values())}
 
 
 def compare(case: Case, fine: dict[str, list[Measured | None]]) -> pd.DataFrame:
-    """A row an answer: both references, whose bars [%] are the largest difference of a program's finest run from its two next, their difference [%], and
-    whether it is within both; none where NGSolve gave none."""
+    """A row an answer: both references, whose bars [%] are the largest difference of a program's finest run from its two next, their
+    difference [%], and whether it is within both; none where NGSolve gave none."""
     if None in fine[TUNED]:
         return pd.DataFrame()
     bars = {program: max(errors(case, run, finest)["error"] for run in runs) for program, (*runs, finest) in fine.items()}
     apart = errors(case, fine[TUNED][-1], fine[OURS][-1])
-    return pd.DataFrame([{"answer": answer, OURS: fine[OURS][-1][answer], "its bar %": bars[OURS], "ngsolve": fine[TUNED][-1][answer], "bar %": bars[TUNED],
-                          "apart %": apart[f"{answer} %"], "agree": apart[f"{answer} %"] <= bars[OURS] + bars[TUNED]} for answer in case.answers])
+    return pd.DataFrame([{"answer": answer, OURS: fine[OURS][-1][answer], "its bar %": bars[OURS], "ngsolve": fine[TUNED][-1][answer],
+                          "bar %": bars[TUNED], "apart %": apart[f"{answer} %"], "agree": apart[f"{answer} %"] <= bars[OURS] + bars[TUNED]}
+                         for answer in case.answers])
 
 
 def words(point: study.Point) -> str:
@@ -192,7 +202,8 @@ def words(point: study.Point) -> str:
 # ---- what the rows say
 
 def safe(rows: pd.DataFrame, program: str, level: float) -> pd.Series | None:
-    """The row of a program that costs its whole process least among those from which on all finer settings keep the level; None where none does."""
+    """The row of a program that costs its whole process least among those from which on all finer settings keep the level;
+    None where none does."""
     own = rows[rows.program == program]
     kept = own[(own.exit == 0) & (own.error <= level)] if "error" in own else own[:0]
     broken = own.index.difference(kept.index)
@@ -219,19 +230,22 @@ def verdict(agreed: dict[str, bool], ratios: dict[str, dict[float, tuple[float, 
     each = "; ".join(f"{name} " + ", ".join(f"{level:g} %: " + ("-" if math.isnan(march) else f"{march:.1f} / {process:.1f}")
                                             for level, (march, process) in of.items()) for name, of in ratios.items())
     return (f"The references of both programs agree within their bars in {len(agreed) - len(without)} of {len(agreed)} cases"
-            + f" (not: {', '.join(without)})" * bool(without) + f". Our march is the quickest in {quicker[0]} of {len(pairs)} comparisons, our whole process "
+            + f" (not: {', '.join(without)})" * bool(without)
+            + f". Our march is the quickest in {quicker[0]} of {len(pairs)} comparisons, our whole process "
             f"in {quicker[1]}. The quickest other over ours, march / process: {each}.")
 
 
 def text(case: Case, rows: pd.DataFrame, reference: pd.DataFrame) -> str:
     """A case as markdown: who takes how long, the references, all settings."""
     ran = rows[rows.exit == 0]
-    levels = pd.DataFrame([{"march / process [s]": program} | {f"{level:g} %": cell(safe(rows, program, level)) for level in LEVELS} for program in ran.program.unique()])
+    levels = pd.DataFrame([{"march / process [s]": program} | {f"{level:g} %": cell(safe(rows, program, level)) for level in LEVELS}
+                           for program in ran.program.unique()])
     parts = [f"## {case.title}", study.table(levels, dict.fromkeys(levels, ""))]
     if not reference.empty:
         bar = reference[["its bar %", "bar %"]].max(axis=None)
         parts += ["References:" if bar <= min(LEVELS) else f"References, whose bars say that errors below {bar:.2g} % are not known:",
-                  study.table(reference, {"answer": "", OURS: ".6g", "its bar %": ".3f", "ngsolve": ".6g", "bar %": ".3f", "apart %": ".3f", "agree": ""})]
+                  study.table(reference, {"answer": "", OURS: ".6g", "its bar %": ".3f",
+                                          "ngsolve": ".6g", "bar %": ".3f", "apart %": ".3f", "agree": ""})]
     formats = {"program": "", "setting": "", "dofs": ".0f", "steps": ".0f"} | dict.fromkeys(SECONDS.values(), ".2f")
     parts += ["All settings, seconds and errors:",
               study.table(ran.rename(columns=SECONDS), formats | {f"{answer} %": ".3f" for answer in case.answers})]
