@@ -7,7 +7,6 @@ from orchestrate.places import ROOT
 
 CORE = ROOT / "edp/core"
 MOST = 340
-WIDTH = 140
 TYPE = r"(?:real|int|bool|string|matrix|func|macro|varf|fespace|mesh3?|Qh|Linear|Quadratic|Piecewise|QF2)\b"
 DECLARED = re.compile(rf"(?:^|[;{{}}(,]|\b(?:IFMACRO\([^)]*\)))\s*({TYPE}(?:\s*\[[^\]]*\])*)\s*&?\s*([^;{{}}]*)", re.MULTILINE)
 
@@ -57,10 +56,3 @@ def test_names_that_leave_their_room_do_not_become_more():
     print(count, {room: len(found[room]) for room in sorted(found)})
     assert count <= MOST, {room: sorted(found[room]) for room in sorted(found)}
     assert {"ndof", "gradient", "part", "mass"} <= found["discrete"] and {"u", "solveStep"} <= found["step"]   # it sees lists, macros, functions
-
-
-def test_lines_fit_a_screen():
-    """No line of the scripts has more than 140 characters."""
-    paths = [path for ending in ("*.idp", "*.edp") for path in CORE.parent.rglob(ending)]
-    wide = [f"{path.relative_to(ROOT)}:{k}" for path in paths for k, line in enumerate(path.read_text().splitlines(), 1) if len(line) > WIDTH]
-    assert len(paths) > 80 and not wide
