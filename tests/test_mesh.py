@@ -125,7 +125,7 @@ def own(request, tmp_path_factory):
     folder, core = tmp_path_factory.mktemp("own"), parameters.ROOT / "edp/core"
     rooms = "".join(f'include "{core}/{room}.idp"\n' for room in ("law/laws", "input/parameters", "input/mesh-file", "input/outline", "input/sizes"))
     (folder / "own.edp").write_text(
-        f'verbosity = 0;\nload "lapack"\nstring script = "own";\n{rooms}touchArc = {arc!r};\ninclude "{core}/bodies/meshes.idp"\n'
+        f'verbosity = 0;\nload "lapack"\nstring script = "own";\n{rooms}touchArc = {arc!r};\ninclude "{core}/input/meshes.idp"\n'
         f'ofstream out("{folder}/own.msh");\nout.precision(17);\nout << Th.nv << " " << Th.nt << " " << Th.nbe << endl;\n'
         'for (int i = 0; i < Th.nv; i++) out << Th(i).x / radius << " " << Th(i).y / radius << " 0" << endl;\n'
         'for (int t = 0; t < Th.nt; t++) out << Th[t][0] + 1 << " " << Th[t][1] + 1 << " " << Th[t][2] + 1 << " 0" << endl;\n'

@@ -49,13 +49,10 @@ def test_a_function_fits_a_screen(path: Path):
 
 
 LINE = 140
-# lines that are longer still, in scripts and kernels: fewer where they have been broken, never more
-LONGER = {"edp/core/contact/boxes.idp": 1, "edp/core/contact/closest-on-face.idp": 2, "edp/core/contact/gaps.idp": 1,
-          "edp/core/contact/pair.idp": 5, "edp/core/contact/slots.idp": 4, "edp/core/run/audit.idp": 1, "edp/core/run/contacts.idp": 1,
-          "edp/core/run/parts.idp": 1, "edp/core/run/vtu.idp": 1, "edp/core/step/explicit.idp": 6, "edp/kernels/bodies.hpp": 8,
-          "edp/kernels/contact-law.hpp": 4, "edp/kernels/contact-solve.hpp": 17, "edp/kernels/contact.hpp": 4, "edp/kernels/factor.hpp":
-          6, "edp/kernels/kernels.cpp": 1, "edp/kernels/laws.hpp": 2, "edp/kernels/numbers.hpp": 2, "edp/kernels/pairs.hpp": 11,
-          "edp/kernels.idp": 11}
+# lines that are longer still, in kernels: fewer where they have been broken, never more
+LONGER = {"edp/kernels/bodies.hpp": 8, "edp/kernels/contact-law.hpp": 4, "edp/kernels/contact-solve.hpp": 17, "edp/kernels/contact.hpp": 4,
+          "edp/kernels/factor.hpp": 6, "edp/kernels/kernels.cpp": 1, "edp/kernels/laws.hpp": 2, "edp/kernels/numbers.hpp": 2,
+          "edp/kernels/pairs.hpp": 11}
 
 
 def test_lines_fit_a_screen():

@@ -104,7 +104,7 @@ def write(scene: Scene, folder: Path) -> dict[str, Path]:
 
 
 def data(scene: Scene) -> str:
-    """The text of scene.dat (edp/core/bodies/scene-file.idp)."""
+    """The text of scene.dat (edp/core/input/scene-file.idp)."""
     def numbers(*groups) -> str:
         return " ".join(repr(float(x)) for group in groups for x in group)
     lines = ["ffimpact-bodies-3d 1", f"copies {scene.copies}", "disc " + numbers(scene.ball), f"bodies {len(scene.bodies)}"]
