@@ -31,7 +31,7 @@ SCENES = {   # flags of edp/disc-plane.edp, steps between checkpoints, rows of h
     "central-difference": (COARSE | dict(accuracy=0.2, angle=60, friction_static=0.5, friction_dynamic=0.4, slip_velocity=0.1,
                                          dt=3e-5, integrator="central-difference"), 10, 80),
 }
-EFFORT = ("wall_seconds", "total_seconds", "cpu_seconds", "estimate_cpu_seconds", "peak_memory", "phase_seconds", "resumed_at", "provenance")
+EFFORT = ("start_seconds", "wall_seconds", "total_seconds", "cpu_seconds", "estimate_cpu_seconds", "peak_memory", "phase_seconds", "resumed_at", "provenance")
 
 
 def direct(flags: dict, out: Path) -> subprocess.Popen:

@@ -165,7 +165,7 @@ def test_compare_goes_on_after_a_failure(fake, tmp_path, capsys):
     """A scene that fails is named, the others are run, and the exit code is that of the failure."""
     fake("step")
     assert main(["compare", "disc-oblique-svk", "disc-oblique", "--out", str(tmp_path)]) == 11
-    assert fake.starts() in (2, 4)             # beside each, where there are two cores, the run that estimates its error
+    assert 2 <= fake.starts() <= 4             # beside each, where there are two cores, the run that estimates its error, if it comes to it
     captured = capsys.readouterr()
     assert captured.out.count("failed: step: no convergence") == 2 and captured.err.count("\n") == 1
 
