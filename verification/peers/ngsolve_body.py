@@ -179,15 +179,19 @@ class Plain(Body):
         """The mean of the step that ends at u [m/s2]."""
         return 2 / self.dt ** 2 * (u - self.u0 - self.dt * self.v0)
 
+    def correct(self):
+        """A full step of Newton's method; returns the work of the residual on it [J/m, J]."""
+        self.form.Apply(self.u.vec, self.residual)
+        self.form.AssembleLinearization(self.u.vec)
+        self.change.data = self.form.mat.Inverse(self.free, inverse="umfpack") * self.residual
+        self.newton_iterations += 1
+        self.factorizations += 1
+        self.u.vec.data -= self.change
+        return ng.InnerProduct(self.change, self.residual)
+
     def solve(self):
         for _ in range(50):
-            self.form.Apply(self.u.vec, self.residual)
-            self.form.AssembleLinearization(self.u.vec)
-            self.change.data = self.form.mat.Inverse(self.free, inverse="umfpack") * self.residual
-            self.newton_iterations += 1
-            self.factorizations += 1
-            self.u.vec.data -= self.change
-            if peer.small(ng.InnerProduct(self.change, self.residual), self.o.tolerance * self.energy0):
+            if peer.small(self.correct(), self.o.tolerance * self.energy0):
                 return
         raise peer.StepFailed("no convergence")
 

@@ -88,13 +88,7 @@ class PlainOblique(Oblique, Plain):
     def solve(self):
         """Newton's method, damped as NGSolve's own: where the work of the residual grows the step is halved."""
         for _ in range(50):
-            self.form.Apply(self.u.vec, self.residual)
-            self.form.AssembleLinearization(self.u.vec)
-            self.change.data = self.form.mat.Inverse(self.free, inverse="umfpack") * self.residual
-            self.newton_iterations += 1
-            self.factorizations += 1
-            work, length = ng.InnerProduct(self.change, self.residual), 1.0
-            self.u.vec.data -= self.change
+            work, length = self.correct(), 1.0
             if peer.small(work, self.o.tolerance * self.energy0):
                 return
             while length > 1e-2:
