@@ -41,7 +41,7 @@ ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 1), "handlelength": 1.6,
 BELOW = {"loc": "upper center", "bbox_to_anchor": (0.5, 0), "borderaxespad": 5.5}
 BARE = {"xticks": [], "yticks": []}                               # of a panel without axes: its ticks would still be laid out
 BAND = "#c8c8c8"   # of what other curves run along
-VISCOUS = "#882255"
+VISCOUS = "#8c510a"
 DASHED = (0, (4, 2))
 ORIGIN = np.zeros(2)
 # letters, as is all that pictures say: to parse formulas takes as long as to draw one
