@@ -132,7 +132,9 @@ def start() -> int:
         if getattr(sys, name) is None:
             setattr(sys, name, open(os.devnull, "w"))
     sys.stdout.reconfigure(errors="surrogateescape")   # paths are bytes, not all of them text
-    return main(sys.argv[1:])
+    code = main(sys.argv[1:])
+    gc.freeze()                                        # nor at the end, which took a tenth of a second
+    return code
 
 
 if __name__ == "__main__":

@@ -4,7 +4,6 @@ velocities, forces, and deformed shapes among the obstacles."""
 from pathlib import Path
 from textwrap import wrap
 
-import matplotlib.pyplot as plt
 import numpy as np
 
 from ..input import dimension
@@ -14,7 +13,7 @@ from ..scenes.obstacles import Obstacle
 from ..input.parameters import Value
 from ..output.results import body_names, suffixes
 from .figures import (BLACK, BLUE, GREEN, GREY, ORANGE, ORIGIN, PURPLE, VISCOUS, Body, as_written, balance_error, deformed, instants,
-                      is_half, least, material, over_time, per_metre, side_by_side)
+                      is_half, least, material, over_time, per_metre, plt, side_by_side)
 
 ALONE = ("disc-plane", "ball-axisymmetric", "ball-plane")     # scripts of one body on the plane
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, "#56b4e9", "#e69f00")    # of bodies

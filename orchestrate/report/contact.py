@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.colors import ListedColormap
 
 from ..input.parameters import Value
 from ..output.results import read_table
+from .figures import plt
 
 INSTANTS = 6                     # profiles at most
 SLOW = 0.03                      # speed over sqrt(E/rho) up to which the pressure of a ball is shown beside Hertz'

@@ -6,12 +6,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from textwrap import wrap
 from warnings import filterwarnings
+from zlib import Z_RLE
 
 import matplotlib
-import matplotlib.artist
+from matplotlib import artist
 
 matplotlib.use("Agg")
-matplotlib.artist.kwdoc = lambda artist: ""     # what it would write into its docstrings takes a fifth of its import
+# what matplotlib would write into its docstrings takes a third of its import: others here take plt from this module, and not before it
+artist.kwdoc = lambda artist: ""
+artist.Artist._update_set_signature_and_docstring = classmethod(lambda cls: None)
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import TriMesh
@@ -69,7 +72,8 @@ def save(figure: plt.Figure, path: Path) -> None:
     """Writes the figure, laid out and drawn once (savefig draws it twice), and closes it."""
     figure.set_dpi(plt.rcParams["savefig.dpi"])
     figure.canvas.draw()
-    Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB").save(path, dpi=(figure.dpi, figure.dpi), compress_level=1)
+    Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB").save(path, dpi=(figure.dpi, figure.dpi), compress_level=1,
+                                                                                compress_type=Z_RLE)
     plt.close(figure)
 
 

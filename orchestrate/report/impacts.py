@@ -2,11 +2,10 @@
 
 from pathlib import Path
 
-import matplotlib.pyplot as plt
 import numpy as np
 
 from ..output.results import read_table
-
+from .figures import plt
 
 LIGHTEST = 0.01                  # of the largest impulse of a meeting: what is less is the grazing end of an impact
 # of the approach, and of the largest slip of a meeting: of less the restitution along the partner is that of vibrations

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.cm import ScalarMappable
 
@@ -18,7 +17,7 @@ from ..input.parameters import Value
 from ..places import shown
 from .bodies import obstacles_of
 from .contact import PRESSURE
-from .figures import STRESS
+from .figures import STRESS, plt
 
 INSTALL = f"{shown(Path(sys.executable))} -m pip install pyvista vtk"
 PROBE = ("import pyvista; p = pyvista.Plotter(off_screen=True, window_size=(8, 8)); p.add_mesh(pyvista.Sphere()); "

@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-import matplotlib.pyplot as plt
 import numpy as np
 
 from ..output.results import read_table
+from .figures import plt
 
 
 NEEDED = ["mode", "frequency", "energy", "strain_energy", "kinetic_energy"]
