@@ -10,7 +10,7 @@ import pytest
 
 from orchestrate import run
 from orchestrate.output import results
-from orchestrate.studies import pairing_comparison, stress
+from verification.measurements import pairing_comparison, stress
 from orchestrate.sweeps import study
 from test_cli import is_alive, start, wait_for
 

@@ -1,1 +1,1 @@
-"""Many runs of one kind of question: what they cost, how they converge, what holds and what fails."""
+"""Many runs for one question of the paper or of theory, with its own table and figure."""

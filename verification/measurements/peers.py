@@ -15,12 +15,12 @@ from functools import cache, partial
 from pathlib import Path
 from signal import SIGKILL
 
-from ..failure import Failure
-from ..freefem import freefem
-from ..input.parameters import Value
-from ..mesh import mesh
-from ..places import INSTALLED, ROOT, shown
-from ..scene import Scene
+from orchestrate.failure import Failure
+from orchestrate.freefem import freefem
+from orchestrate.input.parameters import Value
+from orchestrate.mesh import mesh
+from orchestrate.places import INSTALLED, ROOT, shown
+from orchestrate.scene import Scene
 
 PYTHONS = {"ffimpact": ("", sys.executable), "ngsolve": ("NGSOLVE_PYTHON", sys.executable), "getfem": ("GETFEM_PYTHON", "/usr/bin/python3")}
 INSTALL = {"ngsolve": "pip install ngsolve==6.2.2608", "getfem": "apt-get install python3-getfem"}

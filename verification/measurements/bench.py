@@ -11,15 +11,16 @@ import numpy as np
 import pandas as pd
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from .. import scene
-from ..mesh import mesh
-from ..places import shown
-from ..progress import in_turn
-from ..report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE, save
-from ..output.results import read_history
-from ..sweeps.sweep_figures import distance
+from orchestrate import scene
+from orchestrate.mesh import mesh
+from orchestrate.output.results import read_history
+from orchestrate.places import shown
+from orchestrate.progress import in_turn
+from orchestrate.report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE, save
+from orchestrate.sweeps import study
+from orchestrate.sweeps.sweep_figures import distance
+
 from . import peers
-from ..sweeps import study
 
 LEVELS = (5.0, 1.0, 0.1)    # % of error
 HEADLINE, HEADLINE_CONTACT = 0.5, 1.0   # % at the same time in everything but the contact time, and in that

@@ -8,9 +8,10 @@ from typing import Any
 
 import pandas as pd
 
-from ..places import shown
-from ..progress import in_turn
-from ..sweeps import study
+from orchestrate.places import shown
+from orchestrate.progress import in_turn
+from orchestrate.sweeps import study
+
 from . import peers
 
 LEVELS = (1.0, 0.5, 0.1)    # % of error
