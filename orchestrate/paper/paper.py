@@ -15,7 +15,7 @@ from .. import scene
 from ..failure import Failure, Unreadable
 from ..output.folder import result_folder
 from ..places import COMMAND, RESULTS, ROOT, shown
-from ..studies import stick_slip
+from . import stick_slip
 from ..sweeps import study
 from ..sweeps import sweep
 from . import judging, making

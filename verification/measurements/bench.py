@@ -66,8 +66,8 @@ class Case:
         return wanted.values["accuracy"] / wanted.description()["accuracy_made"]
 
     def sized(self, factor: float, dt: float, **given) -> study.Point:
-        """A mesh of `factor` times the sizes study.BULK and study.CONTACT, steps dt [s], both times `scale`."""
-        return sized(self.scale * factor, dt=float(f"{self.scale * dt:.6g}"), **given)
+        """A mesh of `factor` times the sizes of peers.sized(), steps dt [s], both times `scale`."""
+        return peers.sized(self.scale * factor, dt=float(f"{self.scale * dt:.6g}"), **given)
 
 
 BALL = {"law": "neohookean", "nu": 0.45, "speed": 8.0, "penalty": 1.5e10}
@@ -152,11 +152,6 @@ def grid(case: Case) -> dict[str, list[study.Point]]:
     return found
 
 
-def sized(factor: float, **given) -> study.Point:
-    """A mesh of `factor` times the sizes study.BULK and study.CONTACT."""
-    return {"mesh_size": factor * study.BULK, "contact_mesh_size": factor * study.CONTACT} | given
-
-
 def references(case: Case, quick: bool) -> list[study.Point]:
     """The two finest runs: by accuracy, and by mesh and step."""
     if quick:
@@ -216,7 +211,7 @@ def _peers(case: Case, others: list[tuple], best: pd.Series, force: tuple[np.nda
     force_from_ours: of the force history against that of our run with the same sizes and step, where `folder` has it among `ours`."""
     rows = []
     for program, form, factor, dt in in_turn("others", others):
-        sizes = sized(factor)
+        sizes = peers.sized(factor)
         history = _history(out, f"{case.scene}-{program}-{form}-{factor:g}-{dt:g}")
         row = {"program": f"{program}, {form}", "family": f"{program}, {form}", "setting": _words(sizes | {"dt": dt})}
         if program == "textbook":

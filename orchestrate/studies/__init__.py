@@ -1,1 +1,0 @@
-"""Many runs for one question of the paper or of theory, with its own table and figure."""
