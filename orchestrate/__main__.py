@@ -12,12 +12,13 @@ from . import __version__, stopping
 from .failure import BadInput, Failure, Unreadable, brief
 from .places import COMMAND, from_source, shown
 
-# the commands with a module of their own, which has a main(argv), by its package
-PACKAGES = {"sweeps": ("sweep",), "report": ("friction-laws", "compare", "movie", "pages"), "paper": ("paper",),
-            "studies": ("verify", "stick-slip", "oblique-angles", "stress", "bench", "promise", "pairing-comparison", "disc-block-errors",
-                        "equal-errors")}
-FROM_SOURCE = ("verify", "pages", "paper", "bench", "equal-errors", "oblique-angles")   # these need the source folder
+# the commands with a module of their own, which has a main(argv), by its package; what is in none of ours needs the source folder
+PACKAGES = {f"{__package__}.sweeps": ("sweep",), f"{__package__}.report": ("friction-laws", "compare", "movie", "pages"),
+            f"{__package__}.paper": ("paper", "stick-slip"), "verification": ("verify",),
+            "verification.measurements": ("oblique-angles", "stress", "bench", "promise", "pairing-comparison", "disc-block-errors",
+                                          "equal-errors")}
 OWN_MAIN = {name: f"{package}.{name.replace('-', '_')}" for package, names in PACKAGES.items() for name in names}
+FROM_SOURCE = ("pages", "paper", *(name for name, module in OWN_MAIN.items() if module.startswith("verification.")))
 
 
 def main(argv: list[str]) -> int:
@@ -27,7 +28,7 @@ def main(argv: list[str]) -> int:
         if argv[:1] and argv[0] in FROM_SOURCE:
             from_source(argv)
         if argv[:1] and argv[0] in OWN_MAIN:
-            return importlib.import_module(f"{__package__}.{OWN_MAIN[argv[0]]}").main(argv[1:]) or 0
+            return importlib.import_module(OWN_MAIN[argv[0]]).main(argv[1:]) or 0
         options = _parser().parse_args(argv)
         options.command(options)
         return 0

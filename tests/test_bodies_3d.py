@@ -45,9 +45,9 @@ def full_on(m: solid_mesh.SolidMesh, label: int) -> int:
 # ---- shapes
 
 SHAPES = {   # volume, area
-    "ball": (solids.Ball(0.3), 4 / 3 * math.pi * 0.027, 4 * math.pi * 0.09),
-    "box": (solids.Box(np.array([0.4, 0.1, 0.2])), 0.008, 2 * (0.04 + 0.02 + 0.08)),
-    "cylinder": (solids.Cylinder(0.2, 0.5), math.pi * 0.02, 2 * math.pi * 0.2 * 0.7),
+    "ball": (solids.ball(0.3), 4 / 3 * math.pi * 0.027, 4 * math.pi * 0.09),
+    "box": (solids.box(np.array([0.4, 0.1, 0.2])), 0.008, 2 * (0.04 + 0.02 + 0.08)),
+    "cylinder": (solids.cylinder(0.2, 0.5), math.pi * 0.02, 2 * math.pi * 0.2 * 0.7),
 }
 
 
@@ -67,7 +67,7 @@ def test_a_surface_of_triangles_has_the_distances_of_its_body():
     """Of a meshed box: outside, near edges and corners, and inside."""
     sizes = mesh.Sizes(0.05, 0.05, np.empty((0, 3)), 0.0)
     made = solid_mesh.mesh_shape("box", np.array([0.4, 0.1, 0.2]), np.eye(3), (), sizes, 0.1)
-    surface, box = solids.Surface(made.points[made.faces]), SHAPES["box"][0]
+    surface, box = solids.surface(made.points[made.faces]), SHAPES["box"][0]
     points = np.random.default_rng(1).uniform(-0.3, 0.3, (500, 3))
     assert surface.gap(points) == pytest.approx(box.gap(points), abs=1e-12)
     assert surface.volume == pytest.approx(box.volume) and surface.area == pytest.approx(box.area)
@@ -86,7 +86,7 @@ def test_free_bodies_tumble():
     """Euler's equations in the body's axes, J w' = J w x w, in small steps of another method; a ball, and a box about a principal axis, go on turning as they
     began. No spin is above the bound."""
     extent, spin, start, t = np.array([0.05, 0.1, 0.2]), np.array([12.0, 5, -8]), tumbling.rotation(np.array([0.3, -0.2, 0.5])), 0.6
-    box, w, R, n, fastest = solids.Box(extent), start.T @ spin, start, 60000, 0.0
+    box, w, R, n, fastest = solids.box(extent), start.T @ spin, start, 60000, 0.0
     J = np.diag(box.moments)
     for _ in range(n):
         middle = w + t / n / 2 * np.cross(J * w, w) / J
@@ -96,7 +96,7 @@ def test_free_bodies_tumble():
     assert tumbling.turned(box.moments, start, spin, t) == pytest.approx(R, abs=1e-6)
     assert abs(R - tumbling.rotation(spin * t) @ start).max() > 0.1
     assert fastest <= tumbling.fastest(box.moments, start, spin)
-    for moments, about in ((solids.Ball(0.1).moments, spin), (box.moments, 7 * start[:, 0])):
+    for moments, about in ((solids.ball(0.1).moments, spin), (box.moments, 7 * start[:, 0])):
         assert tumbling.turned(moments, start, about, t) == pytest.approx(tumbling.rotation(about * t) @ start, abs=1e-12)
 
 
@@ -104,9 +104,9 @@ def test_moments_of_inertia():
     """Those of a box by the formula and by its triangles; a ball and a cylinder by points that fill them."""
     sides = np.array([0.05, 0.1, 0.2])
     made = solid_mesh.mesh_shape("box", sides, np.eye(3), (), mesh.Sizes(0.1, 0.1, np.empty((0, 3)), 0.0), 0.025)
-    assert solids.Surface(made.points[made.faces]).moments == pytest.approx(solids.Box(sides).moments, rel=1e-9, abs=1e-15)
+    assert solids.surface(made.points[made.faces]).moments == pytest.approx(solids.box(sides).moments, rel=1e-9, abs=1e-15)
     x = np.random.default_rng(1).uniform(-1, 1, (400000, 3))
-    for shape in (solids.Ball(1.0), solids.Cylinder(0.7, 1.6)):
+    for shape in (solids.ball(1.0), solids.cylinder(0.7, 1.6)):
         inside = x[shape.gap(x) < 0]
         square = inside.T @ inside * 8 / len(x)
         assert shape.moments == pytest.approx(np.trace(square) * np.eye(3) - square, abs=0.01 * shape.moments.max())

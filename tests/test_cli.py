@@ -201,5 +201,5 @@ def test_a_loop_of_links_is_no_folder(tmp_path, command):
     (tmp_path / "loop").symlink_to(tmp_path / "pool")
     (tmp_path / "pool").symlink_to(tmp_path / "loop")
     with pytest.raises(Unreadable, match="cannot be made") as error:
-        importlib.import_module(f"orchestrate.{OWN_MAIN[command]}").main(["--out", str(tmp_path / "loop/out")])
+        importlib.import_module(OWN_MAIN[command]).main(["--out", str(tmp_path / "loop/out")])
     assert error.value.code == 14

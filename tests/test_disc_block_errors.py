@@ -5,7 +5,7 @@ import math
 import pandas as pd
 import pytest
 
-from orchestrate.studies import disc_block_errors as block, peers
+from verification.measurements import disc_block_errors as block, peers
 from orchestrate.sweeps import study
 
 CASE = block.PEER_CASES[0]

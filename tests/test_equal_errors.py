@@ -5,7 +5,7 @@ import math
 import pandas as pd
 import pytest
 
-from orchestrate.studies import equal_errors as equal
+from verification.measurements import equal_errors as equal
 
 CASE = equal.CASES["normal"]
 FINE = {equal.OURS: [{"impulse": 208.1, "vy": 7.39}, {"impulse": 208.22, "vy": 7.394}, {"impulse": 208.2, "vy": 7.394}],

@@ -6,7 +6,7 @@ import pytest
 
 from orchestrate import run, scene
 from orchestrate.output import results
-from orchestrate.studies import bench
+from verification.measurements import bench
 
 
 def rows(**columns) -> pd.DataFrame:

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from orchestrate.__main__ import main
-from orchestrate.studies import oblique_angles as angles
+from verification.measurements import oblique_angles as angles
 from verification.oblique_ball import NU, slides_throughout, springs
 
 SLIDES, STICKS = 20.0, 60.0      # degrees, at a friction of 0.3

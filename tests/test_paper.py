@@ -15,7 +15,7 @@ from orchestrate.paper import paper, bodies as paper_bodies, friction as paper_f
 from orchestrate.report import figures, report
 from orchestrate.paper.judging import AGREES, DIFFERS, OPEN, PARTLY, STATEMENTS, Finding, maxima
 from orchestrate.input.parameters import ROOT
-from orchestrate.studies import stick_slip
+from orchestrate.paper import stick_slip
 from orchestrate.sweeps import sweep, sweep_figures
 from paper_results import BLOCK, BLOCK_END, CHATTERS, END, IMPACT, JUMPS, KEPT, LEAKS, Memory, NEAR, PUSH, SLIDES, SMOOTH, base, forces, jump, pairs, speeds, steps, waves
 

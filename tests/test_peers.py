@@ -4,7 +4,7 @@ import pytest
 
 from orchestrate import run, scene
 from orchestrate.input.parameters import ROOT
-from orchestrate.studies import bench, equal_errors, peers
+from verification.measurements import bench, equal_errors, peers
 
 
 def test_every_scene_has_its_script():

@@ -10,7 +10,7 @@ import pytest
 
 from orchestrate import run
 from orchestrate.output import results
-from orchestrate.studies import pairing_comparison, stress
+from verification.measurements import pairing_comparison, stress
 from orchestrate.sweeps import study
 from test_cli import is_alive, start, wait_for
 
@@ -60,7 +60,7 @@ def test_time_limit_kills_and_reports(fake, tmp_path):
     """A run that does not end is killed at its limit, says so, and leaves nothing."""
     fake("slow")
     rows = go(tmp_path, POINTS[:2], limit=1.0)
-    assert (rows.exit == study.TOO_LONG).all() and (rows.message == "no end after 1 s: killed").all()
+    assert (rows.exit == 124).all() and (rows.message == "no end after 1 s: killed").all()
     assert not any(map(is_alive, fake.pids())) and not any((tmp_path / "runs").iterdir())
 
 
@@ -127,7 +127,7 @@ def test_stress_has_every_combination_once(fake, tmp_path, monkeypatch):
     (dict(exit=0, message="", energy_drift=1e-9), "closed", True), (dict(exit=0, message="", energy_drift=1e-7), "open", False),
     (dict(exit=11, message="the step"), "no step", True), (dict(exit=11, message=""), "no step", False),
     (dict(exit=12, message="det F"), "breakdown", True), (dict(exit=10, message="end_time"), "other", False),
-    (dict(exit=study.TOO_LONG, message="no end"), "other", False)])
+    (dict(exit=124, message="no end"), "other", False)])
 def test_stress_requirement(row, kind, good):
     """Closed balance, or 11 or 12 with a message; nothing else will do."""
     rows = pd.DataFrame([row | {"outcome": stress.outcome(pd.Series(row))}])

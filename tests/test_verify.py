@@ -9,7 +9,7 @@ import time
 import pandas as pd
 import pytest
 
-from orchestrate.studies import verify
+from verification import verify
 from orchestrate.__main__ import main
 from orchestrate.failure import Failure
 from orchestrate.paper import page as paper

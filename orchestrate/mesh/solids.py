@@ -13,10 +13,10 @@ and y.
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Protocol
 
 import numpy as np
 
@@ -34,216 +34,124 @@ NEAREST = 16                 # triangles of a surface, by their centres, among w
 AT_ONCE = 500_000            # pairs of a point and a triangle
 
 
-class Shape(Protocol):
+@dataclass(frozen=True)
+class Shape:
     """What a solid is, about its centre of volume and not turned."""
 
+    kind: str                 # ball, box, cylinder; surface of a mesh
+    lengths: np.ndarray       # radius; width, height, depth; radius and height [m]
     extent: np.ndarray        # along x, y, z [m]
     volume: float             # [m3]
     area: float               # [m2]
     reach: float              # distance of its farthest point from the centre [m]
     moments: np.ndarray       # (3, 3), of inertia over the density, about the centre [m5]
-
-    def gap(self, points: np.ndarray) -> np.ndarray:
-        """Signed distances (n,) of points (n, 3), negative inside."""
-
-    def sampled(self, spacing: float) -> np.ndarray:
-        """Points (n, 3) on the surface, corners and edges included, about `spacing` [m] from each other."""
-
-    def is_mirrored(self, normal: np.ndarray) -> bool:
-        """Whether it is its own mirror image in the plane through its centre with this unit normal."""
+    gap: Callable[[np.ndarray], np.ndarray]       # signed distances (n,) of points (n, 3), negative inside
+    sampled: Callable[[float], np.ndarray]        # points (n, 3) on the surface, corners and edges included, about so far [m] apart
+    is_mirrored: Callable[[np.ndarray], bool]     # its own mirror image in the plane through its centre with this unit normal?
 
 
-@dataclass(frozen=True)
-class Ball:
-    radius: float
+def ball(radius: float) -> Shape:
+    volume, area = 4 / 3 * math.pi * radius**3, 4 * math.pi * radius**2
 
-    @property
-    def extent(self) -> np.ndarray:
-        return np.full(3, 2 * self.radius)
-
-    @property
-    def volume(self) -> float:
-        return 4 / 3 * math.pi * self.radius**3
-
-    @property
-    def area(self) -> float:
-        return 4 * math.pi * self.radius**2
-
-    @property
-    def reach(self) -> float:
-        return self.radius
-
-    @property
-    def moments(self) -> np.ndarray:
-        return 2 / 5 * self.volume * self.radius**2 * np.eye(3)
-
-    def gap(self, points: np.ndarray) -> np.ndarray:
-        return np.linalg.norm(points, axis=1) - self.radius
-
-    def sampled(self, spacing: float) -> np.ndarray:
+    def sampled(spacing: float) -> np.ndarray:
         """A spiral of points of equal shares, golden section turns apart, from the lowest to the highest."""
-        n = max(20, round(self.area / spacing**2))
+        n = max(20, round(area / spacing**2))
         y, turn = np.linspace(-1, 1, n), math.pi * (3 - math.sqrt(5)) * np.arange(n)
         away = np.sqrt(np.maximum(1 - y**2, 0))
-        return self.radius * np.column_stack([away * np.cos(turn), y, away * np.sin(turn)])
+        return radius * np.column_stack([away * np.cos(turn), y, away * np.sin(turn)])
 
-    def is_mirrored(self, normal: np.ndarray) -> bool:
-        return True
+    return Shape("ball", np.array([radius]), np.full(3, 2 * radius), volume, area, radius, 2 / 5 * volume * radius**2 * np.eye(3),
+                 lambda points: np.linalg.norm(points, axis=1) - radius, sampled, lambda normal: True)
 
 
-@dataclass(frozen=True)
-class Box:
-    extent: np.ndarray
+def box(extent: np.ndarray) -> Shape:
+    (a, b, c), square, volume = extent, extent**2, float(np.prod(extent))
 
-    @property
-    def volume(self) -> float:
-        return float(np.prod(self.extent))
-
-    @property
-    def area(self) -> float:
-        a, b, c = self.extent
-        return float(2 * (a * b + b * c + c * a))
-
-    @property
-    def reach(self) -> float:
-        return float(np.linalg.norm(self.extent) / 2)
-
-    @property
-    def moments(self) -> np.ndarray:
-        square = self.extent**2
-        return self.volume / 12 * np.diag(square.sum() - square)
-
-    def gap(self, points: np.ndarray) -> np.ndarray:
-        beyond = abs(points) - self.extent / 2
-        return np.linalg.norm(np.maximum(beyond, 0), axis=1) + np.minimum(beyond.max(axis=1), 0)
-
-    def sampled(self, spacing: float) -> np.ndarray:
-        along = [np.linspace(-half, half, 1 + max(2, math.ceil(2 * half / spacing))) for half in self.extent / 2]
+    def sampled(spacing: float) -> np.ndarray:
+        along = [np.linspace(-half, half, 1 + max(2, math.ceil(2 * half / spacing))) for half in extent / 2]
         faces = []
         for axis in range(3):
             sides = [one if k != axis else one[[0, -1]] for k, one in enumerate(along)]
             faces.append(np.stack(np.meshgrid(*sides, indexing="ij"), axis=-1).reshape(-1, 3))
         return np.unique(np.vstack(faces), axis=0)
 
-    def is_mirrored(self, normal: np.ndarray) -> bool:
-        return abs(normal).max() > 1 - 1e-12
+    return Shape("box", extent, extent, volume, float(2 * (a * b + b * c + c * a)), float(np.linalg.norm(extent) / 2),
+                 volume / 12 * np.diag(square.sum() - square), lambda points: _outside(abs(points) - extent / 2), sampled,
+                 lambda normal: abs(normal).max() > 1 - 1e-12)
 
 
-@dataclass(frozen=True)
-class Cylinder:
+def cylinder(radius: float, height: float) -> Shape:
     """Its axis is y."""
+    volume, across = math.pi * radius**2 * height, (3 * radius**2 + height**2) / 12
 
-    radius: float
-    height: float
+    def gap(points: np.ndarray) -> np.ndarray:
+        return _outside(np.column_stack([np.hypot(points[:, 0], points[:, 2]) - radius, abs(points[:, 1]) - height / 2]))
 
-    @property
-    def extent(self) -> np.ndarray:
-        return np.array([2 * self.radius, self.height, 2 * self.radius])
+    def ring(radius: float, y: float, spacing: float) -> np.ndarray:
+        turn = 2 * math.pi * np.arange(n := max(1, math.ceil(2 * math.pi * radius / spacing))) / n
+        return np.column_stack([radius * np.cos(turn), np.full(n, y), radius * np.sin(turn)])
 
-    @property
-    def volume(self) -> float:
-        return math.pi * self.radius**2 * self.height
+    def sampled(spacing: float) -> np.ndarray:
+        side = np.linspace(-height / 2, height / 2, 1 + max(2, math.ceil(height / spacing)))
+        inner = np.linspace(0, radius, 1 + max(2, math.ceil(radius / spacing)))[:-1]
+        return np.vstack([ring(radius, y, spacing) for y in side] + [ring(r, y, spacing) for r in inner for y in side[[0, -1]]])
 
-    @property
-    def area(self) -> float:
-        return 2 * math.pi * self.radius * (self.radius + self.height)
-
-    @property
-    def reach(self) -> float:
-        return math.hypot(self.radius, self.height / 2)
-
-    @property
-    def moments(self) -> np.ndarray:
-        across = (3 * self.radius**2 + self.height**2) / 12
-        return self.volume * np.diag([across, self.radius**2 / 2, across])
-
-    def gap(self, points: np.ndarray) -> np.ndarray:
-        beyond = np.column_stack([np.hypot(points[:, 0], points[:, 2]) - self.radius, abs(points[:, 1]) - self.height / 2])
-        return np.linalg.norm(np.maximum(beyond, 0), axis=1) + np.minimum(beyond.max(axis=1), 0)
-
-    def sampled(self, spacing: float) -> np.ndarray:
-        def ring(radius: float, y: float) -> np.ndarray:
-            turn = 2 * math.pi * np.arange(n := max(1, math.ceil(2 * math.pi * radius / spacing))) / n
-            return np.column_stack([radius * np.cos(turn), np.full(n, y), radius * np.sin(turn)])
-        side = np.linspace(-self.height / 2, self.height / 2, 1 + max(2, math.ceil(self.height / spacing)))
-        inner = np.linspace(0, self.radius, 1 + max(2, math.ceil(self.radius / spacing)))[:-1]
-        return np.vstack([ring(self.radius, y) for y in side] + [ring(r, y) for r in inner for y in side[[0, -1]]])
-
-    def is_mirrored(self, normal: np.ndarray) -> bool:
-        return abs(normal[1]) < 1e-12 or abs(normal[1]) > 1 - 1e-12
+    return Shape("cylinder", np.array([radius, height]), np.array([2 * radius, height, 2 * radius]), volume,
+                 2 * math.pi * radius * (radius + height), math.hypot(radius, height / 2),
+                 volume * np.diag([across, radius**2 / 2, across]), gap, sampled,
+                 lambda normal: abs(normal[1]) < 1e-12 or abs(normal[1]) > 1 - 1e-12)
 
 
-@dataclass(frozen=True)
-class Surface:
+def _outside(beyond: np.ndarray) -> np.ndarray:
+    """Signed distances (n,) of points that are `beyond` (n, k) [m] pairs of faces at right angles to each other."""
+    return np.linalg.norm(np.maximum(beyond, 0), axis=1) + np.minimum(beyond.max(axis=1), 0)
+
+
+def surface(triangles: np.ndarray) -> Shape:
     """The boundary of a mesh of tetrahedra: triangles (t, 3, 3) of corners, counter-clockwise seen from outside."""
+    (a, b, c), corners = triangles.transpose(1, 0, 2), np.unique(triangles.reshape(-1, 3), axis=0)
+    low, high, six = corners.min(axis=0), corners.max(axis=0), (a * np.cross(b, c)).sum(axis=1)
+    # the integral of x x^T over the tetrahedra between the centre and each triangle is 1/120 of six times its volume times
+    # (s s^T + a a^T + b b^T + c c^T), s = a + b + c
+    square = sum(np.einsum("t,ti,tj->ij", six, one, one) for one in (a + b + c, a, b, c)) / 120
 
-    triangles: np.ndarray
-
-    @cached_property
-    def corners(self) -> np.ndarray:
-        return np.unique(self.triangles.reshape(-1, 3), axis=0)
-
-    @property
-    def extent(self) -> np.ndarray:
-        return np.ptp(self.corners, axis=0)
-
-    @property
-    def volume(self) -> float:
-        a, b, c = self.triangles.transpose(1, 0, 2)
-        return float((a * np.cross(b, c)).sum() / 6)
-
-    @property
-    def area(self) -> float:
-        a, b, c = self.triangles.transpose(1, 0, 2)
-        return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)
-
-    @property
-    def reach(self) -> float:
-        return float(np.linalg.norm(self.corners, axis=1).max())
-
-    @cached_property
-    def moments(self) -> np.ndarray:
-        """The integral of x x^T over the tetrahedra between the centre and each triangle is 1/120 of six times its volume times (s s^T + a
-        a^T + b b^T + c c^T), s = a + b + c."""
-        a, b, c = self.triangles.transpose(1, 0, 2)
-        six = (a * np.cross(b, c)).sum(axis=1)
-        square = sum(np.einsum("t,ti,tj->ij", six, one, one) for one in (a + b + c, a, b, c)) / 120
-        return np.trace(square) * np.eye(3) - square
-
-    def gap(self, points: np.ndarray) -> np.ndarray:
+    def gap(points: np.ndarray) -> np.ndarray:
         """The distance from the nearest triangle; inside, where they are seen under a full solid angle."""
-        chunk = max(1, AT_ONCE // len(self.triangles))
-        distance = np.concatenate([self._distance(points[at:at + chunk]) for at in range(0, len(points), chunk)])
-        low, high = self.corners.min(axis=0), self.corners.max(axis=0)
+        chunk = max(1, AT_ONCE // len(triangles))
+        distance = np.concatenate([_nearest(triangles, points[at:at + chunk]) for at in range(0, len(points), chunk)])
         for at in np.array_split(boxed := np.flatnonzero(((points > low) & (points < high)).all(axis=1)), len(boxed) // chunk + 1):
-            distance[at] *= np.where(self._solid_angle(points[at]) > 2 * math.pi, -1, 1)
+            distance[at] *= np.where(_solid_angle(triangles, points[at]) > 2 * math.pi, -1, 1)
         return distance
 
-    def _distance(self, points: np.ndarray) -> np.ndarray:
-        away = ((points[:, None] - self.triangles.mean(axis=1))**2).sum(axis=2)
-        few = min(NEAREST, len(self.triangles))
-        near = self.triangles[np.argpartition(away, few - 1, axis=1)[:, :few]]
-        return distance_to_triangles(points[:, None], near).min(axis=1)
-
-    def _solid_angle(self, points: np.ndarray) -> np.ndarray:
-        """Of all triangles, seen from points: 4 pi inside, 0 outside (van Oosterom and Strackee 1983)."""
-        a, b, c = (self.triangles[:, k] - points[:, None] for k in range(3))
-        la, lb, lc = (np.linalg.norm(one, axis=2) for one in (a, b, c))
-        below = la * lb * lc + (a * b).sum(axis=2) * lc + (b * c).sum(axis=2) * la + (c * a).sum(axis=2) * lb
-        return 2 * np.arctan2((a * np.cross(b, c)).sum(axis=2), below).sum(axis=1)
-
-    def sampled(self, spacing: float) -> np.ndarray:
+    def sampled(spacing: float) -> np.ndarray:
         """Corners, and points of a grid in each triangle whose sides are longer than the spacing."""
-        longest = np.linalg.norm(self.triangles - np.roll(self.triangles, 1, axis=1), axis=2).max(axis=1)
-        parts, found = np.ceil(longest / spacing).astype(int), [self.corners]
+        longest = np.linalg.norm(triangles - np.roll(triangles, 1, axis=1), axis=2).max(axis=1)
+        parts, found = np.ceil(longest / spacing).astype(int), [corners]
         for n in np.unique(parts[parts > 1]):
             i, j = np.array([(i, j) for i in range(n + 1) for j in range(n + 1 - i)]).T
             weights = np.column_stack([i, j, n - i - j]) / n
-            found.append(np.einsum("pk,tkx->tpx", weights, self.triangles[parts == n]).reshape(-1, 3))
+            found.append(np.einsum("pk,tkx->tpx", weights, triangles[parts == n]).reshape(-1, 3))
         return np.vstack(found)
 
-    def is_mirrored(self, normal: np.ndarray) -> bool:
-        return False
+    return Shape("surface", np.array([]), high - low, float((a * np.cross(b, c)).sum() / 6),
+                 float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2), float(np.linalg.norm(corners, axis=1).max()),
+                 np.trace(square) * np.eye(3) - square, gap, sampled, lambda normal: False)
+
+
+def _nearest(triangles: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """Distances (n,) of points from triangles, sought among those whose centres are near."""
+    away = ((points[:, None] - triangles.mean(axis=1))**2).sum(axis=2)
+    few = min(NEAREST, len(triangles))
+    near = triangles[np.argpartition(away, few - 1, axis=1)[:, :few]]
+    return distance_to_triangles(points[:, None], near).min(axis=1)
+
+
+def _solid_angle(triangles: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """Of all triangles, seen from points: 4 pi inside, 0 outside (van Oosterom and Strackee 1983)."""
+    a, b, c = (triangles[:, k] - points[:, None] for k in range(3))
+    la, lb, lc = (np.linalg.norm(one, axis=2) for one in (a, b, c))
+    below = la * lb * lc + (a * b).sum(axis=2) * lc + (b * c).sum(axis=2) * la + (c * a).sum(axis=2) * lb
+    return 2 * np.arctan2((a * np.cross(b, c)).sum(axis=2), below).sum(axis=1)
 
 
 def distance_to_triangles(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
@@ -290,7 +198,7 @@ class Solid(outlines.Shape):
     @property
     def disc(self) -> tuple[np.ndarray, float] | None:
         """Centre and radius of a ball, None for anything else."""
-        return (self.centre, self.shape.radius) if isinstance(self.shape, Ball) else None
+        return (self.centre, self.shape.reach) if self.shape.kind == "ball" else None
 
     @property
     def half_thickness(self) -> float:
@@ -350,10 +258,7 @@ def mesh_of(body, sizes: Sizes | None, folded: tuple[int, ...]) -> SolidMesh:
         path, centre = solid.geometry
         made = solid_file.meshed(path, replace(sizes, near=sizes.near + centre))
         return _with_curves(replace(made, points=(made.points - (centre if solid.disc else made.centre)) @ solid.rotation.T))
-    shape = solid.shape
-    lengths = shape.extent if isinstance(shape,
-                                         Box) else np.array([shape.radius] if isinstance(shape, Ball) else [shape.radius, shape.height])
-    return mesh_shape(type(shape).__name__.lower(), lengths, solid.rotation, folded, replace(sizes, near=sizes.near @ solid.rotation.T),
+    return mesh_shape(solid.shape.kind, solid.shape.lengths, solid.rotation, folded, replace(sizes, near=sizes.near @ solid.rotation.T),
                       solid.half_thickness)
 
 
@@ -370,8 +275,8 @@ def shape(table: Table, folder: Path) -> tuple[Solid, SolidMesh | None]:
     if kind == "mesh":
         return _of_file(table, folder)
     sizes = [table.number(key, SHORTEST, LONGEST) for key in SHAPES[kind]]
-    found = Box(np.array(sizes)) if kind == "box" else {"ball": Ball, "cylinder": Cylinder}[kind](*sizes)
-    return Solid(found, np.zeros(3), np.eye(3)), None
+    made = box(np.array(sizes)) if kind == "box" else {"ball": ball, "cylinder": cylinder}[kind](*sizes)
+    return Solid(made, np.zeros(3), np.eye(3)), None
 
 
 def _of_file(table: Table, folder: Path) -> tuple[Solid, SolidMesh | None]:
@@ -383,11 +288,11 @@ def _of_file(table: Table, folder: Path) -> tuple[Solid, SolidMesh | None]:
         found = solid_file.read(path)
     except BadInput as error:
         raise BadInput(f"{table.path}.file: {error}") from None
-    ball = next((one for one, own in curved.surfaces(found.points, found.faces) if not len(one.axis) and len(own) == len(found.faces)),
-                None)
-    centre = ball.centre if ball else found.centre
+    sphere = next((one for one, own in curved.surfaces(found.points, found.faces) if not len(one.axis) and len(own) == len(found.faces)),
+                  None)
+    centre = sphere.centre if sphere else found.centre
     centred = found.moved(-centre)
-    shape = Ball(ball.radius) if ball else Surface(centred.points[centred.faces])
+    shape = ball(sphere.radius) if sphere else surface(centred.points[centred.faces])
     if solid_file.is_geometry(path):
         return Solid(shape, np.zeros(3), np.eye(3), (path, centre)), None
     return Solid(shape, np.zeros(3), np.eye(3)), centred

@@ -12,7 +12,7 @@ import pandas as pd
 
 from ..report.friction_laws import VALUES
 from ..report.vibration import spectrum
-from ..studies import stick_slip
+from . import stick_slip
 from ..sweeps import study
 from .judging import CONSTANT, LAWS, OPEN, History, Lost, Results, bar, finished, graded, maxima, of_both, states, total, touching
 

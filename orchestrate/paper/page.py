@@ -7,9 +7,10 @@ from pathlib import Path
 
 import pandas as pd
 
+from verification import verify
+
 from .. import __version__, scene
 from ..input import parameters
-from ..studies import verify
 from ..input.parameters import Value
 from ..output.results import read_frame, read_json, read_scene
 from ..run import code_hash

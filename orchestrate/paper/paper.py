@@ -9,12 +9,13 @@ import argparse
 from collections.abc import Iterable
 from pathlib import Path
 
+from verification import verify
+
 from .. import scene
-from ..studies import verify
 from ..failure import Failure, Unreadable
 from ..output.folder import result_folder
 from ..places import COMMAND, RESULTS, ROOT, shown
-from ..studies import stick_slip
+from . import stick_slip
 from ..sweeps import study
 from ..sweeps import sweep
 from . import judging, making

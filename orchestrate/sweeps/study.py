@@ -31,10 +31,8 @@ from ..progress import Line, forward
 from ..output.results import read_json
 
 CORES = freefem.CORES
-TOO_LONG = TooLong("").code   # of a run that its time limit ended
 STOPS = (signal.SIGTERM, signal.SIGHUP, signal.SIGINT)
 LONGEST = 200               # characters of a folder's name
-BULK, CONTACT = 8e-3, 2.5e-3   # m: the sizes of mesh factor 1 of the studies on the disc of radius 0.05 m
 Key = TypeVar("Key", bound=Hashable)
 Point = dict[str, Value]    # the parameters that tell this run from the others of the study
 

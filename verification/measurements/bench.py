@@ -11,15 +11,16 @@ import numpy as np
 import pandas as pd
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from .. import scene
-from ..mesh import mesh
-from ..places import shown
-from ..progress import in_turn
-from ..report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE, save
-from ..output.results import read_history
-from ..sweeps.sweep_figures import distance
+from orchestrate import scene
+from orchestrate.mesh import mesh
+from orchestrate.output.results import read_history
+from orchestrate.places import shown
+from orchestrate.progress import in_turn
+from orchestrate.report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE, save
+from orchestrate.sweeps import study
+from orchestrate.sweeps.sweep_figures import distance
+
 from . import peers
-from ..sweeps import study
 
 LEVELS = (5.0, 1.0, 0.1)    # % of error
 HEADLINE, HEADLINE_CONTACT = 0.5, 1.0   # % at the same time in everything but the contact time, and in that
@@ -65,8 +66,8 @@ class Case:
         return wanted.values["accuracy"] / wanted.description()["accuracy_made"]
 
     def sized(self, factor: float, dt: float, **given) -> study.Point:
-        """A mesh of `factor` times the sizes study.BULK and study.CONTACT, steps dt [s], both times `scale`."""
-        return sized(self.scale * factor, dt=float(f"{self.scale * dt:.6g}"), **given)
+        """A mesh of `factor` times the sizes of peers.sized(), steps dt [s], both times `scale`."""
+        return peers.sized(self.scale * factor, dt=float(f"{self.scale * dt:.6g}"), **given)
 
 
 BALL = {"law": "neohookean", "nu": 0.45, "speed": 8.0, "penalty": 1.5e10}
@@ -151,11 +152,6 @@ def grid(case: Case) -> dict[str, list[study.Point]]:
     return found
 
 
-def sized(factor: float, **given) -> study.Point:
-    """A mesh of `factor` times the sizes study.BULK and study.CONTACT."""
-    return {"mesh_size": factor * study.BULK, "contact_mesh_size": factor * study.CONTACT} | given
-
-
 def references(case: Case, quick: bool) -> list[study.Point]:
     """The two finest runs: by accuracy, and by mesh and step."""
     if quick:
@@ -215,7 +211,7 @@ def _peers(case: Case, others: list[tuple], best: pd.Series, force: tuple[np.nda
     force_from_ours: of the force history against that of our run with the same sizes and step, where `folder` has it among `ours`."""
     rows = []
     for program, form, factor, dt in in_turn("others", others):
-        sizes = sized(factor)
+        sizes = peers.sized(factor)
         history = _history(out, f"{case.scene}-{program}-{form}-{factor:g}-{dt:g}")
         row = {"program": f"{program}, {form}", "family": f"{program}, {form}", "setting": _words(sizes | {"dt": dt})}
         if program == "textbook":

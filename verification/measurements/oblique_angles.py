@@ -15,16 +15,16 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
-from verification import hertz
-from verification.oblique_ball import DENSITY, MASS, NU, RADIUS, RIGID, YOUNG, slides_throughout, springs
-from verification.rigid_disc import STIFF
+from orchestrate.failure import BadInput
+from orchestrate.output import estimate
+from orchestrate.output.results import read_scene
+from orchestrate.progress import in_turn
+from orchestrate.report.figures import BLACK, BLUE, DASHED, GREEN, ORANGE, STYLE, save
+from orchestrate.sweeps import study
 
-from ..output import estimate
-from ..failure import BadInput
-from ..progress import in_turn
-from ..report.figures import BLACK, BLUE, DASHED, GREEN, ORANGE, STYLE, save
-from ..output.results import read_scene
-from ..sweeps import study
+from .. import hertz
+from ..oblique_ball import DENSITY, MASS, NU, RADIUS, RIGID, YOUNG, slides_throughout, springs
+from ..rigid_disc import STIFF
 
 INERTIA = {"disc": 2.0, "ball": 2.5}                      # R^2/k^2, k the radius of gyration; the scenes are <body>-oblique
 BASE = {"law": "neohookean", "nu": NU, "fields": 0}

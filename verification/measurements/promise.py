@@ -7,13 +7,14 @@ from pathlib import Path
 
 import pandas as pd
 
-from .. import run, scene
-from ..output import estimate
-from ..failure import Failure, TooLong
-from ..input.parameters import Value, whole
-from ..output.results import read_answers
+from orchestrate import run, scene
+from orchestrate.failure import Failure, TooLong
+from orchestrate.input.parameters import Value, whole
+from orchestrate.output import estimate
+from orchestrate.output.results import read_answers
+from orchestrate.sweeps import study
+
 from . import draws
-from ..sweeps import study
 
 SEED, COUNT = 67, 240       # other scenes than those that sizes (seeds 1, 2, 5, 40; 7) and stated errors (60, 61, 64, 66) are calibrated on
 # elements and steps of the reference are so many times smaller than the first run's; 3 where it is no matter of hours

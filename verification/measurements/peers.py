@@ -15,20 +15,27 @@ from functools import cache, partial
 from pathlib import Path
 from signal import SIGKILL
 
-from ..failure import Failure
-from ..freefem import freefem
-from ..input.parameters import Value
-from ..mesh import mesh
-from ..places import INSTALLED, ROOT, shown
-from ..scene import Scene
+from orchestrate.failure import Failure
+from orchestrate.freefem import freefem
+from orchestrate.input.parameters import Value
+from orchestrate.mesh import mesh
+from orchestrate.places import INSTALLED, ROOT, shown
+from orchestrate.scene import Scene
+from orchestrate.sweeps.study import Point
 
 PYTHONS = {"ffimpact": ("", sys.executable), "ngsolve": ("NGSOLVE_PYTHON", sys.executable), "getfem": ("GETFEM_PYTHON", "/usr/bin/python3")}
 INSTALL = {"ngsolve": "pip install ngsolve==6.2.2608", "getfem": "apt-get install python3-getfem"}
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 RADIUS = 0.05               # m, of disc-normal and the peers' default
+BULK, CONTACT = 8e-3, 2.5e-3   # m: mesh sizes of factor 1 on the disc of that radius
 TEXTBOOK = "../verification/peers/textbook"
 # our scenes, and the script <program>_<body>.py beside each
 BODIES = {"disc-normal": "disc", "disc-oblique": "disc_oblique", "ball-axisymmetric": "ball", "ball": "ball_3d"}
+
+
+def sized(factor: float, **given: Value) -> Point:
+    """A mesh of `factor` times the sizes BULK and CONTACT."""
+    return {"mesh_size": factor * BULK, "contact_mesh_size": factor * CONTACT} | given
 
 
 @cache

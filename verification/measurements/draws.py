@@ -2,7 +2,7 @@
 
 import random
 
-from ..sweeps.study import Point
+from orchestrate.sweeps.study import Point
 
 # young [Pa], density [kg/m3], nu: from gel to steel, round values of handbooks
 MATERIALS = {"gel": (3e4, 1050.0, 0.45), "soft rubber": (1e5, 1000.0, 0.4), "foam": (1e6, 100.0, 0.0), "rubber": (7e6, 1722.0, 0.45),

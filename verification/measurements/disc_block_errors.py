@@ -6,12 +6,13 @@ from pathlib import Path
 
 import pandas as pd
 
-from ..output import estimate
-from ..input.parameters import Value, whole
-from ..progress import in_turn
-from ..output.results import read_scene
+from orchestrate.input.parameters import Value, whole
+from orchestrate.output import estimate
+from orchestrate.output.results import read_scene
+from orchestrate.progress import in_turn
+from orchestrate.sweeps import study
+
 from . import peers
-from ..sweeps import study
 
 CASES = [{"law": law, "nu": nu, "penalty": k} for law, nu, k in itertools.product(("svk", "neohookean"), (0.3, 0.45), (1e9, 1e10))]
 ACCURACIES = (0.02, 0.005)

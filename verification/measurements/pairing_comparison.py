@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pandas as pd
 
-from ..output.results import read_history, read_scene
-from ..sweeps import study
+from orchestrate.output.results import read_history, read_scene
+from orchestrate.sweeps import study
 
 RADIUS, SPEED, NU = 0.5, 10.0, 0.4                  # of the scene disc-block, section 3.2 of the paper
 LIMIT = 900.0                                       # seconds a run may take

@@ -5,8 +5,8 @@ import random
 
 import pandas as pd
 
-from ..input.parameters import whole
-from ..sweeps import study
+from orchestrate.input.parameters import whole
+from orchestrate.sweeps import study
 
 AXES = {"law": ("svk", "neohookean"), "nu": (0.0, 0.3, 0.45, 0.49), "speed": (0.5, 4.0, 10.0), "penalty": (1e9, 1e10, 1e12),
         "exponent": (1.0, 1.5, 2.0), "dt": (0.0, 2e-5, 1e-4)}   # dt = 0: adaptive

@@ -8,9 +8,10 @@ from typing import Any
 
 import pandas as pd
 
-from ..places import shown
-from ..progress import in_turn
-from ..sweeps import study
+from orchestrate.places import shown
+from orchestrate.progress import in_turn
+from orchestrate.sweeps import study
+
 from . import peers
 
 LEVELS = (1.0, 0.5, 0.1)    # % of error
@@ -44,8 +45,8 @@ def accuracies(*values: float) -> list[study.Point]:
 
 
 def sizes(*pairs: tuple[float, float]) -> list[study.Point]:
-    """Factors of the disc's mesh sizes study.BULK and study.CONTACT, and steps [s]."""
-    return [{"mesh_size": factor * study.BULK, "contact_mesh_size": factor * study.CONTACT, "dt": dt} for factor, dt in pairs]
+    """Factors of the sizes of peers.sized(), and steps [s]."""
+    return [peers.sized(factor, dt=dt) for factor, dt in pairs]
 
 
 def body(speed: float) -> dict[str, tuple[str, str, float | None]]:
