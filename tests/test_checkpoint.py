@@ -22,6 +22,7 @@ from test_cli import call, is_alive, start, wait_for
 COARSE = dict(law="neohookean", nu=0.4)
 SCENES = {   # flags of edp/disc-plane.edp, steps between checkpoints, rows of history that the last checkpoint must know
     "energy-momentum": (COARSE | dict(accuracy=0.2, angle=60, friction_static=0.7, friction_dynamic=0.5, fields=5), 7, 20),
+    "relaxing": (COARSE | dict(accuracy=0.2, relaxation_modulus=2e6, relaxation_time=1e-3, viscosity=5), 7, 20),
     "svk": (dict(accuracy=0.1, exponent=1.5, penalty=1e11, height=1e-3, gravity=9.81), 7, 20),
     "midpoint": (COARSE | dict(accuracy=0.2, spin=50, friction_static=0.5, friction_dynamic=0.5, degree=1, integrator="midpoint"),
                  7, 20),
@@ -86,7 +87,7 @@ def assert_same(folder: Path, straight: Path) -> None:
         np.testing.assert_allclose(*numbers, rtol=1e-7, atol=1e-7 * np.abs(numbers[1]).max(initial=0))
 
 
-OFTEN = ("energy-momentum", "bdf2", "central-difference")     # the others keep no more between steps: make robustness
+OFTEN = ("energy-momentum", "relaxing", "bdf2", "central-difference")     # the others keep no more between steps: make robustness
 
 
 @pytest.mark.parametrize("name", [name if name in OFTEN else pytest.param(name, marks=pytest.mark.robustness) for name in SCENES])

@@ -21,6 +21,7 @@ from verification import measure
 COARSE = dict(accuracy=0.1, mesh_size=0.02, contact_mesh_size=0.006, dt=5e-5)
 OBLIQUE = COARSE | dict(angle=60, law="neohookean", friction_static=0.7)
 LONG = dict(mesh_size=0.008, contact_mesh_size=0.006, dt=2e-5, penalty=1e10)   # its last touch is a grazing one
+RELAXING = COARSE | dict(relaxation_modulus=1e6)
 DAMPED = COARSE | dict(integrator="backward-euler", accuracy=0.02)
 SPINS = COARSE | dict(speed=1, spin=60, angle=90, height=0.01, law="neohookean", accuracy=0.002, dt=1e-4, without="flight")
 CASES = [   # name, flags with which it appears, flags with which it does not, a number it tells and what that is about
@@ -38,6 +39,7 @@ CASES = [   # name, flags with which it appears, flags with which it does not, a
     ("contact time", LONG, LONG | dict(accuracy=0.05), r"for the last (\S+) % of it", (0.5, 5)),
     ("locking", COARSE | dict(nu=0.495, speed=2), COARSE | dict(nu=0.49, speed=2), r"quadratic elements stiffen at nu = (\S+)", (0.495, 0.495)),
     ("locking", COARSE | dict(degree=1, speed=2), COARSE | dict(degree=1, nu=0.4, speed=2), r"linear elements are too stiff at nu = (\S+)", (0.45, 0.45)),
+    ("relaxation", RELAXING | dict(relaxation_time=2e-5), RELAXING | dict(relaxation_time=1e-2), r"more viscous by (\S+) %", (47, 48)),
     ("ellipticity", COARSE | dict(speed=9), COARSE | dict(speed=9, law="neohookean"), r"eigenvalue of the acoustic tensor (\S+) mu", (-1, 0)),
     ("breakdown", COARSE | dict(speed=14, breakdown="continue"), COARSE | dict(speed=9, breakdown="continue"), r"from t = (\S+) s", (1e-4, 3e-3)),
     ("friction", OBLIQUE | dict(friction_dynamic=0.5, slip_velocity=1, regularization="linear-printed"),

@@ -43,6 +43,7 @@ public:
   std::vector<int> unknown;                // (node, component) -> unknown
   std::vector<double> free;                // (ndof) 0 at what is held
   std::vector<laws::Material> material;    // (nq)
+  const double *flowed = nullptr;          // A of relaxation.idp, stacked, where a body relaxes
   std::vector<double> weight;              // (nq) [m2, m3] of the WHOLE bodies
   // elements: their nodes, their points, N_a,J of each of these (point, node, slot)
   std::vector<int> firstNode, node, firstPoint, point;
@@ -146,7 +147,7 @@ public:
       : forces<2, 0>(d, history, deadLoad, massScale, rate, where, breaks, at, residual);
   }
 
-  // The blocks of massScale M + stiffnessScale K, K the derivative of G' (w F S) at F, S, and of the viscous moduli times rate.
+  // The blocks of massScale M + stiffnessScale K, K the derivative of G' (w F S) at F, S, and of the moduli of damping at rate = 1/dt.
   void tangent(const double *F, const double *S, double massScale, double stiffnessScale, double rate) {
     std::fill(block.begin(), block.end(), 0.);
     if (D == 3) stiffness<3, 0>(F, S, stiffnessScale, rate);
@@ -259,11 +260,12 @@ private:
         }
         else laws::stress(material[q], C1, S);
         if (rate > 0) {
-          double ends[6];
+          double ends[6], A[6] = {1, 1, 1, 0, 0, 0};
           whole<D, H>(at.F1, q, F);
           laws::rightCauchyGreen(F, ends);
           for (int k = 0; k < T::C; k++) C0[T::symmetric(k)] = at.C0[k * nq + q];
-          laws::addViscousStress(material[q], C0, ends, rate, S);
+          if (material[q].relaxing > 0) for (int k = 0; k < T::C; k++) A[T::symmetric(k)] = flowed[k * nq + q];
+          laws::addDampingStress(material[q], C0, ends, A, rate, S);
         }
         for (int k = 0; k < T::C; k++) at.C1[k * nq + q] = C1[T::symmetric(k)];
         for (int k = 0; k < T::C; k++) at.Ss[k * nq + q] = S[T::symmetric(k)];
@@ -300,7 +302,7 @@ private:
         for (int k = 0; k < T::F; k++)
           for (int l = 0; l < T::F; l++) A[k][l] = scale * weight[q] * moduli(T::row(k), T::column(k), T::row(l), T::column(l));
         if (rate > 0) {
-          laws::Moduli viscous(material[q], f, rate);
+          laws::Moduli viscous(material[q], f, rate, scale);
           for (int k = 0; k < T::F; k++)
             for (int l = 0; l < T::F; l++) A[k][l] += weight[q] * viscous(T::row(k), T::column(k), T::row(l), T::column(l));
         }

@@ -20,10 +20,13 @@ static bodies::Triplets entries(Sparse A) {
 
 static void addBodies() {
   add("kernelComponent", +[](long i, long dimensions, Sparse pick) { body.component(int(i), int(dimensions), entries(pick)); });
-  add("kernelMaterial", +[](Reals lambda, Reals mu, Reals eta, Reals zeta, Ints neohookean, Reals weight) {
+  add("kernelMaterial", +[](Reals lambda, Reals mu, Reals eta, Reals zeta, Reals relaxing, Reals relaxTime, Reals dampingState,
+                           Ints neohookean, Reals weight) {
     body.weight = copied<double>(weight);
     body.material.resize(weight.N());
-    for (int q = 0; q < weight.N(); q++) body.material[q] = {lambda[q], mu[q], eta[q], zeta[q], neohookean[q] == 1};
+    body.flowed = dampingState;
+    for (int q = 0; q < weight.N(); q++)
+      body.material[q] = {lambda[q], mu[q], eta[q], zeta[q], relaxing[q], relaxTime[q], neohookean[q] == 1};
   });
   add("kernelBodies", +[](Sparse gradient, Sparse mass, Reals free) {
     body.free = copied<double>(free);

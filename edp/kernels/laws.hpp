@@ -11,6 +11,7 @@ const int sym[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};   // (J, L) of a symmet
 struct Material {
   double lambda, mu;
   double eta, zeta;                        // viscosities [Pa s]
+  double relaxing, relaxTime;              // G [Pa], tau [s] of relaxation.idp
   bool neohookean;                         // or St. Venant-Kirchhoff
 };
 
@@ -96,14 +97,26 @@ inline void algorithmicStress(const Material &m, const double *C0, const double 
   for (int k = 0; k < 6; k++) S[k] += e * H[k];
 }
 
-// S += S_v, the viscous stress of a step from C0 to C1 at rate = 1/dt: with C their mean, T = C^-1 (C1 - C0),
-// rate [eta T C^-1 + zeta/2 tr(T) C^-1], as viscousStress() of damping.idp.
-inline void addViscousStress(const Material &m, const double *C0, const double *C1, double rate, double *S) {
+// G (1 - theta/2) of relaxation.idp [Pa] in a step of 1/rate.
+inline double relaxedShare(const Material &m, double rate) {
+  return m.relaxing > 0 ? m.relaxing * (1 + std::exp(-1 / (rate * m.relaxTime))) / 2 : 0;
+}
+
+// S += S_v + S_m of a step from C0 to C1 at rate = 1/dt: with C their mean, T = C^-1 (C1 - C0), rate [eta T C^-1 + zeta/2 tr(T) C^-1], as
+// viscousStress() of damping.idp, and as addRelaxing() of relaxation.idp.
+inline void addDampingStress(const Material &m, const double *C0, const double *C1, const double *A, double rate, double *S) {
   double C[6], inverse[6], T[3][3] = {};
   for (int k = 0; k < 6; k++) C[k] = 0.5 * (C0[k] + C1[k]);
   double det = determinantOf(C);
   cofactor(C, inverse);
   for (int k = 0; k < 6; k++) inverse[k] /= det;
+  if (m.relaxing > 0) {
+    double H[6], share = relaxedShare(m, rate);
+    for (int k = 0; k < 6; k++) H[k] = 0.5 * (C1[k] - C0[k]);
+    double e = workExcess({0, m.relaxing, 0, 0, 0, 0, true}, C, H) / (2 * contract(H, H) + 1e-300);
+    for (int k = 0; k < 6; k++) S[k] += share * (A[k] - inverse[k]) + e * H[k];
+  }
+  if (m.eta == 0 && m.zeta == 0) return;
   for (int J = 0; J < 3; J++)
     for (int L = 0; L < 3; L++)
       for (int K = 0; K < 3; K++) T[J][L] += inverse[sym[J][K]] * (C1[sym[K][L]] - C0[sym[K][L]]);
@@ -194,8 +207,9 @@ struct Moduli {
     n = m.mu - m.lambda / 2 * std::log(inverted(F));
   }
 
-  // Of the viscous stress, without that itself: viscousModuli() of damping.idp.
-  Moduli(const Material &m, const double *F, double rate) : l(rate * m.zeta), n(rate * m.eta), S(nullptr) {
+  // Of the stresses of addDampingStress(), without these themselves: viscousModuli() of damping.idp, and scale times relaxedModuli().
+  Moduli(const Material &m, const double *F, double rate, double scale)
+    : l(rate * m.zeta), n(rate * m.eta + scale * relaxedShare(m, rate)), S(nullptr) {
     for (int k = 0; k < 6; k++) B[k] = k < 3;
     inverted(F);
   }

@@ -91,6 +91,8 @@ def material(one: dict[str, Value]) -> str:
     own = "" if one.get("law_parameters", "none") == "none" else f" ({one['law_parameters']})"
     viscosities = "".join(f", {sign} = {one[name]:.3g} Pa s" for name, sign in (("viscosity", "η"), ("bulk_viscosity", "ζ"))
                           if one.get(name))
+    if one.get("relaxation_modulus"):
+        viscosities += f", G = {1e-6 * one['relaxation_modulus']:.3g} MPa for τ = {one['relaxation_time']:.3g} s"
     law = LAWS.get(one["law"], one["law"])
     return f"{law}{own}, E = {1e-6 * one['young']:g} MPa, ν = {one['nu']:g}, ρ = {one['density']:g} kg/m³{viscosities}"
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..mesh import mesh, revolution, solid_mesh, solids
 from .approach import Meeting, meetings, refuse_nothing, turned
-from .bodies import MATERIAL, Body
+from .bodies import DAMPING, MATERIAL, Body
 from ..freefem.describe import describe
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID
 from ..failure import BadInput
@@ -346,7 +346,7 @@ def data_file(scene: Scene, disc: dict[str, Value], centres: np.ndarray, rounds:
         files F        body                                                                             whose mesh is that of a file
         obstacles M    name kind count p1 ... pcount vx vy
         pairs K        a b penalty friction_static friction_dynamic                             a, b: body, or -1 - obstacle (a = b: itself)
-        damping D      body viscosity bulk_viscosity                                            of those that are damped; none where none is
+        damping D      body viscosity bulk_viscosity relaxation_modulus relaxation_time         of those that are damped; none where none is
     centre: of the area in the mesh; place: where it is at the start; the angle of the disc in degrees. In three dimensions
         ffimpact-bodies-3d 1
         copies 1, 2 or 4                                                            how often the mesh makes the whole bodies
@@ -369,7 +369,7 @@ def data_file(scene: Scene, disc: dict[str, Value], centres: np.ndarray, rounds:
     lines += [(one.name, "circle" if one.kind == "sphere" and scene.dimension is not SOLID else one.kind, len(one.numbers), *one.numbers,
                *one.velocity) for one in scene.obstacles]
     lines += [("pairs", len(pairs)), *((pair.first, pair.second, *own.values()) for pair, own in zip(scene.pairs, pairs))]
-    damped = [(k, body.viscosity, body.bulk_viscosity) for k, body in enumerate(scene.bodies) if body.damped]
+    damped = [(k, *(getattr(body, name) for name in DAMPING)) for k, body in enumerate(scene.bodies) if body.damped]
     lines += [("damping", len(damped)), *damped] if damped else []
     return "".join(" ".join(map(_token, line)) + "\n" for line in lines)
 

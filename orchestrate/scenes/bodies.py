@@ -13,6 +13,7 @@ revolution and in three dimensions shapes and motions are those of revolution.py
     spin = 0                     # [rad/s], counter-clockwise
     young = 7e6                  # law, young, nu, density, law_parameters: those at the top of the file where they are left out
     viscosity = 20               # and viscosity, bulk_viscosity [Pa s], or loss, the loss factor at the first mode of a disc as thick
+    relaxation_modulus = 1e6     # and relaxation_time: a Maxwell branch beside the law [Pa], [s]
     mesh_size = 0.1              # mesh_size, contact_mesh_size [m]: from the accuracy where they are left out
 """
 
@@ -34,7 +35,9 @@ from ..input.parameters import Value
 from ..input.tables import SHORTEST, Table
 
 GEOMETRY = {PLANE_STRAIN: flat, AXISYMMETRIC: revolution, SOLID: solids}     # SHAPES with their entries, shape(), MOTION, motion()
-OPTIONAL = ("law_parameters", "viscosity", "bulk_viscosity", "loss")
+DAMPING = ("viscosity", "bulk_viscosity", "relaxation_modulus", "relaxation_time")
+DAMPED = ("viscosity", "bulk_viscosity", "relaxation_modulus", "loss")     # one of which is above 0
+OPTIONAL = ("law_parameters", *DAMPING, "loss")
 MATERIAL = ("law", "young", "nu", "density", *OPTIONAL)
 SIZES = ("mesh_size", "contact_mesh_size")
 COMMON = ("name", "shape", "position", "velocity", *MATERIAL, *SIZES)
@@ -60,13 +63,15 @@ class Body:
     law_parameters: str
     viscosity: float
     bulk_viscosity: float
+    relaxation_modulus: float
+    relaxation_time: float
     loss: float
     mesh_size: float
     contact_mesh_size: float
 
     @property
     def damped(self) -> bool:
-        return max(self.viscosity, self.bulk_viscosity, self.loss) > 0
+        return any(getattr(self, name) for name in DAMPED)
 
     @property
     def placed(self) -> Outline | Solid:
@@ -115,6 +120,11 @@ def _material(table: Table, top: dict) -> dict[str, Value]:
             raise BadInput(f"{table.path}.{key}: is missing, here and at the top of the file (accepted: {rule.accepted})")
         common = rule.default if other and other in table else top.get(key, rule.default)
         found[key] = table.parameter(key, rule) if key in table else rule.check(common)
+    if found["relaxation_modulus"] == 0 and "relaxation_modulus" in table:
+        found["relaxation_time"] = 0.0
+    if (found["relaxation_modulus"] > 0) != (found["relaxation_time"] > 0):
+        raise BadInput(f"{table.path}.relaxation_time: {found['relaxation_time']:g} s with relaxation_modulus "
+                       f"{found['relaxation_modulus']:g} Pa (accepted: both above 0, or none)")
     return found
 
 

@@ -123,7 +123,7 @@ class Scene:
     @property
     def damped(self) -> bool:
         """Whether a body is."""
-        return any(body.damped for body in self.bodies) or any(self.values.get(name) for name in ("viscosity", "bulk_viscosity", "loss"))
+        return any(body.damped for body in self.bodies) or any(self.values.get(name) for name in bodies.DAMPED)
 
     @property
     def of_files(self) -> bool:
