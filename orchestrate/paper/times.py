@@ -12,8 +12,8 @@ import numpy as np
 import pandas as pd
 
 from ..sweeps import sweep_figures
-from .bodies import BALL, BALL_NEO, DISC, DISC_NEO, lost
-from .judging import Results, bar, both_times, finished, graded, loaded, states, when
+from .bodies import BALL, BALL_NEO, DISC, DISC_NEO
+from .judging import Results, bar, both_times, finished, graded, loaded, lost, states, when
 
 DISC_MAP, OBLIQUE_MAP, BALL_MAP, SOLID_MAP = "calibrate", "calibrate-oblique", "calibrate-ball", "calibrate-ball-3d"
 MAPS = {"disc": (DISC_MAP,), "oblique disc": (OBLIQUE_MAP,), "ball": (BALL_MAP, SOLID_MAP)}   # of each number of the paper
