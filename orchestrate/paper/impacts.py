@@ -6,7 +6,8 @@ import numpy as np
 import pandas as pd
 
 from ..sweeps import sweep_figures
-from .judging import AGREES, DIFFERS, OPEN, History, Lost, Results, bar, finished, graded, lost, states, when
+from ..sweeps.sweep_figures import distance, force
+from .judging import AGREES, DIFFERS, OPEN, Lost, Results, bar, finished, graded, lost, states, when
 
 SVK, NEO, FORCES = "contact-time-svk", "contact-time-neohookean", "law-comparison"
 LOST = "ellipticity_lost_time"
@@ -163,10 +164,5 @@ def _trends(results: Results, name: str) -> tuple[list[sweep_figures.Trend | Non
 def _distance(results: Results, speed: float) -> tuple[float, float]:
     """Relative L2 difference of the two laws' force histories at a speed, refined, and the largest that mesh and step make."""
     runs = {law: results.histories(FORCES, law=law, speed=speed) for law in ("svk", "neohookean")}
-    error = max(sweep_figures.distance(_force(fine), _force(plain)) for plain, fine in runs.values())
-    return sweep_figures.distance(*(_force(runs[law][-1]) for law in ("svk", "neohookean"))), error
-
-
-def _force(history: History) -> tuple[np.ndarray, np.ndarray]:
-    """(t, normal force); the force is the mean of a step, at its middle."""
-    return history["t"] - history["dt"] / 2, history["normal_force"]
+    error = max(distance(force(fine), force(plain)) for plain, fine in runs.values())
+    return distance(*(force(runs[law][-1]) for law in ("svk", "neohookean"))), error
