@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 
 from . import mesh
-from ..failure import BadInput
 from .mesh import AXIS, FREE, GROWTH, Sizes
 
 DEPTH, NEVER = 3, 4
