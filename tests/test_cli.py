@@ -127,20 +127,6 @@ def test_interrupted_run_leaves_nothing(fake, tmp_path, number, code):
     assert not list(tmp_path.glob("out*"))
 
 
-def test_killed_driver_leaves_no_orphan(fake, tmp_path):
-    """When the driver is killed outright, FreeFem++ dies with it, and the next run starts afresh."""
-    fake("slow")
-    process = start("run", "disc-normal", "--set", "fields=0", "--out", str(tmp_path / "out"))
-    wait_for(fake.starts)
-    process.kill()
-    process.communicate()
-    wait_for(lambda: not is_alive(fake.pids()[0]))
-    assert not (tmp_path / "out").exists()
-    fake("ok")
-    assert call("run", "disc-normal", "--set", "fields=0", "--out", str(tmp_path / "out"))[0] == 0
-    assert not list(tmp_path.glob("out.*"))
-
-
 def test_two_runs_do_not_share_a_folder(fake, tmp_path):
     """A second run into the same folder is refused while the first one is at work."""
     fake("slow")

@@ -163,16 +163,6 @@ def check_failure(process: subprocess.CompletedProcess, code: int, words: str) -
     assert "Traceback" not in process.stderr
 
 
-@pytest.mark.parametrize("setting, words", [
-    ("nu=0.5", r"nu: 0.5 is out of range \(accepted: 0 to 0.499\)"), ("speed=fast", "speed: 'fast' is not a number"),
-    ("law=hooke", r"law: 'hooke' is not known \(accepted: svk\|neohookean"), ("sped=8", "sped: no such parameter; did you mean speed"),
-    ("mesh_size=0.06", "mesh_size: 0.06 is larger than the radius 0.05"), ("speed=0", "speed: 0 without spin")])
-def test_bad_input_is_10(tmp_path, setting, words):
-    """Bad input is exit code 10 and leaves no finished-looking folder."""
-    check_failure(call(setting, out=tmp_path / "out"), 10, words)
-    assert not (tmp_path / "out/summary.json").exists()
-
-
 def test_step_that_cannot_converge_is_11(tmp_path):
     """At 10 km/s no step converges: exit code 11 with the time, the smallest step and the last residual."""
     check_failure(call("speed=1e4", "law=neohookean", "accuracy=0.4", "end_time=0.01", out=tmp_path / "out"), 11,
@@ -224,22 +214,6 @@ def test_neohookean_does_not_break_down(tmp_path):
 def test_missing_freefem_is_13(tmp_path, environment):
     """Without FreeFem++ the exit code is 13 and the line says how to install it."""
     check_failure(call(out=tmp_path / "out", environment=environment), 13, "not found; run: make setup.*apt-get install freefem")
-
-
-def test_folder_that_cannot_be_written_is_14(tmp_path):
-    """A result folder below a file is exit code 14, from the script and from Python."""
-    (tmp_path / "file").write_text("")
-    process = direct("-out", str(tmp_path / "file/out"))
-    assert process.returncode == 14 and "cannot be made or written to" in said(process)[0]
-    check_failure(call(out=tmp_path / "file/out"), 14, "out.*choose another --out")
-
-
-def test_folder_that_cannot_be_read_is_14(tmp_path):
-    """A finished-looking folder with a broken summary is exit code 14 and says what to do."""
-    (tmp_path / "out").mkdir()
-    (tmp_path / "out/scene.toml").write_text("")
-    (tmp_path / "out/summary.json").write_text("{")
-    check_failure(call(out=tmp_path / "out"), 14, "summary.json cannot be read.*--force")
 
 
 # ---- sizes

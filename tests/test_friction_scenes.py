@@ -138,19 +138,6 @@ def test_flight_is_rigid_motion(oblique):
     assert turned == pytest.approx(h["spin"][-1] * wait) and moved.t == pose.t + wait
 
 
-@pytest.mark.parametrize("setting, line", [
-    ("friction_static=0.2 friction_dynamic=0.5", "friction_static: 0.2 is below friction_dynamic (accepted: from 0.5 to 10)"),
-    ("friction_static=-1", "friction_static: -1 is out of range (accepted: 0 to 10)"),
-    ("slip_velocity=0", "slip_velocity: 0 is out of range (accepted: auto, 1e-15 to 1e+09)"),
-    ("regularization=cubic", "regularization: 'cubic' is not known (accepted: linear|linear-printed|sqrt|tanh)"),
-    ("friction_transition=none", "friction_transition: 'none' is not known (accepted: jump|smooth)"),
-])
-def test_bad_friction_is_one_line(tmp_path, capsys, setting, line):
-    """Friction that is not accepted ends with exit code 10 and one line that says what is."""
-    assert main(["run", "disc-oblique", "--set", *setting.split(), "--out", str(tmp_path / "out")]) == 10
-    assert capsys.readouterr().err == f"ffimpact: {line}\n"
-
-
 def test_compare_runs_reports_and_draws(fake, tmp_path, capsys):
     """Each scene is run once, with a coarser run for its error, and reported, then compared in one picture; a second time all is there."""
     arguments = ["compare", "disc-oblique-svk", "disc-oblique", "--out", str(tmp_path / "both"), "--set", "fields=0"]

@@ -200,11 +200,3 @@ def test_sizes_follow_the_accuracy():
     assert finer_bulk < bulk and finer_contact < contact < bulk
     assert sizes(mesh_size=1e-3) == (1e-3, 1e-3)
     assert sizes(contact_mesh_size=1e-2)[1] == 1e-2 and sizes(contact_mesh_size=4e-2) == (4e-2, 4e-2)
-
-
-@pytest.mark.parametrize("text", ["", "1 2", "3 1 3\n0 0 x", "$MeshFormat\n2.2 0 8"])
-def test_foreign_mesh_file_is_bad_input(tmp_path, text):
-    """A file that is not a FreeFEM mesh is bad input that names the file."""
-    (tmp_path / "m.msh").write_text(text)
-    with pytest.raises(BadInput, match="m.msh"):
-        mesh.read(tmp_path / "m.msh")

@@ -75,15 +75,6 @@ def test_each_script_takes_its_own_parameters():
         describe({}, "ball")
 
 
-@pytest.mark.parametrize("name", scene.built_in())
-def test_built_in_scenes_load(name):
-    """Every scene that comes with the program has a title, and a value for every parameter."""
-    loaded = scene.load(name)
-    assert loaded.title and set(loaded.values) <= set(parameters.names(loaded.script))
-    if not loaded.bodies:
-        assert list(loaded.values) == parameters.names(loaded.script)
-
-
 def test_scene_file(tmp_path):
     """A TOML file sets what differs from the defaults; overriding leaves the original alone."""
     path = tmp_path / "fast.toml"

@@ -161,21 +161,6 @@ def test_corrupt_summary_is_named(fake, tmp_path, text):
     assert not go(tmp_path / "out", force=True).reused
 
 
-def test_corrupt_scene_is_named(fake, tmp_path):
-    """A scene.toml that cannot be read is exit code 14."""
-    go(tmp_path / "out")
-    (tmp_path / "out/scene.toml").write_text("= =")
-    with pytest.raises(Unreadable, match="scene.toml cannot be read"):
-        go(tmp_path / "out")
-
-
-def test_bad_mesh_file_is_bad_input(fake, tmp_path):
-    """A mesh file that is missing or no mesh is bad input, found before anything is started."""
-    with pytest.raises(BadInput, match="nowhere.msh"):
-        go(tmp_path / "out", mesh_file=tmp_path / "nowhere.msh")
-    assert fake.starts() == 0 and not (tmp_path / "out").exists()
-
-
 @pytest.mark.parametrize("mode, words", [("noplugin", "lacks its plugin"), ("old", "is version 4.6, needed is 4.9")])
 def test_unusable_freefem_says_how_to_install(fake, tmp_path, mode, words):
     """FreeFem++ without plugins or too old is exit code 13 with how to install it."""
@@ -183,13 +168,6 @@ def test_unusable_freefem_says_how_to_install(fake, tmp_path, mode, words):
     with pytest.raises(NotInstalled, match=f"{words}.*make setup") as error:
         go(tmp_path / "out")
     assert error.value.code == 13 and not (tmp_path / "out").exists()
-
-
-def test_missing_freefem_says_how_to_install(tmp_path, monkeypatch):
-    """No FreeFem++ at all is exit code 13 with how to install it."""
-    monkeypatch.setenv("FREEFEM", str(tmp_path / "nothing"))
-    with pytest.raises(NotInstalled, match="not found; run: make setup"):
-        freefem.find()
 
 
 def test_progress_arrives(fake, tmp_path):

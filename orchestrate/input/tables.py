@@ -63,11 +63,6 @@ class Table:
             raise BadInput(f"{self.at(key)}: '{brief(given)}' is no list of polygons (accepted: [[[x, y], ...], ...])")
         return [_points(f"{self.at(key)}.{k}", one, 3) for k, one in enumerate(given, 1)]
 
-    def word(self, key: str, words: tuple[str, ...]) -> str:
-        """One of the words; required."""
-        self._wanted(key, None, "|".join(words))
-        return self.parameter(key, Parameter(key, "word", "", "-", "", words=words))
-
     def flag(self, key: str, default: bool) -> bool:
         """true or false."""
         given = self.given.get(key, default)

@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 
 from . import mesh
-from ..failure import BadInput
 from .mesh import AXIS, FREE, GROWTH, Sizes
 
 DEPTH, NEVER = 3, 4
@@ -175,17 +174,6 @@ def expected_cells(volume: float, sizes: Sizes) -> float:
     away = np.linspace(0, (sizes.bulk - sizes.contact) / GROWTH, 200)
     patch = np.ptp(sizes.near, axis=0).max() / 2 + sizes.slack
     return bulk + np.trapezoid(np.pi * (patch + away)**2 / (FILL * (sizes.contact + GROWTH * away)**3), away)
-
-
-# ---- several bodies in one file
-
-def stack(meshes: list[SolidMesh], centres: np.ndarray) -> tuple[SolidMesh, np.ndarray]:
-    """All bodies as one mesh, and the body (t,) of each tetrahedron."""
-    first = np.cumsum([0, *(len(one.points) for one in meshes)])
-    together = SolidMesh(np.vstack([one.points + centre for one, centre in zip(meshes, centres)]),
-                         np.vstack([one.cells + k for one, k in zip(meshes, first)]),
-                         np.vstack([one.faces + k for one, k in zip(meshes, first)]), np.concatenate([one.labels for one in meshes]))
-    return together, np.repeat(np.arange(len(meshes)), [len(one.cells) for one in meshes])
 
 
 def write(together: SolidMesh, regions: np.ndarray, path: Path) -> None:

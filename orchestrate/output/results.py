@@ -3,7 +3,6 @@ in one line: where it is not there, makes no sense or lacks what is asked of it,
 provenance)."""
 
 import hashlib
-import io
 import json
 import re
 import tomllib

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .judging import CONSTANT, DIFFERS, History, Lost, Results, both_times, finished, graded, states, total, when
+from .judging import CONSTANT, DIFFERS, History, Lost, Results, both_times, finished, graded, lost, states, total, when
 
 BLOCK = {"svk": "disc-block", "neohookean": "disc-block-neohookean"}
 MOMENTUM = 1e-8             # of the disc's momentum: below, that of both bodies is kept
@@ -14,11 +14,6 @@ SAME = 0.005                # by which two runs of one ball may differ besides t
 # names of its answers: (of their errors, unit)
 SOLID_NUMBERS = {"impulse": ("impulse", "N s"), "rebound_vy": ("rebound", "m/s"),
                  "thresholded_contact_time": ("thresholded_contact_time", "s")}
-
-
-def lost(*names: str):
-    """When runs lose ellipticity [s]."""
-    return lambda results: [results.summary(name)["ellipticity_lost_time"] for name in names]
 
 
 ON_BLOCK = {"runs": " ".join(BLOCK.values()), "lost": lost(BLOCK["svk"])}

@@ -14,7 +14,7 @@ from ..report.friction_laws import VALUES
 from ..report.vibration import spectrum
 from . import stick_slip
 from ..sweeps import study
-from .judging import CONSTANT, LAWS, OPEN, History, Lost, Results, bar, finished, graded, maxima, of_both, states, total, touching
+from .judging import CONSTANT, LAWS, OPEN, History, Lost, Results, bar, finished, graded, lost, maxima, of_both, states, total, touching
 
 JUMP, SPEED, ANGLE = "friction-jump", 12.0, 60.0   # m/s, degrees from the plane: the paper's normal incidence is pi/2
 FLAT = 30.0                 # degrees from the plane, as if the paper's pi/3 were from the normal
@@ -24,11 +24,7 @@ APART = 1.0                 # degrees
 STEPS, STEP_RATIO = "friction-steps", 4   # the sweep, and how many times smaller its refined step is
 TABULATED = "friction-laws/friction-laws.png"
 ENERGIES = "disc-oblique-svk/energies disc-oblique/energies"
-
-
-def lost(results: Results, sweep: str = JUMP) -> Lost:
-    """When the oblique impact with SVK loses ellipticity on both meshes, or with both steps [s]."""
-    return [end["ellipticity_lost_time"] for end in results.summaries(sweep, law="svk", friction_static=STATIC)]
+LOST, LOST_STEPS = (lost((sweep, {"law": "svk", "friction_static": STATIC})) for sweep in (JUMP, STEPS))
 
 
 def impact(results: Results, law: str, static: float = STATIC, sweep: str = JUMP) -> list[History]:
@@ -75,7 +71,7 @@ def _apart(laws: pd.DataFrame, panel: str, law: str, formula: Callable) -> float
 
 # ---- figures 4 and 5
 
-@states("Section 3.1, figure 4b", "the angles of incidence and reflection are different", f"{JUMP} oblique", lost=lost,
+@states("Section 3.1, figure 4b", "the angles of incidence and reflection are different", f"{JUMP} oblique", lost=LOST,
         figures="disc-oblique-svk/flight disc-oblique/flight",
         laws=f"from the plane {ANGLE:g}° in; out, {{}}. (The bar of SVK is between two coarse meshes.)")
 def angles(results: Results, law: str) -> tuple[bool, str]:
@@ -95,7 +91,7 @@ def _angle(rows: pd.DataFrame, k: int) -> tuple[float, float]:
     return float(np.degrees(np.arctan2(y, x))), float(np.degrees(np.hypot(x * dy, y * dx) / np.hypot(x, y) ** 2))
 
 
-@states("Section 3.1, figure 5a", "the normal force oscillates", JUMP, "disc-oblique-svk/force disc-oblique/force", lost,
+@states("Section 3.1, figure 5a", "the normal force oscillates", JUMP, "disc-oblique-svk/force disc-oblique/force", LOST,
         laws="maxima that stand out by more than 5 % of the largest force, on two meshes; {}.")
 def oscillates(results: Results, law: str) -> tuple[bool, str]:
     """With a law: where the force has several maxima that stand out by more than 5 % of its largest value, on both meshes."""
@@ -104,26 +100,21 @@ def oscillates(results: Results, law: str) -> tuple[bool, str]:
 
 
 @states("Section 3.1, figure 5a", "the oscillations are due to the multiple reflections of the impact waves on the disc's boundary",
-        JUMP, lost=lost)
-def reflected(results: Results) -> tuple[str, str]:
+        JUMP, lost=LOST, svk="{}.")
+def reflected(results: Results, law: str) -> tuple[str, str, str]:
     """By the spectrum of the force less its slow push, beside the natural modes of the disc (modes.csv): what waves between its boundaries
     make up. With SVK, of the peaks that both meshes have: partly where some, agrees where all lie nearer to a mode with 1 % of the
     vibration than the contact time tells frequencies apart, 1/(2T); but not decided where most of the frequencies do, as then any peak
     would; not where none does."""
-    found, words = {}, []
-    for law in LAWS:
-        both = zip(impact(results, law), results.modes(JUMP, law=law, friction_static=STATIC))
-        peaks, modes, width, chance = zip(*(_oscillation(*each) for each in both))
-        common = [peak for peak in peaks[0] if any(abs(peak - other) < max(width) for other in peaks[1])]
-        near = [peak for peak in common if all(np.abs(each - peak).min(initial=np.inf) < width[0] for each in modes)]
-        found[law] = common, near, max(chance)
-        words.append(f"{LAWS[law]}: peaks of both meshes at {', '.join(f'{peak:.0f}' for peak in common) or 'no frequency'} Hz, "
-                     f"{len(near)} of {len(common)} within {width[0]:.0f} Hz of such a mode, as are {100 * max(chance):.0f} % of all "
-                     f"frequencies from {min(each.min() for each in modes):.0f} to {max(each.max() for each in modes):.0f} Hz")
-    common, near, chance = found["svk"]
-    verdict = OPEN if near and chance > 0.5 else graded(bool(near) and len(near) == len(common), bool(near))
+    both = zip(impact(results, law), results.modes(JUMP, law=law, friction_static=STATIC))
+    peaks, modes, width, chance = zip(*(_oscillation(*each) for each in both))
+    common = [peak for peak in peaks[0] if any(abs(peak - other) < max(width) for other in peaks[1])]
+    near = [peak for peak in common if all(np.abs(each - peak).min(initial=np.inf) < width[0] for each in modes)]
+    verdict = OPEN if near and max(chance) > 0.5 else graded(bool(near) and len(near) == len(common), bool(near))
     said = " The modes lie nearer to each other than an impact of this length tells apart." if verdict == OPEN else ""
-    return verdict, "; ".join(words) + "." + said
+    return verdict, (f"peaks of both meshes at {', '.join(f'{peak:.0f}' for peak in common) or 'no frequency'} Hz, "
+                     f"{len(near)} of {len(common)} within {width[0]:.0f} Hz of such a mode, as are {100 * max(chance):.0f} % of all "
+                     f"frequencies from {min(each.min() for each in modes):.0f} to {max(each.max() for each in modes):.0f} Hz"), said
 
 
 def _oscillation(history: History, modes: np.recarray) -> tuple[np.ndarray, np.ndarray, float, float]:
@@ -145,43 +136,34 @@ def _oscillation(history: History, modes: np.recarray) -> tuple[np.ndarray, np.n
 
 
 @states("Section 3.1, figure 5b", "an instability born from the alternation of static and dynamic friction", JUMP,
-        f"{JUMP} disc-oblique-svk/rolling", lost)
-def alternates(results: Results) -> tuple[str, str]:
+        f"{JUMP} disc-oblique-svk/rolling", LOST,
+        svk="how many times the whole load changes between sliding and sticking, on two meshes; {}.")
+def alternates(results: Results, law: str) -> tuple[str, str, str]:
     """With SVK: agrees where the whole load changes its coefficient more than twice and, by more than mesh and step change it, more often
     than with equal coefficients, where nothing jumps; partly where it does so no more often than this control."""
-    found, words = {}, []
-    for law in LAWS:
-        jump, control = ([load_changes(history) for history in impact(results, law, static)] for static in (STATIC, DYNAMIC))
-        found[law] = min(jump) > 2, min(jump) - max(control) > max(np.ptp(jump), np.ptp(control))
-        words.append(f"{LAWS[law]}: {' and '.join(f'{n:.1f}' for n in jump)} times, in the control "
-                     f"{' and '.join(f'{n:.1f}' for n in control)}")
-    alternate, more = found["svk"]
+    jump, control = ([load_changes(history) for history in impact(results, law, static)] for static in (STATIC, DYNAMIC))
+    alternate, more = min(jump) > 2, min(jump) - max(control) > max(np.ptp(jump), np.ptp(control))
     said = "" if more else (" The points alternate between sliding and sticking, but the jump of the coefficient is not what makes "
                             "them: equal coefficients do the same.")
-    return graded(alternate and more, alternate), (
-        f"how many times the whole load changes between sliding and sticking, on two meshes; {'; '.join(words)}.{said}")
+    return graded(alternate and more, alternate), (f"{' and '.join(f'{n:.1f}' for n in jump)} times, in the control "
+                                                   f"{' and '.join(f'{n:.1f}' for n in control)}"), said
 
 
 @states("Section 3.1, figure 5b",
         "the instability is characterised by a discontinuity in the acceleration due to the sudden change in the type of friction",
-        STEPS, lost=lambda results: lost(results, STEPS))
-def discontinuous(results: Results) -> tuple[str, str]:
+        STEPS, lost=LOST_STEPS, svk="largest changes of the acceleration in a step; {}.")
+def discontinuous(results: Results, law: str) -> tuple[str, str, str]:
     """With SVK, on the acceleration of the centre along the plane (friction force over mass) with steps of 20 and 5 μs: it jumps where its
     largest changes from step to step (mean of five) fall by less than the square root of the steps, while those of the acceleration across
     the plane fall by more. Agrees where it jumps, and by at least half of what μ_e exceeds μ_d by more than with equal coefficients; partly
     where it jumps with equal coefficients alike; not where it does not."""
-    found, words = {}, []
-    for law in LAWS:
-        jump, control = ([_changes(history) for history in impact(results, law, static, STEPS)] for static in (STATIC, DYNAMIC))
-        (along, across), (ratio, _) = (_orders(*each) for each in (jump, control))
-        excess = min(mine[0] / other[0] for mine, other in zip(jump, control))
-        found[law] = along < 0.5 < across, excess > (1 + STATIC / DYNAMIC) / 2
-        words.append(f"{LAWS[law]}: {' to '.join(f'{change:.0f}' for change, _ in jump)} m/s² along the plane (as the step to the power "
-                     f"{along:.2f}; across it {across:.2f}), with equal coefficients "
-                     f"{' to '.join(f'{change:.0f}' for change, _ in control)} ({ratio:.2f})")
-    jumps, more = found["svk"]
+    jump, control = ([_changes(history) for history in impact(results, law, static, STEPS)] for static in (STATIC, DYNAMIC))
+    (along, across), (ratio, _) = (_orders(*each) for each in (jump, control))
+    jumps, more = along < 0.5 < across, min(mine[0] / other[0] for mine, other in zip(jump, control)) > (1 + STATIC / DYNAMIC) / 2
     said = "" if more or not jumps else " Equal coefficients, where nothing changes suddenly but the direction, do the same."
-    return graded(jumps and more, jumps), f"largest changes of the acceleration in a step; {'; '.join(words)}.{said}"
+    return graded(jumps and more, jumps), (
+        f"{' to '.join(f'{change:.0f}' for change, _ in jump)} m/s² along the plane (as the step to the power {along:.2f}; across it "
+        f"{across:.2f}), with equal coefficients {' to '.join(f'{change:.0f}' for change, _ in control)} ({ratio:.2f})"), said
 
 
 def _changes(history: History) -> tuple[float, float]:
@@ -208,7 +190,7 @@ def load_changes(history: History) -> float:
 # ---- energies, figure 6a
 
 @states("Section 3.1, figure 6a", "the energy is constant before and after the contact, and falls in it by friction", JUMP, ENERGIES,
-        lost, exact=True, laws="before the contact the flight is exact; {}.")
+        LOST, exact=True, laws="before the contact the flight is exact; {}.")
 def energy(results: Results, law: str) -> tuple[bool, str]:
     """With a law, on both meshes: where the total changes by less than 1e-9 of its start after the last touch, never grows in the contact,
     and falls over it."""
@@ -225,20 +207,16 @@ def _losses(history: History) -> tuple[float, float, float]:
 
 
 @states("Section 3.1, figure 6a", "the elastic energy is null before the contact and in it fluctuates together with the kinetic energy",
-        JUMP, ENERGIES, lost)
-def elastic(results: Results) -> tuple[str, str]:
+        JUMP, ENERGIES, LOST, svk="of the total at the start, on two meshes; {}.")
+def elastic(results: Results, law: str) -> tuple[str, str, str]:
     """With SVK, on both meshes: agrees where it is null to 1e-9 of the total at the start, its changes in the contact mirror those of the
     kinetic energy (correlation below -0.9), and it has several maxima that stand out by more than 1 % of the total; partly where it rises
     and falls once."""
-    found, words = {}, []
-    for law in LAWS:
-        before, mirror, most, counts = zip(*map(_exchange, impact(results, law)))
-        found[law] = max(before) < CONSTANT and max(mirror) < -0.9, min(counts) > 1
-        words.append(f"{LAWS[law]}: {max(before):.0e} before, in it up to {100 * max(most):.0f} % with "
-                     f"{' and '.join(map(str, counts))} maxima, correlation with the kinetic {max(mirror):.3f}")
-    exchanged, fluctuates = found["svk"]
-    said = "" if fluctuates else " With SVK it rises and falls once."
-    return graded(exchanged and fluctuates, exchanged), f"of the total at the start, on two meshes; {'; '.join(words)}." + said
+    before, mirror, most, counts = zip(*map(_exchange, impact(results, law)))
+    exchanged, fluctuates = max(before) < CONSTANT and max(mirror) < -0.9, min(counts) > 1
+    return graded(exchanged and fluctuates, exchanged), (
+        f"{max(before):.0e} before, in it up to {100 * max(most):.0f} % with {' and '.join(map(str, counts))} maxima, correlation with the "
+        f"kinetic {max(mirror):.3f}"), "" if fluctuates else " With SVK it rises and falls once."
 
 
 def _exchange(history: History) -> tuple[float, float, float, int]:
@@ -294,7 +272,7 @@ def slip_share(e: float, angle: float = ANGLE) -> float:
 
 
 @states("Section 3.1, figure 4", "in the last third of the contact the disc rolls without sliding", f"{JUMP} disc-oblique-svk disc-rolling",
-        "disc-oblique-svk/rolling disc-rolling/rolling", lost)
+        "disc-oblique-svk/rolling disc-rolling/rolling", LOST)
 def rolls(results: Results) -> tuple[str, str]:
     """With a law, on both meshes: where v_x and -ω R differ by less than 5 % of v_x, as the mean over the last third of the contact."""
     radius = results.scene("disc-oblique-svk")["radius"]
@@ -318,7 +296,7 @@ def _last_third(history: History, radius: float) -> tuple[float, float]:
     return float(np.average(history["vx"][last], weights=weights)), float(np.average(-radius * history["spin"][last], weights=weights))
 
 
-@states("Conclusions", "smooth slip can be reproduced", JUMP, "disc-oblique-svk/rolling", lost,
+@states("Conclusions", "smooth slip can be reproduced", JUMP, "disc-oblique-svk/rolling", LOST,
         laws="share of the contact time in which all of the load slides, on two meshes; {}.")
 def smooth_slip(results: Results, law: str) -> tuple[bool, str]:
     """With a law, on both meshes: where all of the load (99 %) slides for at least 5 % of the contact time."""

@@ -6,18 +6,13 @@ import numpy as np
 import pandas as pd
 
 from ..sweeps import sweep_figures
-from .judging import AGREES, DIFFERS, OPEN, History, Lost, Results, bar, finished, graded, states, when
+from ..sweeps.sweep_figures import distance, force
+from .judging import AGREES, DIFFERS, OPEN, Lost, Results, bar, finished, graded, lost, states, when
 
 SVK, NEO, FORCES = "contact-time-svk", "contact-time-neohookean", "law-comparison"
 LOST = "ellipticity_lost_time"
 COUNTS = {"steps": "steps", "newton_iterations": "iterations", "factorizations": "factorisations"}
-
-
-def lost(*speeds: float):
-    """When the SVK disc of figure 7 loses ellipticity at these speeds, on both meshes [s]."""
-    return lambda results: [end[LOST] for speed in speeds for end in results.summaries(FORCES, law="svk", speed=speed)]
-
-
+SLOW, FAST = ((FORCES, {"law": "svk", "speed": speed}) for speed in (1, 10))    # of figure 7
 @states("Figure 6b", "normal impact, SVK: the contact time falls with the speed in steps, with small rises between", SVK)
 def stepped(results: Results) -> tuple[str, str]:
     """For every ν, below the speed at which ellipticity is lost: agrees where it falls and at least two rises exceed twice their error
@@ -56,7 +51,7 @@ def _transits(used: dict, nu: float) -> dict[str, float]:
     return {wave: 2 * used["radius"] / sqrt(modulus / used["density"]) for wave, modulus in (("pressure", pressure), ("shear", shear))}
 
 
-@states("Figure 7a", "1 m/s: no noticeable difference between the force histories of SVK and neo-Hookean", FORCES, lost=lost(1))
+@states("Figure 7a", "1 m/s: no noticeable difference between the force histories of SVK and neo-Hookean", FORCES, lost=lost(SLOW))
 def same_at_low_speed(results: Results) -> tuple[str, str]:
     """Agrees where they differ in L2 over time by no more than what mesh and step change; partly where by less than 10 %."""
     distance, error = _distance(results, 1)
@@ -64,14 +59,14 @@ def same_at_low_speed(results: Results) -> tuple[str, str]:
         f"they differ by {100 * distance:.1f} % in L2 over time (mesh and step change {100 * error:.1f} %).")
 
 
-@states("Figure 7b", "10 m/s: the contact lasts longer with SVK", FORCES, lost=lost(10))
+@states("Figure 7b", "10 m/s: the contact lasts longer with SVK", FORCES, lost=lost(FAST))
 def longer_at_high_speed(results: Results) -> tuple[str, str]:
     """Agrees where it does by more than both error bars."""
     rows = finished(results, FORCES)
     if len(rows[rows.speed == 10]) < 2:
         return DIFFERS, "one of the runs at 10 m/s failed."
     (svk, of_svk), (neo, of_neo) = (_of(rows, law, 10, "contact_time") for law in ("svk", "neohookean"))
-    since, (distance, _) = when(lost(10)(results)[-1], "ellipticity lost"), _distance(results, 10)
+    since, (distance, _) = when(lost(FAST)(results)[-1], "ellipticity lost"), _distance(results, 10)
     thresholded = [1e3 * _of(rows, law, 10, "thresholded_contact_time")[0] for law in ("svk", "neohookean")]
     return graded(svk - neo > of_svk + of_neo), (
         f"SVK {1e3 * svk:.3f} ± {1e3 * of_svk:.3f} ms, {since}; neo-Hookean {1e3 * neo:.3f} ± {1e3 * of_neo:.3f} ms (above 1 % of the "
@@ -89,7 +84,7 @@ def monotone(results: Results) -> tuple[str, str]:
     return graded(good and sharp, good), words + told
 
 
-@states("Section 3.1", "the neo-Hookean law demands larger computational times", FORCES, lost=lost(1, 10))
+@states("Section 3.1", "the neo-Hookean law demands larger computational times", FORCES, lost=lost(SLOW, FAST))
 def slower(results: Results) -> tuple[str, str]:
     """By counts, which do not scatter with the machine: at 1 and 10 m/s, on both meshes, at the same accuracy. A pair of runs says so where
     of steps, Newton iterations and factorisations some is over 10 % more than with SVK and none as much less. Agrees where all pairs do,
@@ -107,7 +102,7 @@ def slower(results: Results) -> tuple[str, str]:
 
 
 @states("Conclusions", "as the velocities of incidence are higher, the neo-Hookean disc yields a stiffer behaviour", FORCES,
-        lost=lost(1, 10))
+        lost=lost(SLOW, FAST))
 def stiffer(results: Results) -> tuple[str, str]:
     """Agrees where at 10 m/s its peak force is higher and its contact shorter, by more than both error bars, and both by a larger share
     than at 1 m/s."""
@@ -122,7 +117,7 @@ def stiffer(results: Results) -> tuple[str, str]:
         good.append(shares[10][0] > shares[10][1] and shares[10][0] > shares[1][0])
         words.append(f"{what} by "
                      + " and ".join(f"{100 * share:.1f} ± {100 * error:.1f} % at {speed} m/s" for speed, (share, error) in shares.items()))
-    return graded(all(good)), f"than with SVK, {'; '.join(words)}; SVK at 10 m/s: {when(lost(10)(results)[-1], 'ellipticity lost')}."
+    return graded(all(good)), f"than with SVK, {'; '.join(words)}; SVK at 10 m/s: {when(lost(FAST)(results)[-1], 'ellipticity lost')}."
 
 
 @states("Conclusions", "vibro-impact can be reproduced", f"{SVK} {NEO}")
@@ -169,10 +164,5 @@ def _trends(results: Results, name: str) -> tuple[list[sweep_figures.Trend | Non
 def _distance(results: Results, speed: float) -> tuple[float, float]:
     """Relative L2 difference of the two laws' force histories at a speed, refined, and the largest that mesh and step make."""
     runs = {law: results.histories(FORCES, law=law, speed=speed) for law in ("svk", "neohookean")}
-    error = max(sweep_figures.distance(_force(fine), _force(plain)) for plain, fine in runs.values())
-    return sweep_figures.distance(*(_force(runs[law][-1]) for law in ("svk", "neohookean"))), error
-
-
-def _force(history: History) -> tuple[np.ndarray, np.ndarray]:
-    """(t, normal force); the force is the mean of a step, at its middle."""
-    return history["t"] - history["dt"] / 2, history["normal_force"]
+    error = max(distance(force(fine), force(plain)) for plain, fine in runs.values())
+    return distance(*(force(runs[law][-1]) for law in ("svk", "neohookean"))), error

@@ -129,17 +129,17 @@ Lost = list[float | None]   # when runs with St. Venant-Kirchhoff lost elliptici
 
 
 def states(item: str, text: str, runs: str | Callable[[Results], list[Path]] = "", figures: str | None = None,
-           lost: Callable[[Results], Lost] = lambda results: [], exact: bool = False, laws: str = "") -> Callable:
+           lost: Callable[[Results], Lost] = lambda results: [], exact: bool = False, laws: str = "", svk: str = "") -> Callable:
     """Registers how a statement of the paper is judged. The rule gives the verdict and our number in words, and may give `lost`.
 
     runs: the runs and sweeps that it rests on; figures: as Results.drawn() names them, those of its sweeps where none are given; lost: of
-    the runs that decide; exact: it is about what every step keeps exactly, on any mesh; laws: the rule is about one law, which it takes,
-    and gives whether it holds, and words, which stand for {} in these.
+    the runs that decide; exact: it is about what every step keeps exactly, on any mesh. laws, svk: the rule is about one law, which it
+    takes, and gives words, which stand for {} in these, behind whether it holds (laws: of_both) or its verdict (svk: of_papers).
     """
     def register(rule: Callable) -> Callable[[Results], Finding]:
         @wraps(rule)
         def judged(results: Results) -> Finding:
-            verdict, ours, *more = of_both(rule, results, laws) if laws else rule(results)
+            verdict, ours, *more = of_both(rule, results, laws) if laws else of_papers(rule, results, svk) if svk else rule(results)
             folders = results.folders(*runs.split()) if isinstance(runs, str) else runs(results)
             shown = [name for name in runs.split() if name in sweep.built_in()] if figures is None else figures.split()
             if verdict == AGREES:
@@ -148,6 +148,14 @@ def states(item: str, text: str, runs: str | Callable[[Results], list[Path]] = "
         STATEMENTS.append((item, text, judged))
         return judged
     return register
+
+
+def lost(*which: str | tuple[str, dict]) -> Callable[[Results], Lost]:
+    """When runs, or those of the points (sweep, values) on both meshes, lose ellipticity [s]."""
+    def times(results: Results) -> Lost:
+        ends = [results.summaries(one[0], **one[1]) if isinstance(one, tuple) else [results.summary(one)] for one in which]
+        return [end["ellipticity_lost_time"] for each in ends for end in each]
+    return times
 
 
 def _on_any_mesh(ours: str, lost: Lost, exact: bool) -> tuple[str, str]:
@@ -171,7 +179,19 @@ def of_both(rule: Callable[[Results, str], tuple[bool, str]], results: Results, 
     gives (holds, words) of "svk" and "neohookean"."""
     found = {law: rule(results, law) for law in LAWS}
     paper, other = (holds for holds, _ in found.values())
-    return graded(paper and other, paper), around.format("; ".join(f"{LAWS[law]}: {words}" for law, (_, words) in found.items()))
+    return graded(paper and other, paper), _each(found, around)
+
+
+def of_papers(rule: Callable[[Results, str], tuple[str, str, str]], results: Results, around: str) -> tuple[str, str]:
+    """The same of what is decided by the paper's law: `rule` gives (verdict, words, what is said behind them all)."""
+    found = {law: rule(results, law) for law in LAWS}
+    verdict, _, said = found["svk"]
+    return verdict, _each(found, around) + said
+
+
+def _each(found: dict[str, tuple], around: str) -> str:
+    """The words of both laws in those around them."""
+    return around.format("; ".join(f"{LAWS[law]}: {words}" for law, (_, words, *_) in found.items()))
 
 
 def finished(results: Results, name: str) -> pd.DataFrame:

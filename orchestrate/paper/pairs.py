@@ -4,17 +4,13 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from .judging import Lost, Results, graded, states
+from .judging import Results, graded, lost, states
 
 PAIRS = "pairing"
 SAME = 0.01                 # largest difference of rebound velocities over the speed, and of the impulse, for two contacts to be the same
 DEAR = 0.1                  # share of the processor time from which a search costs some
 PRINTED = {"pairwise": "with a repulsion that vanishes at ε", "pairwise-printed": "as printed"}
-
-
-def lost(results: Results) -> Lost:
-    """When closest points lose ellipticity."""
-    return [end["ellipticity_lost_time"] for end in results.summaries(PAIRS, pairing="closest-point", pairing_range="auto")]
+LOST = lost((PAIRS, {"pairing": "closest-point", "pairing_range": "auto"}))
 
 
 def runs(*widths: Callable) -> Callable[[Results], list[Path]]:
@@ -33,7 +29,7 @@ def separation(results: Results) -> float:
     return float(next(value for value in results.table(PAIRS).pairing_range.unique() if value != "auto"))
 
 
-@states("Section 3.2, equation (9)", "the minimum distance is found at each instant at the cost of CPU time", runs(element), PAIRS, lost)
+@states("Section 3.2, equation (9)", "the minimum distance is found at each instant at the cost of CPU time", runs(element), PAIRS, LOST)
 def search_costs(results: Results) -> tuple[str, str]:
     """By shares of each run, which scatter less than seconds: agrees where the search for closest points takes more than a tenth of the
     processor time on both meshes, partly where on one."""
@@ -48,7 +44,7 @@ def search_costs(results: Results) -> tuple[str, str]:
 
 
 @states("Section 3.2, equations (14), (15)", "a sum over all points nearer than ε takes the place of the closest points", runs(element),
-        PAIRS, lost)
+        PAIRS, LOST)
 def sum_of_points(results: Results) -> tuple[str, str]:
     """As printed, on two meshes: agrees where rebounds and impulse are those of closest points to 1 % and the bodies touch as often; partly
     where the answers are alone, as printed or with a repulsion that vanishes at ε."""
@@ -56,7 +52,7 @@ def sum_of_points(results: Results) -> tuple[str, str]:
 
 
 @states("Section 3.2, equation (15)", "with ε of the order of the separation of the points and a large k a point meets a single one of the "
-        "other body, and nothing has to be sought", runs(element, separation), PAIRS, lost)
+        "other body, and nothing has to be sought", runs(element, separation), PAIRS, LOST)
 def single_point(results: Results) -> tuple[str, str]:
     """As (14), (15) with that ε: judged by the answers, not by the number of points."""
     return _beside_closest(results, separation(results), "ε the separation of the points")

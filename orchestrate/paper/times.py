@@ -12,8 +12,8 @@ import numpy as np
 import pandas as pd
 
 from ..sweeps import sweep_figures
-from .bodies import BALL, BALL_NEO, DISC, DISC_NEO, lost
-from .judging import Results, bar, both_times, finished, graded, loaded, states, when
+from .bodies import BALL, BALL_NEO, DISC, DISC_NEO
+from .judging import Results, bar, both_times, finished, graded, loaded, lost, states, when
 
 DISC_MAP, OBLIQUE_MAP, BALL_MAP, SOLID_MAP = "calibrate", "calibrate-oblique", "calibrate-ball", "calibrate-ball-3d"
 MAPS = {"disc": (DISC_MAP,), "oblique disc": (OBLIQUE_MAP,), "ball": (BALL_MAP, SOLID_MAP)}   # of each number of the paper
@@ -166,7 +166,7 @@ def _joint(results: Results, angle: float, kept: bool) -> list[Together]:
             worst = np.max([_miss(name, *each) for name, each in bounds.items()], axis=0)
             best = int(np.argmin(worst))
             times = [f"{name} {1e3 * least[best]:.2f} to {1e3 * most[best]:.2f} ms" for name, (least, most) in bounds.items()]
-            found.append(Together(nu, _ranges(k, worst), float(k[best]), float(worst[best]), times))
+            found.append(Together(nu, sweep_figures.ranges(k, worst <= 0), float(k[best]), float(worst[best]), times))
     return found
 
 
@@ -175,7 +175,7 @@ def _alone(results: Results, name: str, angle: float) -> dict[float, Ranges]:
     found = {}
     for nu, each in _between(results, name, angle, False).items():
         k = np.geomspace(each.index[0], each.index[-1], FINE)
-        found[nu] = _ranges(k, _miss(name, *_bounds(k, each)))
+        found[nu] = sweep_figures.ranges(k, _miss(name, *_bounds(k, each)) <= 0)
     return {nu: ranges for nu, ranges in found.items() if ranges}
 
 
@@ -211,12 +211,6 @@ def _between(results: Results, number: str, angle: float, kept: bool) -> dict[fl
         parts.append(rows.assign(low=rows.contact_time - error, high=rows.contact_time + error))
     groups = {nu: group.groupby("penalty").agg({"low": "min", "high": "max"}) for nu, group in pd.concat(parts).groupby("nu")}
     return {nu: each for nu, each in groups.items() if len(each) > 1}
-
-
-def _ranges(k: np.ndarray, miss: np.ndarray) -> Ranges:
-    """Where nothing is missed."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], (miss <= 0).astype(int), [0]]))).reshape(-1, 2)
-    return [(float(k[first]), float(k[last - 1])) for first, last in edges]
 
 
 @states("Section 3.3", "the contact time is always larger of the ball when the laws are similar", laws="{}.",

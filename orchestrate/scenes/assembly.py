@@ -8,7 +8,7 @@ revolution it is the half x >= 0 of their sections, the axis with the label 2, o
 import math
 import tomllib
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import partial
 from pathlib import Path
 
@@ -126,7 +126,7 @@ def _solids(scene: Scene, sizes: list[Sizes | None]) -> tuple[solid_mesh.SolidMe
     surfaces = [(k, *(centre + one.centre), *one.axis, one.radius) for k, (made, centre) in enumerate(zip(meshes, centres))
                 for one in made.curved]
     spheres, cylinders = ([one for one in surfaces if len(one) == size] for size in (5, 8))
-    return *solid_mesh.stack(meshes, centres), centres, [("spheres", len(spheres)), *spheres, ("cylinders", len(cylinders)), *cylinders]
+    return *stack(meshes, centres), centres, [("spheres", len(spheres)), *spheres, ("cylinders", len(cylinders)), *cylinders]
 
 
 # ---- what the scene leaves open
@@ -326,13 +326,13 @@ def side_by_side(meshes: list[mesh.Mesh | solid_mesh.SolidMesh], along: int) -> 
     return centres
 
 
-def stack(meshes: list[mesh.Mesh], centres: np.ndarray) -> tuple[mesh.Mesh, np.ndarray]:
-    """All bodies as one mesh, and the body (t,) of each triangle."""
+def stack(meshes: list[mesh.Mesh] | list[solid_mesh.SolidMesh], centres: np.ndarray) -> tuple:
+    """All bodies as one mesh, and the body (t,) of each triangle or tetrahedron."""
     first = np.cumsum([0, *(len(one.points) for one in meshes)])
-    together = mesh.Mesh(np.vstack([one.points + centre for one, centre in zip(meshes, centres)]),
-                         np.vstack([one.triangles + k for one, k in zip(meshes, first)]),
-                         np.vstack([one.edges + k for one, k in zip(meshes, first)]), np.concatenate([one.labels for one in meshes]))
-    return together, np.repeat(np.arange(len(meshes)), [len(one.triangles) for one in meshes])
+    points, cells, sides, labels = zip(*([getattr(one, part.name) for part in fields(one)[:4]] for one in meshes))
+    together = type(meshes[0])(np.vstack([own + centre for own, centre in zip(points, centres)]),
+                               *(np.vstack([own + k for own, k in zip(parts, first)]) for parts in (cells, sides)), np.concatenate(labels))
+    return together, np.repeat(np.arange(len(meshes)), [len(own) for own in cells])
 
 
 # ---- scene.dat

@@ -351,10 +351,14 @@ def level_set(figure: dict, group: pd.DataFrame) -> dict[float, list[tuple[float
     for value, column in group[group.exit == 0].groupby(x):
         column = column.sort_values(y)
         fine = np.geomspace(column[y].iloc[0], column[y].iloc[-1], 2001)
-        inside = np.abs(np.interp(np.log(fine), np.log(column[y]), column[colour]) - figure["level"]) <= band
-        edges = np.flatnonzero(np.diff(np.concatenate([[0], inside.astype(int), [0]]))).reshape(-1, 2)
-        found[value] = [(float(fine[first]), float(fine[last - 1])) for first, last in edges]
+        found[value] = ranges(fine, np.abs(np.interp(np.log(fine), np.log(column[y]), column[colour]) - figure["level"]) <= band)
     return found
+
+
+def ranges(values: np.ndarray, holds: np.ndarray) -> list[tuple[float, float]]:
+    """First and last of the values between which something holds."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], holds.astype(int), [0]]))).reshape(-1, 2)
+    return [(float(values[first]), float(values[last - 1])) for first, last in edges]
 
 
 def _typical(group: pd.DataFrame, name: str) -> float:
@@ -372,8 +376,8 @@ def _set(figure: dict, words: str, group: pd.DataFrame) -> list[str]:
     lines = [f"{words}: " * bool(words) + f"{colour.replace('_', ' ')} = {_factor(colour) * figure['level']:g} ± "
              f"{_factor(colour) * figure['band']:g}{unit} is met, within an error bar of {_factor(colour) * _typical(group, colour):.2g}"
              f"{unit}, for"]
-    for value, ranges in level_set(figure, group).items():
-        lines.append(f"  {_value(x, value)}: " + (f"{label(y)} " + spans(ranges) if ranges else f"no {label(y)}"))
+    for value, met in level_set(figure, group).items():
+        lines.append(f"  {_value(x, value)}: " + (f"{label(y)} " + spans(met) if met else f"no {label(y)}"))
     return lines
 
 
@@ -409,7 +413,12 @@ def _history(sweep, row: pd.Series, out: Path, y: str, refined: bool) -> tuple[n
     history = read_history(study.place(out, point))
     if y not in history:
         raise BadInput(f"figure: y = '{y}' (accepted: {', '.join(history)})")
-    return (history["t"] - history["dt"] / 2 if y.endswith("_force") else history["t"]), history[y]
+    return force(history, y) if y.endswith("_force") else (history["t"], history[y])
+
+
+def force(history: dict[str, np.ndarray], name: str = "normal_force") -> tuple[np.ndarray, np.ndarray]:
+    """(t, force); the force is the mean of a step, at its middle."""
+    return history["t"] - history["dt"] / 2, history[name]
 
 
 def distances(sweep, rows: pd.DataFrame, out: Path) -> Iterator[tuple[str, str, str, str, float, float]]:

@@ -18,7 +18,7 @@ from orchestrate.places import shown
 from orchestrate.progress import in_turn
 from orchestrate.report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE, save
 from orchestrate.sweeps import study
-from orchestrate.sweeps.sweep_figures import distance
+from orchestrate.sweeps.sweep_figures import distance, force
 
 from . import peers
 
@@ -194,9 +194,8 @@ def measure(name: str, out: Path, quick: bool) -> tuple[pd.DataFrame, dict[str, 
 
 
 def _force(folder: Path) -> tuple[np.ndarray, np.ndarray]:
-    """(t, force): the step's mean normal force at the middle of the step."""
-    history = read_history(folder)
-    return history["t"] - history["dt"] / 2, history["normal_force"]
+    """(t, force) of a run."""
+    return force(read_history(folder))
 
 
 def _words(point: study.Point) -> str:

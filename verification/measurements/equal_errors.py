@@ -2,7 +2,6 @@
 from coarse to fine settings; processor seconds of the march and of the whole process for 1, 0.5 and 0.1 %."""
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
