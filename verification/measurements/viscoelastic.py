@@ -27,7 +27,7 @@ MASS = DENSITY * 4 / 3 * math.pi * RADIUS**3
 SPRING = 4 / 3 * YOUNG / (1 - NU**2) * math.sqrt(RADIUS)  # k [N/m^(3/2)]
 TIME = 1e-4                                               # eta/mu, zeta/lambda [s]
 KINDS = {"elastic": (0.0, 0.0), "both": (TIME * MU, TIME * LAMBDA), "shear": (TIME * MU, 0.0)}
-COLOURS = {"both": BLUE, "shear": ORANGE}
+COLOURS, WORDS = {"both": BLUE, "shear": ORANGE}, {"both": "η/μ = ζ/λ", "shear": "η alone"}
 SPEEDS = (1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0)               # m/s; sqrt(E/rho) is 64
 SLOW = 1e-2                                               # up to here the contact is small (b/R < 0.04) and long: theory is asked for
 STIFF = 30.0                                              # times the usual penalty: what it stores is not damped
@@ -105,7 +105,9 @@ def balls(out: Path) -> pd.DataFrame:
         width = math.sqrt(RADIUS * (1.25 * MASS * speed**2 / SPRING) ** 0.4)
         row = {"viscous": kind, "speed": speed, "b/R": width / RADIUS, "T/own": contact / period, "theory": 1 - e,
                "first order": first_order(a, speed), "theory [ms]": 1e3 * contact}
-        rows.append(row | measured(run) | {"1 - e": 1 - run.restitution, "off [%]": 100 * ((1 - run.restitution) / (1 - e) - 1) if a else math.nan})
+        lost = 1 - run.restitution
+        row |= measured(run) | {"contact [ms]": 1e3 * run.contact_time, "1 - e": lost}
+        rows.append(row | {"off [%]": 100 * (lost / (1 - e) - 1) if a else math.nan})
     return pd.DataFrame(rows)
 
 
@@ -146,24 +148,30 @@ def holds(ball: pd.DataFrame, disc: pd.DataFrame) -> bool:
 def report(ball: pd.DataFrame, disc: pd.DataFrame) -> str:
     """Tables, what they say, and the verdict."""
     slow, fits = ball[(ball.viscous != "elastic") & (ball.speed <= SLOW)], exponents(ball)
-    least, most = disc.loc[disc["tau/T"].notna(), "e"].idxmin(), disc.balance.max()
-    return "\n".join([
-        f"Ball of revolution on a rigid plane, neo-Hookean, E = {1e-6 * YOUNG:g} MPa, nu = {NU:g}, R = {RADIUS:g} m, penalty {STIFF:g} times the usual one. viscous: none (elastic), "
-        f"eta/mu = zeta/lambda = {TIME:g} s", f"(both), eta alone (shear). Theory: quasi-static, F = k (x^(3/2) + 3/2 A x^(1/2) x'), integrated; A = "
-        f"{coefficient(*KINDS['both']):.3g} s (both), {coefficient(*KINDS['shear']):.3g} s (shear); that of Brilliantov et al. 1996",
-        f"is {brilliantov(*KINDS['both']):.3g} and {brilliantov(*KINDS['shear']):.3g} s: right where both viscosities go with the moduli, and not where there is "
-        "no second one (the head of verification/measurements/viscoelastic.py).", "",
-        "- b/R: Hertz' half-width; T/own: contact time over the period of the ball's first mode; first order: 1.730 A (k/m)^(2/5) v^(1/5); lost: viscous_work over the energy at the start.", "",
+    least, most = disc.loc[disc["tau/T"].notna(), "e"].idxmin(), max(disc.balance.max(), ball.balance.max())
+    ours, theirs = ([each(*KINDS[kind]) for kind in COLOURS] for each in (coefficient, brilliantov))
+    off, fitted = slow["off [%]"], ", ".join(f"{fit:.4f} ({kind})" for kind, fit in fits.items())
+    said = [
+        f"Ball of revolution on a rigid plane, neo-Hookean, E = {1e-6 * YOUNG:g} MPa, nu = {NU:g}, R = {RADIUS:g} m, penalty {STIFF:g} times",
+        f"the usual one. viscous: none (elastic), eta/mu = zeta/lambda = {TIME:g} s (both), eta alone (shear). Theory: quasi-static,",
+        f"F = k (x^(3/2) + 3/2 A x^(1/2) x'), integrated; A = {ours[0]:.3g} s (both), {ours[1]:.3g} s (shear). That of Brilliantov et al.",
+        f"1996 is {theirs[0]:.3g} and {theirs[1]:.3g} s: the same where both viscosities go with the moduli; without the second one it says that",
+        "nothing is lost, which the runs refute (the head of verification/measurements/viscoelastic.py derives A).", "",
+        "- b/R: Hertz' half-width; T/own: contact time over the period of the ball's first mode.",
+        "- first order: 1.730 A (k/m)^(2/5) v^(1/5); lost: viscous_work over the energy at the start.", "",
         study.table(ball, BALL_FORMATS), "",
-        f"- Range of the theory: up to {SLOW:g} m/s, b/R = {slow['b/R'].max():.3f} and {slow['T/own'].min():.0f} periods; there 1 - e is off by {slow['off [%]'].min():+.1f} to "
-        f"{slow['off [%]'].max():+.1f} %, and grows as v to the " + ", ".join(f"{fit:.4f} ({kind})" for kind, fit in fits.items()) + ".",
-        "- Beyond, the ball is stiffer than Hertz' half-space, the strain is finite, and at 1 m/s vibration takes as much again as without viscosity.", "",
-        f"Disc, neo-Hookean, nu = {DISC['nu']:g}, {DISC['speed']:g} m/s: over loss, tan delta of shear at its first mode; over tau of a Maxwell branch of {BRANCH:g} mu, T the contact time without it.", "",
+        f"- Range of the theory: up to {SLOW:g} m/s, b/R = {slow['b/R'].max():.3f} and {slow['T/own'].min():.0f} periods; there 1 - e is off",
+        f"  by {off.min():+.1f} to {off.max():+.1f} %, and grows as v to the {fitted}.",
+        "- Beyond, the contact is not small: a ball is stiffer than Hertz' half-space, as contact times say, and strains are finite.", "",
+        f"Disc, neo-Hookean, nu = {DISC['nu']:g}, {DISC['speed']:g} m/s: over loss, tan delta of shear at its first mode; over tau of a",
+        f"Maxwell branch of {BRANCH:g} mu, T the contact time without it (above 1 % of the peak force, as in the table).", "",
         study.table(disc, DISC_FORMATS), "",
-        f"- A Maxwell branch takes most at tau = {disc['tau/T'][least]:g} T (e = {disc.e[least]:.3f}); far below it flows, far above it is a spring, and the contact is shorter.",
+        f"- A Maxwell branch takes most at tau = {disc['tau/T'][least]:g} T (e = {disc.e[least]:.3f}); far below it flows, far above it is a",
+        "  spring, and the contact is shorter.",
         f"- Warnings: {study.warned(pd.concat([ball, disc]).warnings) or 'none'}.", "",
-        f"Slow balls agree with quasi-static theory to {100 * AGREE:g} % of 1 - e, its exponent to {STRAIGHT:g} of 1/5, and every balance of energy closes to {CLOSED:g} (largest "
-        f"{max(most, ball.balance.max()):.0e}): the requirement {'holds' if holds(ball, disc) else 'FAILS'}."])
+        f"Slow balls agree with quasi-static theory to {100 * AGREE:g} % of 1 - e, its exponent to {STRAIGHT:g} of 1/5, and every balance",
+        f"of energy closes to {CLOSED:g} (largest {most:.0e}): the requirement {'holds' if holds(ball, disc) else 'FAILS'}."]
+    return "\n".join(said)
 
 
 def draw(ball: pd.DataFrame, disc: pd.DataFrame, path: Path) -> None:
@@ -175,7 +183,7 @@ def draw(ball: pd.DataFrame, disc: pd.DataFrame, path: Path) -> None:
             rows, a = ball[ball.viscous == kind], coefficient(*KINDS[kind])
             panels[0].plot(speeds**0.2, [first_order(a, v) for v in speeds], color=colour, linewidth=1, linestyle=":")
             panels[0].plot(speeds**0.2, [1 - impact(a, v, 400)[0] for v in speeds], color=colour, linewidth=1)
-            panels[0].plot(rows.speed**0.2, rows["1 - e"], "o", color=colour, markersize=4, label={"both": "η/μ = ζ/λ", "shear": "η alone"}[kind])
+            panels[0].plot(rows.speed**0.2, rows["1 - e"], "o", color=colour, markersize=4, label=WORDS[kind])
         elastic = ball[ball.viscous == "elastic"]
         panels[0].plot(elastic.speed**0.2, elastic["1 - e"], "s", color=GREEN, markersize=3, label="elastic")
         panels[0].set(xlabel="$v^{1/5}$ [(m/s)$^{1/5}$]", ylabel="$1 - e$", title="ball; lines: theory, dotted: first order")
