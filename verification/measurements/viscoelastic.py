@@ -103,7 +103,7 @@ def balls(out: Path) -> pd.DataFrame:
         a = coefficient(*KINDS[kind])
         e, contact = impact(a, speed)
         width = math.sqrt(RADIUS * (1.25 * MASS * speed**2 / SPRING) ** 0.4)
-        row = {"viscous": kind, "speed": speed, "b/R": width / RADIUS, "T/own": contact / period, "theory": 1 - e,
+        row = {"viscous": kind, "speed": speed, "b/R": width / RADIUS, "T/own": contact / period, "theory": 1 - e if a else 0.0,
                "first order": first_order(a, speed), "theory [ms]": 1e3 * contact}
         lost = 1 - run.restitution
         row |= measured(run) | {"contact [ms]": 1e3 * run.contact_time, "1 - e": lost}
@@ -152,22 +152,22 @@ def report(ball: pd.DataFrame, disc: pd.DataFrame) -> str:
     ours, theirs = ([each(*KINDS[kind]) for kind in COLOURS] for each in (coefficient, brilliantov))
     off, fitted = slow["off [%]"], ", ".join(f"{fit:.4f} ({kind})" for kind, fit in fits.items())
     said = [
-        f"Ball of revolution on a rigid plane, neo-Hookean, E = {1e-6 * YOUNG:g} MPa, nu = {NU:g}, R = {RADIUS:g} m, penalty {STIFF:g} times",
-        f"the usual one. viscous: none (elastic), eta/mu = zeta/lambda = {TIME:g} s (both), eta alone (shear). Theory: quasi-static,",
+        f"Ball of revolution on a rigid plane, neo-Hookean, E = {1e-6 * YOUNG:g} MPa, nu = {NU:g}, R = {RADIUS:g} m, penalty {STIFF:g}",
+        f"times the usual one. viscous: none (elastic), eta/mu = zeta/lambda = {TIME:g} s (both), eta alone (shear). Theory: quasi-static,",
         f"F = k (x^(3/2) + 3/2 A x^(1/2) x'), integrated; A = {ours[0]:.3g} s (both), {ours[1]:.3g} s (shear). That of Brilliantov et al.",
-        f"1996 is {theirs[0]:.3g} and {theirs[1]:.3g} s: the same where both viscosities go with the moduli; without the second one it says that",
-        "nothing is lost, which the runs refute (the head of verification/measurements/viscoelastic.py derives A).", "",
+        f"1996 is {theirs[0]:.3g} and {theirs[1]:.3g} s: the same where both viscosities go with the moduli; without the second one it",
+        "says that nothing is lost, which the runs refute (the head of verification/measurements/viscoelastic.py derives A).", "",
         "- b/R: Hertz' half-width; T/own: contact time over the period of the ball's first mode.",
         "- first order: 1.730 A (k/m)^(2/5) v^(1/5); lost: viscous_work over the energy at the start.", "",
         study.table(ball, BALL_FORMATS), "",
-        f"- Range of the theory: up to {SLOW:g} m/s, b/R = {slow['b/R'].max():.3f} and {slow['T/own'].min():.0f} periods; there 1 - e is off",
-        f"  by {off.min():+.1f} to {off.max():+.1f} %, and grows as v to the {fitted}.",
+        f"- Range of the theory: up to {SLOW:g} m/s, b/R = {slow['b/R'].max():.3f} and {slow['T/own'].min():.0f} periods; there 1 - e is",
+        f"  off by {off.min():+.1f} to {off.max():+.1f} %, and grows as v to the {fitted}.",
         "- Beyond, the contact is not small: a ball is stiffer than Hertz' half-space, as contact times say, and strains are finite.", "",
         f"Disc, neo-Hookean, nu = {DISC['nu']:g}, {DISC['speed']:g} m/s: over loss, tan delta of shear at its first mode; over tau of a",
         f"Maxwell branch of {BRANCH:g} mu, T the contact time without it (above 1 % of the peak force, as in the table).", "",
         study.table(disc, DISC_FORMATS), "",
-        f"- A Maxwell branch takes most at tau = {disc['tau/T'][least]:g} T (e = {disc.e[least]:.3f}); far below it flows, far above it is a",
-        "  spring, and the contact is shorter.",
+        f"- A Maxwell branch takes most at tau = {disc['tau/T'][least]:g} T (e = {disc.e[least]:.3f}); far below it flows, far above it is",
+        "  a spring, and the contact is shorter.",
         f"- Warnings: {study.warned(pd.concat([ball, disc]).warnings) or 'none'}.", "",
         f"Slow balls agree with quasi-static theory to {100 * AGREE:g} % of 1 - e, its exponent to {STRAIGHT:g} of 1/5, and every balance",
         f"of energy closes to {CLOSED:g} (largest {most:.0e}): the requirement {'holds' if holds(ball, disc) else 'FAILS'}."]
