@@ -106,9 +106,9 @@ equal-errors: ## who takes how long for 1, 0.5 and 0.1 %, other programs where i
 promise: ## whether accuracy means what it says, and stated errors hold, over 240 scenes drawn at random
 disc-block-errors: ## the disc on the free block (section 3.2) over law, nu, stiffness and mesh, with error bars; NGSolve beside it
 pairing-comparison: ## closest point against pairs of points (14), (15): rebound, energy and time over epsilon and k
-viscoelastic: $(READY) ## damped impacts: a slow ball against quasi-static theory, a disc over loss factor and relaxation time
-	@$(PYTHON) -m orchestrate $@ $(or $(ARGS),--page docs/$@.md)
 oblique-angles: $(READY) ## disc and ball over the angle of incidence, beside rigid and elastic theory (ARGS="--friction 0.2 --angles 20,40,60")
+	@$(PYTHON) -m orchestrate $@ $(or $(ARGS),--page docs/$@.md)
+viscoelastic: $(READY) ## damped impacts: a slow ball against quasi-static theory, a disc over loss factor and relaxation time
 	@$(PYTHON) -m orchestrate $@ $(or $(ARGS),--page docs/$@.md)
 
 clean: ## remove all results (keeps .venv)
