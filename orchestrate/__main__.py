@@ -15,8 +15,8 @@ from .places import COMMAND, from_source, shown
 # the commands with a module of their own, which has a main(argv), by its package; what is in none of ours needs the source folder
 PACKAGES = {f"{__package__}.sweeps": ("sweep",), f"{__package__}.report": ("friction-laws", "compare", "movie", "pages"),
             f"{__package__}.paper": ("paper", "stick-slip"), "verification": ("verify",),
-            "verification.measurements": ("oblique-angles", "stress", "bench", "promise", "pairing-comparison", "disc-block-errors",
-                                          "equal-errors")}
+            "verification.measurements": ("oblique-angles", "viscoelastic", "stress", "bench", "promise", "pairing-comparison",
+                                          "disc-block-errors", "equal-errors")}
 OWN_MAIN = {name: f"{package}.{name.replace('-', '_')}" for package, names in PACKAGES.items() for name in names}
 FROM_SOURCE = ("pages", "paper", *(name for name, module in OWN_MAIN.items() if module.startswith("verification.")))
 

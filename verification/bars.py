@@ -1,7 +1,7 @@
-"""V13 and V14: two bars head-on, and a bar that bounces under gravity; nu = 0 and strains so small that they are those of the linear bar."""
+"""V13, V14 and V19: two bars head-on, a bar that bounces under gravity, one whose stress relaxes; nu = 0 and strains so small that they are those of the linear bar."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -51,6 +51,36 @@ def bouncing_bar(folder: Path, elements: int) -> Iterator[Row]:
     expected = (1, 5 / 3, 11 / 3, 13 / 3)
     for what, k in (("first: begins", 0), ("first: ends", 1), ("second: begins", 2), ("second: ends", 3)):
         yield Row(what, 1 / elements, times[k] if len(times) == 4 else math.nan, expected[k], FRONT)
+
+
+def _inverted(transform: Callable[[np.ndarray], np.ndarray], t: float, n: int = 24) -> float:
+    """The inverse Laplace transform at t, on Talbot's contour (Abate, Valko 2004)."""
+    turn = np.arange(1, n) * math.pi / n
+    cot, scale = 1 / np.tan(turn), 2 * n / (5 * t)
+    s = scale * turn * (cot + 1j)
+    ends = 0.5 * math.exp(scale * t) * transform(np.array([scale + 0j]))[0].real
+    return scale / n * (ends + np.sum((np.exp(s * t) * transform(s) * (1 + 1j * (turn + (turn * cot - 1) * cot))).real))
+
+
+def relaxing_bar(folder: Path, elements: int, share: float, tau: float) -> Iterator[Row]:
+    """V19, L = 10, E = rho = 1 and beside it a Maxwell branch of share E, tau: on a rigid plane it is in contact until the front is back, T = 2 L/c with
+    c^2 = 1 + share, under the stress v times the inverse transform of sqrt(E(s))/s, E(s) = 1 + share s tau/(1 + s tau): the front itself loses as much on its way
+    as the stress on the plane does, and leaves it with tension. Restitution: the impulse until then over rho L v, less 1."""
+    size, contact = 10 / elements, 20 / math.sqrt(1 + share)
+    run = bodies(folder, {"accuracy": 0.05, "law": "neohookean", "young": 1, "nu": 0, "density": 1, "dt": size / 4, "chatter": "continue", "end_time": 1.5 * contact,
+                          "body": [_bar(10, 3 * size, position=[0, 5], velocity=[0, -SPEED], relaxation_modulus=share / 2, relaxation_time=tau)],
+                          "obstacle": [{"kind": "plane", "point": [0, 0], "normal": [0, 1]}], "contact": {"penalty": 1e3}})
+    impulse = _inverted(lambda s: np.sqrt(1 + share * s * tau / (1 + s * tau)) / s**2, contact)
+    group = f"tau = {tau / contact:.2g} T"
+    yield Row(f"{group}: restitution", 1 / elements, run.summary["restitution"], impulse / 10 - 1, FRONT)
+    yield Row(f"{group}: contact time", 1 / elements, run.summary["contact_time"], contact, FRONT)
+    yield Row("1 + balance", 1 / elements, 1 + run.summary["energy_drift"], 1)
+
+
+def relaxing(folder: Path) -> Iterator[Row]:
+    for elements in (25, 50, 100):
+        for share, tau in ((0.5, 10), (0.5, 40)):
+            yield from relaxing_bar(folder, elements, share, tau)
 
 
 def two(folder: Path) -> Iterator[Row]:

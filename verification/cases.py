@@ -6,7 +6,7 @@ from pathlib import Path
 
 from orchestrate.report.literature import REFERENCE
 
-from .bars import bouncing, two
+from .bars import bouncing, relaxing, two
 from .blocks import blocks
 from .case import Case, Row
 from .cattaneo import annuli, shear
@@ -75,6 +75,8 @@ CASES = (
     Case("V18", "the first microseconds of a disc on the plane: a bar on a wall above every point", "element size / b", 0.05, touches, beside=forces,
          note="Until R v/(2 c_L²), 13 µs at 8 m/s, b = R v/c_L; rubber of the paper, ν = 0.45, neo-Hookean, penalty 20 ρ c_L²/h (6.6·10¹² Pa/m). Expected: 2ρUv√(2Rvt) with "
               "the speed U of the law's plane shock, 4 % above c_L at 8 m/s; on the finest mesh also that with c_L."),
+    Case("V19", "bar with a Maxwell branch on a wall: contact 2L/c, restitution of the standard linear solid", "element size / length", 0.01, relaxing,
+         note="v/c = 10⁻⁴, branch of half the bar's modulus, penalty 1000 E/L; expected by the inverse Laplace transform of the force on the wall."),
     Case("annulus", "cylinder pressed on a plane, then sheared: stick and slip of Cattaneo and Mindlin", "element size / b", 0.02, annuli, beside=shear,
          note="b/R = 0.02, neo-Hookean, ν = 0.45, μ = 0.1, Q some μP/2, pressed without friction; linear regularisation, ε = 0.003 of the plane's speed: what sticks creeps by "
               "less than 0.3 % of its way. c and q are those of the P and Q that are measured; tractions are means over edges."),

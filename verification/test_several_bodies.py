@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from .bars import bouncing_bar, two_bars
+from .bars import bouncing_bar, relaxing_bar, two_bars
 from .blocks import pressed
 from .scenes import HITS, disc, plane, scene
 
@@ -163,6 +163,13 @@ def test_two_bars_head_on(tmp_path, law):
 def test_bouncing_bar(tmp_path):
     """V14 on 12 elements: begin and end of both contacts to 3 %."""
     assert max(row.error for row in bouncing_bar(tmp_path, 12)) < 0.03
+
+
+def test_relaxing_bar(tmp_path):
+    """V19 on 25 and 50 elements: restitution and contact time, which wait for a front of width h^(2/3), to 2 and 1.1 %; the balance closes to 1e-9."""
+    coarse, fine = ({row.what: row.error for row in relaxing_bar(tmp_path / f"{n}", n, 0.5, 10)} for n in (25, 50))
+    assert max(coarse.values()) < 0.02 and max(fine.values()) < 0.011 and fine["1 + balance"] < 1e-9
+    assert all(fine[what] < error for what, error in coarse.items() if what != "1 + balance")
 
 
 def test_blocks_pressed_together(tmp_path):
