@@ -46,6 +46,7 @@ def draw(folder: Path, warnings: list[str]) -> list[Path]:
             bounces = impacts.draw(impacts.read(folder), names,
                                    [as_written(one["name"]) for one in scene.get("obstacle", [])] or ["plane"])
             drawn |= {"bounces": bounces} if bounces else {}
+            drawn |= {"height": impacts.heights(history, impacts.read(folder), names)} if scene.get("until") == "rest" else {}
         if (folder / "modes.csv").exists():
             rings = vibration.draw(vibration.read(folder), history, per_metre(scene))
             drawn |= {"vibration": rings} if rings else {}

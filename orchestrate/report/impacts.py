@@ -13,6 +13,7 @@ LEAST_SLIP = 0.05
 LEAST_APPROACH = 0.01            # of the largest of a meeting: of less, as of a body that lies on its partner, there is no restitution
 HIGHEST = 1.5                    # restitution that is drawn to scale: above it a body that vibrates was pushed off as it hardly approached
 COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"]
+TOLD = 5                         # restitutions written beside the first impacts
 NEEDED = ["body", "partner", "start", "end", "impulse", "approach", "separation", "restitution", "restitution_tangential"]
 
 
@@ -60,4 +61,30 @@ def draw(table: np.recarray, names: list[str], rigid: list[str]) -> plt.Figure |
     top.axhline(1, color="#999999", linewidth=0.6)
     top.legend(ncols=2, loc="lower center", bbox_to_anchor=(0.5, 1))
     below.set(xlabel="start of the contact [ms]", ylabel="speed before [m/s]", ylim=(0, 1.1 * below.get_ylim()[1]))
+    return figure
+
+
+def heights(history: dict[str, np.ndarray], table: np.recarray, names: list[str]) -> plt.Figure:
+    """The height of each body's centre above its last one [mm] over time [s], with the instants of its impacts and the first restitutions:
+    of a run until rest. Between two rows its acceleration is constant: of a flight two are enough."""
+    figure, axes = plt.subplots(figsize=(6.4, 3.4))
+    t = history["t"]
+    dense = np.linspace(t[0], t[-1], 2000)
+
+    def above(when: np.ndarray, of: str) -> np.ndarray:
+        y, v, row = history[f"y{of}"], history[f"vy{of}"], np.clip(np.searchsorted(t, when, side="right") - 1, 0, len(t) - 2)
+        past, step = when - t[row], np.maximum(t[row + 1] - t[row], 1e-300)
+        return 1e3 * (y[row] + v[row] * past + (v[row + 1] - v[row]) * past**2 / (2 * step) - y[-1])
+
+    for colour, (body, name) in zip(COLOURS, enumerate(names, 1)):
+        of = f"_{body}" if len(names) > 1 else ""
+        axes.plot(dense, above(dense, of), color=colour, label=f"{name}: rests at {history[f'y{of}'][-1]:.4g} m")
+        impacts = table[(table.body == body) & np.isfinite(table.restitution)]
+        axes.plot(impacts.start, above(impacts.start, of), "o", color=colour, markersize=3)
+        for one in impacts[:TOLD]:
+            axes.annotate(f"{one.restitution:.2f}", (one.start, above(one.start, of)), (0, -4), textcoords="offset points", ha="center",
+                          va="top", fontsize=7.5)
+    axes.set(xlabel="time [s]", ylabel="height of the centre [mm]", xlim=(t[0], t[-1]))
+    axes.margins(y=0.12)
+    axes.legend(ncols=2, loc="lower center", bbox_to_anchor=(0.5, 1), title="dots: impacts, with their restitutions", title_fontsize=7.5)
     return figure

@@ -37,7 +37,7 @@ from .entries import release, set_entry, toml_value
 from .obstacles import Obstacle
 
 RUN = ("gravity", "body_force_x", "body_force_y", "degree", "integrator", "dt", "accuracy", "accuracy_of", "tolerance", "breakdown",
-       "chatter", "end_time", "fields", "modes", "checkpoint_every", "without")
+       "chatter", "end_time", "until", "fields", "modes", "checkpoint_every", "without")
 OWN = ("penalty", "friction_static", "friction_dynamic")                                  # a pair may have its own
 CONTACT = (*OWN, "exponent", "slip_velocity", "regularization", "friction_transition", "pairing", "pairing_range")
 SELF_CONTACT = Parameter("self_contact", "word", "auto", "-", "", words=("auto", "on", "off"))

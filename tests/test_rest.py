@@ -1,0 +1,121 @@
+"""`until = rest`: bodies bounce under gravity, each time lower, until all rests (edp/core/run/rest.idp)."""
+
+import math
+
+import numpy as np
+import pytest
+
+from orchestrate import run, scene
+from orchestrate.failure import BadInput, Failure
+from orchestrate.report import drawing
+from verification.measure import bodies, disc
+
+RADIUS, YOUNG, NU, DENSITY, GRAVITY, ACCURACY = 0.05, 7e6, 0.4, 1722, 9.81, 0.1
+REST = {"law": "neohookean", "nu": NU, "loss": 1, "gravity": GRAVITY, "until": "rest", "accuracy": ACCURACY}
+FALL = REST | {"speed": 0, "height": 0.5, "mesh_size": 0.015, "contact_mesh_size": 0.0005, "penalty": 2e11}
+
+
+def weight(volume: float) -> float:
+    return volume * DENSITY * GRAVITY
+
+
+@pytest.fixture(scope="module")
+def fallen(tmp_path_factory):
+    """A disc that fell from 0.5 m, and its contacts."""
+    folder = tmp_path_factory.mktemp("fall") / "out"
+    return disc(folder, **FALL), np.genfromtxt(folder / "contacts.csv", delimiter=",", names=True)
+
+
+def rests(found, force: float) -> None:
+    """It ended at rest: the contact bears the weight to the accuracy, momentum is exact and the balance of all energies closed."""
+    assert found.summary["ended"] == "rest" and found.summary["status"] == "ok"
+    assert found.history["normal_force"][-1] == pytest.approx(force, rel=ACCURACY)
+    assert found.summary["energy_drift"] < 1e-9 and found.summary["momentum_drift"] < 1e-7
+
+
+def test_a_disc_bounces_until_it_rests(fallen):
+    """Each bounce is a row with its restitution and as high as that says, its flight the closed form's; viscosity takes all but what is stored at rest."""
+    found, contacts = fallen
+    rests(found, weight(math.pi * RADIUS**2))
+    impacts = contacts[np.isfinite(contacts["restitution"])]
+    assert found.summary["bounces"] == len(impacts) >= 8 and (np.diff(impacts["approach"]) < 0).all()
+    flights, left = impacts["start"][1:] - impacts["end"][:-1], impacts["separation"][:-1]
+    assert flights == pytest.approx(2 * left / GRAVITY, rel=0.05, abs=1e-3)
+    start = 0.5 * weight(math.pi * RADIUS**2)
+    assert found.summary["viscous_work"] == pytest.approx(start, rel=2e-3) and found.summary["friction_work"] == 0
+
+
+def test_flights_are_gone_at_once(fallen):
+    """Once vibration has died away a flight is one row; of the longest the march takes a few steps."""
+    found, _ = fallen
+    longest = np.sort(found.history["dt"])[::-1]
+    assert (longest[:4] > 0.05).all() and found.summary["steps"] < 60 * found.summary["bounces"]
+
+
+def test_at_rest_the_contact_is_hertz(fallen):
+    """Half-width a = sqrt(4 P R (1 - nu^2)/(pi E)) to an element, largest pressure 2 P/(pi a) to an element's share of it."""
+    found, _ = fallen
+    load = weight(math.pi * RADIUS**2)
+    a = math.sqrt(4 * load * RADIUS * (1 - NU**2) / (math.pi * YOUNG))
+    end = {name: column[-1] for name, column in found.history.items()}
+    assert end["contact_half_width"] == pytest.approx(a, abs=0.0005)
+    assert end["max_pressure"] == pytest.approx(2 * load / (math.pi * a), rel=0.0005 / a / 4)
+
+
+def test_a_ball_comes_to_rest(tmp_path):
+    """As a body of revolution: its contact is Hertz' circle, a^3 = 3 P R (1 - nu^2)/(4 E), to an element."""
+    found = disc(tmp_path, "ball-axisymmetric", **FALL | {"height": 0.02, "contact_mesh_size": 0.001, "loss": 2})
+    load = weight(4 / 3 * math.pi * RADIUS**3)
+    rests(found, load)
+    assert found.history["contact_half_width"][-1] == pytest.approx((0.75 * load * RADIUS * (1 - NU**2) / YOUNG)**(1 / 3), abs=0.001)
+
+
+def test_friction_stops_a_disc(tmp_path):
+    """With a backspin of 2 v/R friction takes sliding and spin alike: the disc stops where it no longer slides, on a rough plane after v^2/(2 mu g)."""
+    found = disc(tmp_path, **REST | {"speed": 0.5, "angle": 0, "spin": 20, "friction_static": 0.5, "symmetry": "full"})
+    rests(found, weight(math.pi * RADIUS**2))
+    energy = weight(math.pi * RADIUS**2) / GRAVITY * (0.5**2 / 2 + (RADIUS * 20)**2 / 4)
+    assert found.summary["friction_work"] == pytest.approx(energy, rel=0.02)
+    assert np.interp(0.1, found.history["t"], found.history["x"]) == pytest.approx(0.5**2 / (2 * 0.5 * GRAVITY), rel=0.05)
+
+
+def test_end_time_is_the_latest(tmp_path):
+    """With an end_time the run ends there where nothing rests before, also in the middle of a flight."""
+    found = disc(tmp_path, **FALL | {"end_time": 0.5, "contact_mesh_size": 0.002})
+    assert found.summary["ended"] == "end_time" and found.history["t"][-1] == pytest.approx(0.5)
+    assert found.summary["energy_drift"] < 1e-9 and found.summary["bounces"] == 1
+
+
+@pytest.mark.parametrize("change, said", [({"gravity": 0}, "until: rest needs what pulls"), ({"loss": 0}, "until: rest needs what takes energy"),
+                                          ({"until": "sleep"}, "until: 'sleep' is not known .accepted: impact.rest")], ids=str)
+def test_what_never_rests_is_refused(tmp_path, change, said):
+    """Without a pull, or without a loss, nothing can bring a body to rest."""
+    with pytest.raises(Failure, match=f"exit code 10: ffimpact: {said}"):
+        disc(tmp_path / "out", **FALL | {"speed": 1} | change)
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_scene_says_it_in_toml_and_python(tmp_path):
+    """The built-in scene, coarser: the picture of its height is drawn; a word that is none is refused; a block that is free has nothing to rest on."""
+    coarse = {"mesh_size": 0.02, "contact_mesh_size": 0.005, "loss": 2, "penalty": 1e10, "height": 0.05, "accuracy": 0.2}
+    found = run.run(scene.load("disc-rest"), coarse, tmp_path / "out", estimate=False)
+    assert found.scene["until"] == "rest" and found.summary["ended"] == "rest"
+    drawing.draw(found.folder, [])
+    assert (found.folder / "figures/height.png").stat().st_size > 5000
+    with pytest.raises(BadInput, match="until: 'sleep'"):
+        scene.load("disc-rest").override({"until": "sleep"})
+    with pytest.raises(Failure, match="until: rest needs an obstacle"):
+        run.run(scene.load("disc-block"), {"until": "rest", "gravity": 9.81, "loss": 1, "accuracy": 0.3}, tmp_path / "block", estimate=False)
+
+
+def test_two_bodies_rest(tmp_path):
+    """A disc that falls on another one in a bowl: both rest, their weights on the bowl."""
+    body = {"shape": "disc", "radius": 0.05, "law": "neohookean", "young": 2e6, "nu": 0.3, "density": 1000.0, "loss": 2.0, "mesh_size": 0.03,
+            "contact_mesh_size": 0.01}
+    tables = {"gravity": 9.81, "until": "rest", "accuracy": 0.2, "contact": {"friction_static": 0.3},
+              "body": [body | {"name": "low", "position": [0.0, 0.051]}, body | {"name": "high", "position": [0.0, 0.16]}],
+              "obstacle": [{"kind": "plane", "point": [0, 0], "normal": [0, 1]}, {"kind": "plane", "point": [-0.0501, 0], "normal": [1, 0]},
+                           {"kind": "plane", "point": [0.0501, 0], "normal": [-1, 0]}]}
+    found = bodies(tmp_path, tables)
+    assert found.summary["ended"] == "rest" and found.summary["energy_drift"] < 1e-9
+    assert found.history["y_2"][-1] - found.history["y_1"][-1] == pytest.approx(0.1, rel=0.02)
