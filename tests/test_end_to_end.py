@@ -164,7 +164,7 @@ def check_failure(process: subprocess.CompletedProcess, code: int, words: str) -
 
 
 @pytest.mark.parametrize("setting, words", [
-    ("nu=0.5", r"nu: 0.5 is out of range \(accepted: 0 to 0.499\)"), ("speed=fast", "speed: 'fast' is not a number"),
+    ("nu=0.5", r"nu: 0.5 is out of range \(accepted: 0 to 0.4999\)"), ("speed=fast", "speed: 'fast' is not a number"),
     ("law=hooke", r"law: 'hooke' is not known \(accepted: svk\|neohookean"), ("sped=8", "sped: no such parameter; did you mean speed"),
     ("mesh_size=0.06", "mesh_size: 0.06 is larger than the radius 0.05"), ("speed=0", "speed: 0 without spin")])
 def test_bad_input_is_10(tmp_path, setting, words):
