@@ -32,10 +32,13 @@ template<int D, int H> struct Stored {
 enum { fine = 0, inverted = 2, notANumber = 3 };
 enum { stepMean = 0, stepMiddle = 1, stepEnd = 2 };   // of normal.idp
 
-const int most = 10;                       // nodes of an element: those of a quadratic tetrahedron
+const int most = 10, mostPoints = 8;       // nodes of an element: those of a quadratic tetrahedron; its points
 
 // The arrays of integrators.idp that forces() reads (F0, C0) and fills.
 struct Deformation { double *F0, *C0, *F1, *C1, *jacobian1, *Fs, *Ss; };
+
+// Those of volume.idp (by elements, as `cell` has them), and det F at the start of a step.
+struct Volume { double *jacobian0, *carried, *star, *now, *dBase, *lag; };
 
 class Bodies {
 public:
@@ -55,6 +58,11 @@ public:
   // pairs of nodes (a >= b) that an element or the mass couples, and their D x D blocks of the tangent
   std::vector<int> pairA, pairB, firstPair, pairOf, pairOfMass;
   std::vector<double> block;
+  // where volume is that of elements: their numbers in the scripts, sums of weights, slopes, g0 (node, component); whether those are known
+  std::vector<int> cell;
+  std::vector<double> cellWeight, slope, g0;
+  bool slopeKnown = false;
+  Volume volume = Volume();
 
   // From componentOf[i]: which unknown is component i of node a.
   void component(int i, int dimensions, const Triplets &pick) {
@@ -119,6 +127,19 @@ public:
     for (int a = 0; a < nodes; a++) massRow[a + 1] += massRow[a];
   }
 
+  // Of elements with a volume of their own: cellOfPoint (nq).
+  void cells(const std::vector<int> &cellOfPoint, const Volume &arrays) {
+    volume = arrays;
+    cell.clear();
+    cellWeight.assign(firstPoint.size() - 1, 0.);
+    for (size_t g = 0; g + 1 < firstPoint.size(); g++) {
+      cell.push_back(cellOfPoint[point[firstPoint[g]]]);
+      for (int p = firstPoint[g]; p < firstPoint[g + 1]; p++) cellWeight[g] += weight[point[p]];
+    }
+    slope.assign(cell.size(), 0.);
+    g0.assign(node.size() * D, 0.);
+  }
+
   // The pattern of the tangent.
   void pairs() {
     std::map<std::pair<int, int>, int> known;
@@ -139,27 +160,34 @@ public:
   }
 
   // G' (w P) + M (massScale d - history) - deadLoad, 0 at what is held [N/m, N]: the inertia, the inner forces and the dead load of (2) at the increment
-  // d, and the deformation that they are taken at. `rate`: 1/dt, 0 where no body is damped; `breaks`: det F <= 0 ends a step.
+  // d, and the deformation that they are taken at. `rate`: 1/dt, 0 where no body is damped; `breaks`: det F <= 0 ends a step; `carries`: pressures of
+  // elements are carried (volume.idp), and the residual is the condensed one.
   int forces(const double *d, const double *history, const double *deadLoad, double massScale, double rate, int where, bool breaks,
-             const Deformation &at, double *residual) const {
-    return D == 3 ? forces<3, 0>(d, history, deadLoad, massScale, rate, where, breaks, at, residual)
-      : H == 1 ? forces<2, 1>(d, history, deadLoad, massScale, rate, where, breaks, at, residual)
-      : forces<2, 0>(d, history, deadLoad, massScale, rate, where, breaks, at, residual);
+             bool carries, const Deformation &at, double *residual) const {
+    return D == 3 ? forces<3, 0>(d, history, deadLoad, massScale, rate, where, breaks, carries, at, residual)
+      : H == 1 ? forces<2, 1>(d, history, deadLoad, massScale, rate, where, breaks, carries, at, residual)
+      : forces<2, 0>(d, history, deadLoad, massScale, rate, where, breaks, carries, at, residual);
   }
 
   // The blocks of massScale M + stiffnessScale K, K the derivative of G' (w F S) at F, S, and of the moduli of damping at rate = 1/dt.
-  void tangent(const double *F, const double *S, double massScale, double stiffnessScale, double rate) {
+  void tangent(const double *F, const double *S, const double *p, double massScale, double stiffnessScale, double rate) {
     std::fill(block.begin(), block.end(), 0.);
-    if (D == 3) stiffness<3, 0>(F, S, stiffnessScale, rate);
-    else if (H == 1) stiffness<2, 1>(F, S, stiffnessScale, rate);
-    else stiffness<2, 0>(F, S, stiffnessScale, rate);
+    if (D == 3) stiffness<3, 0>(F, S, p, stiffnessScale, rate);
+    else if (H == 1) stiffness<2, 1>(F, S, p, stiffnessScale, rate);
+    else stiffness<2, 0>(F, S, p, stiffnessScale, rate);
     for (int a = 0; a < nodes; a++)
       for (int e = massRow[a]; e < massRow[a + 1]; e++) if (massColumn[e] <= a)
         for (int i = 0; i < D; i++) block[size_t(pairOfMass[e]) * D * D + i * D + i] += massScale * massValue[e];
   }
 
   // At every point, of C: the energy [J/m3], the smallest stretch of the motions there are, ellipticity; of F: Cauchy's stress (6 nq) and von Mises' [Pa].
-  void energies(const double *C, double *W) const { at(C, W, [](const laws::Material &m, const double *c) { return laws::energy(m, c); }); }
+  void energies(const double *C, double *W) const {
+    at(C, W, [](const laws::Material &m, const double *c) { return laws::energy(m, c); });
+    if (cell.empty()) return;
+    std::vector<double> j(nq), theta = means(C, j);
+    for (size_t g = 0; g < cell.size(); g++)
+      for (int p = firstPoint[g]; p < firstPoint[g + 1]; p++) W[point[p]] += laws::volumeEnergy(material[point[p]], theta[g]);
+  }
   void ellipticities(const double *C, double *e) const {
     bool spatial = D == 3;
     at(C, e, [spatial](const laws::Material &m, const double *c) { return laws::ellipticity(m, c, spatial); });
@@ -174,10 +202,23 @@ public:
     });
   }
   void stresses(const double *F, double *sigma, double *mises) const {
+    std::vector<double> p(nq, 0.);
+    auto wholeOf = [this, F](int q, double *f) {
+      if (D == 3) whole<3, 0>(F, q, f); else if (H == 1) whole<2, 1>(F, q, f); else whole<2, 0>(F, q, f);
+    };
+    for (size_t g = 0; g < cell.size(); g++) {
+      double theta = 0, f[9], c[6];
+      for (int i = firstPoint[g]; i < firstPoint[g + 1]; i++) {
+        wholeOf(point[i], f);
+        laws::rightCauchyGreen(f, c);
+        theta += weight[point[i]] * laws::volume(material[point[i]], c) / cellWeight[g];
+      }
+      for (int i = firstPoint[g]; i < firstPoint[g + 1]; i++) p[point[i]] = laws::pressure(material[point[i]], theta);
+    }
     for (int q = 0; q < nq; q++) {
       double f[9], s[6];
-      if (D == 3) whole<3, 0>(F, q, f); else if (H == 1) whole<2, 1>(F, q, f); else whole<2, 0>(F, q, f);
-      mises[q] = laws::cauchy(material[q], f, s);
+      wholeOf(q, f);
+      mises[q] = laws::cauchy(material[q], f, p[q], s);
       for (int k = 0; k < 6; k++) sigma[k * nq + q] = s[k];
     }
   }
@@ -194,17 +235,32 @@ private:
     }
   }
 
-  mutable std::vector<double> nodal, pull;
+  mutable std::vector<double> nodal, pull, way, lagging;   // by node and component; way: d - dBase
+
+  // theta by element of j at the points, which is made of C.
+  std::vector<double> means(const double *C, std::vector<double> &j) const {
+    std::vector<double> theta(cell.size(), 0.);
+    at(C, j.data(), [](const laws::Material &m, const double *c) { return laws::volume(m, c); });
+    for (size_t g = 0; g < cell.size(); g++)
+      for (int p = firstPoint[g]; p < firstPoint[g + 1]; p++) theta[g] += weight[point[p]] * j[point[p]] / cellWeight[g];
+    return theta;
+  }
 
   template<int D, int H> int forces(const double *d, const double *history, const double *deadLoad, double massScale, double rate,
-                                    int where, bool breaks, const Deformation &at, double *residual) const {
+                                    int where, bool breaks, bool carries, const Deformation &at, double *residual) const {
     nodal.resize(nodes * D);
     pull.assign(nodes * D, 0.);
     for (int i = 0; i < nodes * D; i++) nodal[i] = d[unknown[i]];
     double smallest = stretched<D, H>(where, at);
     if (smallest != smallest) return notANumber;
     if (smallest <= 0 && breaks) return inverted;
-    stressed<D, H>(where, rate, at);
+    if (carries) {
+      way.resize(nodes * D);
+      lagging.assign(nodes * D, 0.);
+      for (int i = 0; i < nodes * D; i++) way[i] = nodal[i] - volume.dBase[unknown[i]];
+    }
+    stressed<D, H>(where, rate, carries, at);
+    if (carries) for (int i = 0; i < nodes * D; i++) volume.lag[unknown[i]] = lagging[i] * free[unknown[i]];
     for (int i = 0; i < nodes * D; i++) nodal[i] = massScale * nodal[i] - history[unknown[i]];
     for (int a = 0; a < nodes; a++)
       for (int e = massRow[a]; e < massRow[a + 1]; e++)
@@ -241,16 +297,29 @@ private:
     return smallest;
   }
 
+  // nodal forces += G' (w F S) at point q with shapes N of n nodes.
+  template<int D, int H> void pulled(int q, int n, const double *N, const double *F, const double *S, double *its) const {
+    double P[9];
+    laws::nominalStress(F, S, P);
+    for (int k = 0; k < 9; k++) P[k] *= weight[q];
+    for (int a = 0; a < n; a++, N += Stored<D, H>::slots) {
+      for (int i = 0; i < D; i++) for (int J = 0; J < D; J++) its[a * D + i] += N[J] * P[3 * i + J];
+      if (H) its[a * D] += N[D] * P[8];
+    }
+  }
+
   // C1, Ss and pull += G' (w Fs Ss).
-  template<int D, int H> void stressed(int where, double rate, const Deformation &at) const {
+  template<int D, int H> void stressed(int where, double rate, bool carries, const Deformation &at) const {
     typedef Stored<D, H> T;
     for (size_t g = 0; g + 1 < firstNode.size(); g++) {
       int n = firstNode[g + 1] - firstNode[g];
       const double *N = &shape[firstShape[g]];
       double its[most * D] = {};
-      for (int p = firstPoint[g]; p < firstPoint[g + 1]; p++) {
+      Pressed pressed;
+      if (!cell.empty()) press<D, H>(g, where, carries, at, pressed);
+      for (int p = firstPoint[g]; p < firstPoint[g + 1]; p++, N += n * T::slots) {
         int q = point[p];
-        double F[9], Fs[9], C0[6] = {1, 1, 1, 0, 0, 0}, C1[6], S[6], P[9];
+        double F[9], Fs[9], C0[6] = {1, 1, 1, 0, 0, 0}, C1[6], S[6];
         whole<D, H>(at.Fs, q, Fs);
         whole<D, H>(where == stepMiddle ? at.Fs : at.F1, q, F);
         laws::rightCauchyGreen(F, C1);
@@ -267,16 +336,71 @@ private:
           if (material[q].relaxing > 0) for (int k = 0; k < T::C; k++) A[T::symmetric(k)] = flowed[k * nq + q];
           laws::addDampingStress(material[q], C0, ends, A, rate, S);
         }
+        if (!cell.empty()) for (int k = 0; k < 6; k++) S[k] += pressed.p * pressed.T[p - firstPoint[g]][k];
         for (int k = 0; k < T::C; k++) at.C1[k * nq + q] = C1[T::symmetric(k)];
         for (int k = 0; k < T::C; k++) at.Ss[k * nq + q] = S[T::symmetric(k)];
-        laws::nominalStress(Fs, S, P);
-        for (int k = 0; k < 9; k++) P[k] *= weight[q];
-        for (int a = 0; a < n; a++, N += T::slots) {
-          for (int i = 0; i < D; i++) for (int J = 0; J < D; J++) its[a * D + i] += N[J] * P[3 * i + J];
-          if (H) its[a * D] += N[D] * P[8];
-        }
+        pulled<D, H>(q, n, N, Fs, S, its);
       }
+      if (carries) miss<D, H>(g, at, pressed, its);
       for (int a = 0; a < n; a++) for (int i = 0; i < D; i++) pull[node[firstNode[g] + a] * D + i] += its[a * D + i];
+    }
+  }
+
+  // Of an element: T at its points, p, and p* - p.
+  struct Pressed { double T[mostPoints][6], p, left; };
+  template<int D, int H> void press(size_t g, int where, bool carries, const Deformation &at, Pressed &its) const {
+    typedef Stored<D, H> T;
+    const laws::Material &m = material[point[firstPoint[g]]];
+    double theta0 = 0, theta1 = 0;
+    for (int p = firstPoint[g]; p < firstPoint[g + 1]; p++) {
+      int q = point[p];
+      double F[9], C0[6] = {1, 1, 1, 0, 0, 0}, C1[6], *to = its.T[p - firstPoint[g]], w = weight[q] / cellWeight[g];
+      whole<D, H>(where == stepMiddle ? at.Fs : at.F1, q, F);
+      laws::rightCauchyGreen(F, C1);
+      double J0 = volume.jacobian0[q], J1 = at.jacobian1[q];
+      if (where == stepMean) {
+        for (int k = 0; k < T::C; k++) C0[T::symmetric(k)] = at.C0[k * nq + q];
+        laws::volumeDirection(m, C0, C1, J0 + J1, to);
+        theta0 += w * (m.neohookean ? J0 : laws::volume(m, C0));
+        theta1 += w * (m.neohookean ? J1 : laws::volume(m, C1));
+      }
+      else {
+        double j = laws::volume(m, C1);
+        laws::volumeDirection(m, C1, j, to);
+        theta1 += w * j;
+      }
+    }
+    double star = where == stepMean ? laws::pressure(m, theta0, theta1) : laws::pressure(m, theta1);
+    its.p = star;
+    if (carries) {
+      its.p = volume.carried[cell[g]];
+      if (slopeKnown) its.p += slope[g] * alongG0(g);
+    }
+    its.left = star - its.p;
+    volume.star[cell[g]] = star;
+    volume.now[cell[g]] = its.p;
+  }
+  double alongG0(size_t g) const {
+    double sum = 0;
+    for (int a = firstNode[g]; a < firstNode[g + 1]; a++) for (int i = 0; i < D; i++) sum += g0[size_t(a) * D + i] * way[node[a] * D + i];
+    return sum;
+  }
+
+  // What p* - p pulls: along g0, where that is known, and lagging the rest.
+  template<int D, int H> void miss(size_t g, const Deformation &at, const Pressed &pressed, double *its) const {
+    int n = firstNode[g + 1] - firstNode[g];
+    const double *N = &shape[firstShape[g]];
+    double all[most * D] = {};
+    for (int p = firstPoint[g]; p < firstPoint[g + 1]; p++, N += n * Stored<D, H>::slots) {
+      double F[9], S[6];
+      whole<D, H>(at.Fs, point[p], F);
+      for (int k = 0; k < 6; k++) S[k] = pressed.left * pressed.T[p - firstPoint[g]][k];
+      pulled<D, H>(point[p], n, N, F, S, all);
+    }
+    for (int i = 0; i < n * D; i++) {
+      double along = slopeKnown ? pressed.left * g0[size_t(firstNode[g]) * D + i] : all[i];
+      its[i] += along;
+      lagging[node[firstNode[g] + i / D] * D + i % D] += all[i] - along;
     }
   }
 
@@ -288,7 +412,7 @@ private:
   }
 
   // block += scale times sum over points of w N_a,J dP_iJ/dF_kL N_b,L.
-  template<int D, int H> void stiffness(const double *F, const double *S, double scale, double rate) {
+  template<int D, int H> void stiffness(const double *F, const double *S, const double *pressure, double scale, double rate) {
     typedef Stored<D, H> T;
     for (size_t g = 0; g + 1 < firstNode.size(); g++) {
       int n = firstNode[g + 1] - firstNode[g];
@@ -298,7 +422,7 @@ private:
         double f[9], s[6] = {}, A[T::F][T::F];
         whole<D, H>(F, q, f);
         for (int k = 0; k < T::C; k++) s[T::symmetric(k)] = S[k * nq + q];
-        laws::Moduli moduli(material[q], f, s);
+        laws::Moduli moduli(material[q], f, cell.empty() ? 0 : pressure[cell[g]], s);
         for (int k = 0; k < T::F; k++)
           for (int l = 0; l < T::F; l++) A[k][l] = scale * weight[q] * moduli(T::row(k), T::column(k), T::row(l), T::column(l));
         if (rate > 0) {
@@ -318,7 +442,33 @@ private:
           }
         }
       }
+      if (!cell.empty()) rankOne<D, H>(g, F, scale);
     }
+    slopeKnown = !cell.empty();
+  }
+
+  // g0, slope of an element, and block += slope g0 g0^T.
+  template<int D, int H> void rankOne(size_t g, const double *F, double scale) {
+    int n = firstNode[g + 1] - firstNode[g];
+    const laws::Material &m = material[point[firstPoint[g]]];
+    const double *N = &shape[firstShape[g]];
+    double *its = &g0[size_t(firstNode[g]) * D], theta = 0;
+    std::fill(its, its + n * D, 0.);
+    for (int p = firstPoint[g]; p < firstPoint[g + 1]; p++, N += n * Stored<D, H>::slots) {
+      double f[9], C[6], t[6];
+      whole<D, H>(F, point[p], f);
+      laws::rightCauchyGreen(f, C);
+      double j = laws::volume(m, C);
+      laws::volumeDirection(m, C, j, t);
+      theta += weight[point[p]] * j / cellWeight[g];
+      pulled<D, H>(point[p], n, N, f, t, its);
+    }
+    slope[g] = scale * laws::pressureSlope(m, theta) / cellWeight[g];
+    const int *to = &pairOf[firstPair[g]];
+    for (int a = 0; a < n; a++)
+      for (int b = 0; b <= a; b++, to++)
+        for (int i = 0; i < D; i++)
+          for (int k = 0; k < D; k++) block[size_t(*to) * D * D + i * D + k] += slope[g] * its[a * D + i] * its[b * D + k];
   }
 };
 

@@ -20,13 +20,13 @@ static bodies::Triplets entries(Sparse A) {
 
 static void addBodies() {
   add("kernelComponent", +[](long i, long dimensions, Sparse pick) { body.component(int(i), int(dimensions), entries(pick)); });
-  add("kernelMaterial", +[](Reals lambda, Reals mu, Reals eta, Reals zeta, Reals relaxing, Reals relaxTime, Reals dampingState,
+  add("kernelMaterial", +[](Reals lambda, Reals mu, Reals eta, Reals zeta, Reals relaxing, Reals relaxTime, Reals bulk, Reals dampingState,
                            Ints neohookean, Reals weight) {
     body.weight = copied<double>(weight);
     body.material.resize(weight.N());
     body.flowed = dampingState;
     for (int q = 0; q < weight.N(); q++)
-      body.material[q] = {lambda[q], mu[q], eta[q], zeta[q], relaxing[q], relaxTime[q], neohookean[q] == 1};
+      body.material[q] = {lambda[q], mu[q], eta[q], zeta[q], relaxing[q], relaxTime[q], bulk[q], neohookean[q] == 1};
   });
   add("kernelBodies", +[](Sparse gradient, Sparse mass, Reals free) {
     body.free = copied<double>(free);
@@ -38,8 +38,12 @@ static void addBodies() {
   add("kernelDeformation", +[](Reals F0, Reals C0, Reals F1, Reals C1, Reals jacobian1, Reals Fs, Reals Ss) {
     deformation = {F0, C0, F1, C1, jacobian1, Fs, Ss};
   });
-  add("kernelForces", +[](Reals d, Reals history, Reals deadLoad, double massScale, double rate, long where, bool breaks, Reals residual) {
-    return long(body.forces(d, history, deadLoad, massScale, rate, int(where), breaks, deformation, residual));
+  add("kernelVolume", +[](Ints cellOfPoint, Reals jacobian0, Reals carried, Reals star, Reals now, Reals dBase, Reals lag) {
+    body.cells(copied<int>(cellOfPoint), {jacobian0, carried, star, now, dBase, lag});
+  });
+  add("kernelForces", +[](Reals d, Reals history, Reals deadLoad, double massScale, double rate, long where, bool breaks, bool carries,
+                          Reals residual) {
+    return long(body.forces(d, history, deadLoad, massScale, rate, int(where), breaks, carries, deformation, residual));
   });
   add("kernelEnergy", +[](Reals C, Reals W) { body.energies(C, W); });
   add("kernelSmallestStretch", +[](Reals C, Reals stretch) { body.smallestStretches(C, stretch); });
@@ -48,8 +52,8 @@ static void addBodies() {
 }
 
 static void addFactor() {
-  add("kernelTangent", +[](Reals F, Reals S, double massScale, double stiffnessScale, double rate) {
-    body.tangent(F, S, massScale, stiffnessScale, rate);
+  add("kernelTangent", +[](Reals F, Reals S, Reals p, double massScale, double stiffnessScale, double rate) {
+    body.tangent(F, S, p, massScale, stiffnessScale, rate);
     factor.numbers(body);
   });
   add("kernelTangentProduct", +[](Reals x, Reals y) { factor.product(x, y); });

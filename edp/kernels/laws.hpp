@@ -12,6 +12,7 @@ struct Material {
   double lambda, mu;
   double eta, zeta;                        // viscosities [Pa s]
   double relaxing, relaxTime;              // G [Pa], tau [s] of relaxation.idp
+  double bulk;                             // kappa [Pa], the part of the law's lambda that acts in the mean of an element (volume.idp)
   bool neohookean;                         // or St. Venant-Kirchhoff
 };
 
@@ -129,6 +130,37 @@ inline void addDampingStress(const Material &m, const double *C0, const double *
     }
 }
 
+// What measures volume, j = J or tr E, and T = 2 dj/dC; of a step T : (C1 - C0)/2 = j1 - j0: volumeNow(), volumeOfStep() of volume.idp.
+inline double volume(const Material &m, const double *C) {
+  return m.neohookean ? std::sqrt(determinantOf(C)) : ((C[0] - 1) + (C[1] - 1) + (C[2] - 1)) / 2;
+}
+inline void volumeDirection(const Material &m, const double *C, double J, double *T) {
+  if (m.neohookean) cofactor(C, T);
+  for (int k = 0; k < 6; k++) T[k] = m.neohookean ? T[k] / J : k < 3;
+}
+inline void volumeDirection(const Material &m, const double *C0, const double *C1, double sumJ, double *T) {
+  double M[6], H[6], cofH[6];
+  for (int k = 0; k < 6; k++) { M[k] = 0.5 * (C0[k] + C1[k]);  H[k] = 0.5 * (C1[k] - C0[k]); }
+  cofactor(M, T);
+  cofactor(H, cofH);
+  for (int k = 0; k < 6; k++) T[k] = m.neohookean ? 2 * (T[k] + cofH[k] / 3) / sumJ : k < 3;
+}
+
+// Of the mean theta of that: energy U [J/m3], p = U', U'' [Pa]; p of a step, (U1 - U0)/(theta1 - theta0).
+inline double volumeEnergy(const Material &m, double theta) {
+  double e = m.neohookean ? std::log(theta) : theta;
+  return m.bulk / 2 * e * e;
+}
+inline double pressure(const Material &m, double theta) { return m.bulk * (m.neohookean ? std::log(theta) / theta : theta); }
+inline double pressureSlope(const Material &m, double theta) {
+  return m.bulk * (m.neohookean ? (1 - std::log(theta)) / (theta * theta) : 1);
+}
+inline double pressure(const Material &m, double theta0, double theta1) {
+  if (!m.neohookean) return m.bulk * (theta0 + theta1) / 2;
+  double x = (theta1 - theta0) / (theta1 + theta0);
+  return m.bulk * std::log(theta0 * theta1) * (1 + (x == 0 ? 0 : atanhRest(x) / x)) / (theta0 + theta1);
+}
+
 // W(C) [J/m3], as accurate for small strains as for large ones: neohookeanEnergy() of neohookean.idp.
 inline double energy(const Material &m, const double *C) {
   double M[6], H[6], S[6];
@@ -138,11 +170,15 @@ inline double energy(const Material &m, const double *C) {
   return workExcess(m, M, H) / 2 + contract(S, H);
 }
 
-// Cauchy's stress F S F^T / det F, and von Mises' of it.
-inline double cauchy(const Material &m, const double *F, double *sigma) {
-  double C[6], S[6], P[9], J = determinant(F), mises = 0;
+// Cauchy's stress F S F^T / det F, with the pressure p of the element, and von Mises' of it.
+inline double cauchy(const Material &m, const double *F, double p, double *sigma) {
+  double C[6], S[6], T[6], P[9], J = determinant(F), mises = 0;
   rightCauchyGreen(F, C);
   stress(m, C, S);
+  if (m.bulk > 0) {
+    volumeDirection(m, C, J, T);
+    for (int k = 0; k < 6; k++) S[k] += p * T[k];
+  }
   nominalStress(F, S, P);
   for (int i = 0; i < 3; i++)
     for (int k = i; k < 3; k++) sigma[sym[i][k]] = (P[3 * i] * F[3 * k] + P[3 * i + 1] * F[3 * k + 1] + P[3 * i + 2] * F[3 * k + 2]) / J;
@@ -166,7 +202,7 @@ inline double smallerInPlane(const double *C) {
 
 // The smallest eigenvalue of the acoustic tensor over mu, of waves in a plane with that trace and determinant J^2 of C: planeEllipticity() of svk.idp.
 inline double planeEllipticity(const Material &m, double trace, double J) {
-  double k = 1 + m.lambda / m.mu;
+  double k = 1 + (m.lambda + m.bulk) / m.mu;
   if (trace - (1 + k + 1 / (1 + k)) * J > 0)
     return (k - 1) / 2 * trace - k + (k + 2) * 2 * J * J / (trace + std::sqrt(std::max(0., trace * trace - 4 * J * J)));
   return (k + 1) * (k - 2) / (2 * k) * trace + 2 * (k + 1) / k * J - k;
@@ -174,9 +210,9 @@ inline double planeEllipticity(const Material &m, double trace, double J) {
 
 // That of all waves of the scene's motions: in the plane of the mesh, or (spatial) in any; svkEllipticity(), neohookeanEllipticity().
 inline double ellipticity(const Material &m, const double *C, bool spatial) {
-  double L[3], least = 1e300, k = 1 + m.lambda / m.mu;
+  double L[3], least = 1e300, k = 1 + (m.lambda + m.bulk) / m.mu;
   if (m.neohookean) {
-    double a = 1 + (1 - 0.5 * std::log(determinantOf(C))) * m.lambda / m.mu;
+    double a = 1 + (1 - 0.5 * std::log(determinantOf(C))) * (m.lambda + m.bulk) / m.mu;
     if (!(a < 0)) return 1;
     if (!spatial) return 1 + a / smallerInPlane(C);
     principal(C, L);
@@ -196,7 +232,8 @@ struct Moduli {
   double Q[9], B[6], D[6], l, n;
   const double *S;
 
-  Moduli(const Material &m, const double *F, const double *stress) : l(m.lambda), n(m.mu), S(stress) {
+  // p: the pressure of the element that is in S.
+  Moduli(const Material &m, const double *F, double p, const double *stress) : l(m.lambda), n(m.mu), S(stress) {
     for (int k = 0; k < 6; k++) B[k] = D[k] = k < 3;
     if (!m.neohookean) {                   // Q = F, B = F F^T, D = I
       for (int k = 0; k < 9; k++) Q[k] = F[k];
@@ -204,7 +241,9 @@ struct Moduli {
         for (int k = i; k < 3; k++) B[sym[i][k]] = F[3 * i] * F[3 * k] + F[3 * i + 1] * F[3 * k + 1] + F[3 * i + 2] * F[3 * k + 2];
       return;
     }
-    n = m.mu - m.lambda / 2 * std::log(inverted(F));
+    double det = inverted(F);
+    n = m.mu - m.lambda / 2 * std::log(det);
+    if (p != 0) { l += p * std::sqrt(det);  n -= p * std::sqrt(det); }   // p J (C^-1 C^-1 - ...)
   }
 
   // Of the stresses of addDampingStress(), without these themselves: viscousModuli() of damping.idp, and scale times relaxedModuli().
