@@ -70,7 +70,7 @@ class Solver:
                 write_json(where / "checkpoint.json", scene.asked)
         if told:
             told.at("mesh")
-        flags, used, scene_toml = prepare(scene, where, self.foreign)
+        flags, used, scene_toml = prepare(scene, where, self.foreign, self.scene)
         if told:
             told.at("set-up")
         flags = flags | {"out": where} | ({"restart": where / "checkpoint"} if goes_on else {})

@@ -64,10 +64,12 @@ class Assembly:
         (folder / "scene.dat").write_text(self.data)
 
 
-def prepare(scene: Scene, where: Path, foreign: bytes | None = None) -> tuple[dict[str, Value | Path], dict, str]:
+def prepare(scene: Scene, where: Path, foreign: bytes | None = None,
+            like: Scene | None = None) -> tuple[dict[str, Value | Path], dict, str]:
     """The flags of a run in the folder `where`, the scene as it will be used, and the text of its scene.toml, "" where the script writes
     it. Puts into the folder what the flags name: the mesh of all bodies and what the script reads of them; of one of the paper's scenes the
-    mesh, `foreign` or our own, of the sizes and the part of the body that its description says."""
+    mesh, `foreign` or our own, of the sizes and the part of the body that its description says, or that of the scene `like` it, which has
+    other sizes and steps alone."""
     file = where / scene.mesh_name
     if scene.bodies:
         if len(scene.bodies) == 1 and not scene.obstacles:
@@ -79,13 +81,13 @@ def prepare(scene: Scene, where: Path, foreign: bytes | None = None) -> tuple[di
         built.write(where)
         text = to_toml(built.used)
         return built.values | {"mesh": file, "bodies": where / "scene.dat"}, tomllib.loads(text), text
-    said = scene.description(foreign)
+    said = (like or scene).description(foreign)
     if not scene.meshed:
         return scene.values, said["used"], ""
     if foreign is not None:
         file.write_bytes(foreign)
     else:
-        sizes = (said["used"][name] for name in ("radius", "mesh_size", "contact_mesh_size"))
+        sizes = (scene.values[name] or said["used"][name] for name in ("radius", "mesh_size", "contact_mesh_size"))
         mesh.write(mesh.disc(*sizes, said["half"], said["touch_arc"]), file)
     return scene.values | {"mesh": file}, said["used"], ""
 
