@@ -11,7 +11,6 @@ from verification import verify
 
 from .. import __version__, scene
 from ..input import parameters
-from ..input.parameters import Value
 from ..output.results import read_frame, read_json, read_scene
 from ..places import PACKAGE
 from ..run import code_hash
@@ -46,8 +45,8 @@ def page(findings: list[tuple[str, str, Finding]], more: str = "") -> str:
     shown = {}
     sections = "\n".join(_section(k, *each, shown) for k, each in enumerate(findings))
     return (PACKAGE / "paper/page.html").read_text("utf-8").format(
-        counts=counts, contents=contents, rows=rows, sections=sections, more=more, now=datetime.now(), version=__version__, code=code_hash(),
-        back=BACK)
+        counts=counts, contents=contents, rows=rows, sections=sections, more=more, now=datetime.now(), version=__version__,
+        code=code_hash(), back=BACK)
 
 
 def _section(k: int, item: str, text: str, found: Finding, shown: dict[Path, int]) -> str:
@@ -126,13 +125,10 @@ def _provenance(folders: list[Path]) -> str:
     warned = study.warned("; ".join(each.get("warnings", [])) for each in records)
     lines = [f"runs          {len(scenes)}", f"warnings      {warned or 'none'}",
              "parameters    " + ", ".join(f"{name} = {value}" for name, value in common.items())]
-    lines += [f"varied        {name}: {_shown(values)}" for name, values in varied.items()]
+    lines += [f"varied        {name}: " + (", ".join(map(str, values)) if len(values) <= 8 else
+                                          f"{len(values)} values from {values[0]} to {values[-1]}") for name, values in varied.items()]
     for name, words in (("git", "commit"), ("code", "code sha256"), ("freefem", "FreeFem++"), ("gmsh", "gmsh")):
         lines.append(f"{words:<14}" + ", ".join(sorted({str(each.get(name)) for each in made})))
     meshes = sorted({str(each.get("mesh")) for each in made})
     lines.append("mesh sha256   " + (", ".join(meshes) if len(meshes) <= 4 else f"{len(meshes)} meshes, in each run's summary.json"))
     return f"<details><summary>parameters and provenance</summary><pre>{escape(chr(10).join(lines))}</pre></details>"
-
-
-def _shown(values: list[Value]) -> str:
-    return ", ".join(map(str, values)) if len(values) <= 8 else f"{len(values)} values from {values[0]} to {values[-1]}"

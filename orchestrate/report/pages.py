@@ -1,5 +1,5 @@
-"""What pages say that the scripts say of themselves, between marks: the tables of docs/results.md and docs/warnings.md, and that of equations
-in README.md and docs/method.md."""
+"""What pages say that the scripts say of themselves, between marks: the tables of docs/results.md and docs/warnings.md, and that of
+equations in README.md and docs/method.md."""
 
 import argparse
 import re
@@ -43,8 +43,8 @@ def site(folder: Path) -> None:
 
 def pages() -> dict[Path, str]:
     """The text of every page by its file: what stands between the marks of a part is made anew."""
-    parts = {"docs/results.md": ("columns", results()), "docs/warnings.md": ("warnings", warnings()), "README.md": ("equations", equations()),
-             "docs/method.md": ("equations", equations("../"))}
+    parts = {"docs/results.md": ("columns", results()), "docs/warnings.md": ("warnings", warnings()),
+             "README.md": ("equations", equations()), "docs/method.md": ("equations", equations("../"))}
     made = {}
     for name, (part, text) in parts.items():
         begin, end = f"<!-- {part} -->\n", f"<!-- end of {part} -->\n"
@@ -76,9 +76,10 @@ def warnings() -> str:
             sentence = _literal(call[1])
             rows.setdefault(sentence.partition(":")[0], []).append(sentence.partition(": ")[2])
     found = "".join(f"| {name} | {cell(' / '.join(dict.fromkeys(words)))} |\n" for name, words in sorted(rows.items()) if words != [""])
-    return "| warning | says |\n|---|---|\n" + found + ("| estimated errors | of an answer above what was asked, of the exact contact time and the peak force above "
-                                "twice that (`orchestrate/output/estimate.py`) |\n| touches | instead of these, where the two runs of an "
-                                "estimate saw different numbers of intervals of contact |\n")
+    return ("| warning | says |\n|---|---|\n" + found
+            + "| estimated errors | of an answer above what was asked, of the exact contact time and the peak force above twice that "
+              "(`orchestrate/output/estimate.py`) |\n"
+            + "| touches | instead of these, where the two runs of an estimate saw different numbers of intervals of contact |\n")
 
 
 def _literal(expression: str) -> str:
