@@ -145,9 +145,12 @@ def end_after(limit: float) -> None:
 
 
 def there(folder: Path, wanted: scene.Scene, estimate: bool = False) -> dict | None:
-    """The outcome that is in `folder` already: a finished run, or a failure that FreeFem++ would only repeat."""
-    if failed := _failed_before(wanted, folder):
-        return _row(failed["exit_code"], str(failed.get("message")), True, failed)
+    """The outcome that is in `folder` already: a finished run, or a failure of the same scene and code, which would be repeated."""
+    for place in (folder, folder.with_name(folder.name + ".failed")):
+        failed = read_json(place / "failure.json")
+        made = failed.get("provenance") or {}
+        if failed.get("exit_code") in (11, 12) and made.get("code") == run.code_hash() and made.get("asked") == wanted.asked:
+            return _row(failed["exit_code"], str(failed.get("message")), True, failed)
     try:
         result = run.reusable(wanted, folder, estimate=estimate)
     except Failure:                                      # will be said by the run
@@ -177,16 +180,6 @@ def _row(code: int, message: str, reused: bool, summary: dict) -> dict:
         summary = summary | {"estimated_error": estimates.largest(estimated)}
     numbers = {name: value for name, value in summary.items() if type(value) in (int, float) and name != "exit_code"}
     return {"exit": code, "message": message, "warnings": "; ".join(summary.get("warnings", [])), "reused": reused} | numbers
-
-
-def _failed_before(wanted: scene.Scene, folder: Path) -> dict | None:
-    """The record of the same scene's failure with the same code: FreeFem++ would say the same again."""
-    for place in (folder, folder.with_name(folder.name + ".failed")):
-        record = read_json(place / "failure.json")
-        if record.get("exit_code") in (11, 12) and (record.get("provenance") or {}).get("code") == run.code_hash():
-            if record["provenance"].get("asked") == wanted.asked:
-                return record
-    return None
 
 
 def warned(warnings: Iterable[str]) -> str:
