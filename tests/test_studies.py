@@ -10,6 +10,7 @@ import pytest
 
 from orchestrate import run
 from orchestrate.output import results
+from verification import commands
 from verification.measurements import pairing_comparison, stress
 from orchestrate.sweeps import study
 from test_cli import is_alive, start, wait_for
@@ -161,6 +162,6 @@ def test_pairs_are_held_against_closest_points_of_the_same_penalty(monkeypatch, 
 
 def test_pages_say_what_measured_them(tmp_path):
     """At the top of a page stand the command as it was given, the commit, the day and the machine, then the verdict."""
-    study.page(tmp_path / "page.md", "A title", ["promise", "--scenes", "3"], "text\n\nverdict")
+    commands.page(tmp_path / "page.md", "A title", ["promise", "--scenes", "3"], "text\n\nverdict")
     title, words, _, verdict, _, text = (tmp_path / "page.md").read_text().splitlines()
     assert re.fullmatch(r"Written by `\S.*promise --scenes 3` at commit \w+(-dirty)?, \d{4}-\d\d-\d\d, on \d+ cores, .+\.", words) and (title, verdict, text) == ("# A title", "verdict", "text")

@@ -24,6 +24,7 @@ from orchestrate.report.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE,
 from orchestrate.report.literature import REFERENCE
 from orchestrate.sweeps import study
 
+from . import commands
 from .case import Case, Row
 from .cases import CASES
 
@@ -34,7 +35,7 @@ SHOWN = 1e-6                # smaller errors are drawn there
 
 def main(argv: list[str]) -> int:
     """Runs the cases, prints the table, writes verify.csv and the figures; 0 only if all pass."""
-    parser = study.command("verify", __doc__)
+    parser = commands.command("verify", __doc__)
     parser.add_argument("--cores", metavar="N", type=int, default=study.CORES, help="this many cases at a time (default: %(default)s)")
     parser.add_argument("--force", action="store_true", help="run again what the same code has left")
     options = parser.parse_args(argv)

@@ -28,7 +28,8 @@ def build(command: str, version: str, environment: Mapping[str, str]) -> bool:
     plugin = BUILT / f"kernels-{hashlib.sha256(chr(0).join(made_of).encode()).hexdigest()[:12]}.so"
     # FreeFEM puts its own folders before any name: from each of them up to the root
     way = "../" * 40 + str(plugin.with_suffix("")).lstrip("/")
-    loading = f'load "{way}"\nmacro kernelsBuilt(){_interface()}//\n'
+    interface = re.search(r"IFMACRO\(kernelsBuilt,(\d+)\)", (ROOT / "edp/kernels.idp").read_text())[1]    # the calls that the scripts know
+    loading = f'load "{way}"\nmacro kernelsBuilt(){interface}//\n'
     if _built(plugin, loading):
         return True
     try:
@@ -42,11 +43,6 @@ def build(command: str, version: str, environment: Mapping[str, str]) -> bool:
         with contextlib.suppress(OSError):
             (BUILT / "null").unlink()              # it loads what is made of other sources
         return False
-
-
-def _interface() -> str:
-    """The number of the calls that the scripts know."""
-    return re.search(r"IFMACRO\(kernelsBuilt,(\d+)\)", (ROOT / "edp/kernels.idp").read_text())[1]
 
 
 def _built(plugin: Path, loading: str) -> bool:

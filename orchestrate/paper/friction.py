@@ -158,7 +158,8 @@ def discontinuous(results: Results, law: str) -> tuple[str, str, str]:
     the plane fall by more. Agrees where it jumps, and by at least half of what μ_e exceeds μ_d by more than with equal coefficients; partly
     where it jumps with equal coefficients alike; not where it does not."""
     jump, control = ([_changes(history) for history in impact(results, law, static, STEPS)] for static in (STATIC, DYNAMIC))
-    (along, across), (ratio, _) = (_orders(*each) for each in (jump, control))
+    # the powers of the step with which they go
+    (along, across), (ratio, _) = (np.log(np.divide(*each)) / np.log(STEP_RATIO) for each in (jump, control))
     jumps, more = along < 0.5 < across, min(mine[0] / other[0] for mine, other in zip(jump, control)) > (1 + STATIC / DYNAMIC) / 2
     said = "" if more or not jumps else " Equal coefficients, where nothing changes suddenly but the direction, do the same."
     return graded(jumps and more, jumps), (
@@ -172,11 +173,6 @@ def _changes(history: History) -> tuple[float, float]:
     steps, mass = touching(history), history["momentum_y"][0] / history["vy"][0]
     return tuple(float(np.sort(np.abs(np.diff(history[name][steps])))[-5:].mean() / abs(mass))
                  for name in ("friction_force", "normal_force"))
-
-
-def _orders(coarse: tuple[float, float], fine: tuple[float, float]) -> list[float]:
-    """The power of the step with which these changes go."""
-    return [float(np.log(a / b) / np.log(STEP_RATIO)) for a, b in zip(coarse, fine)]
 
 
 def load_changes(history: History) -> float:

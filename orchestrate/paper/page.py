@@ -11,8 +11,8 @@ from verification import verify
 
 from .. import __version__, scene
 from ..input import parameters
-from ..input.parameters import Value
 from ..output.results import read_frame, read_json, read_scene
+from ..places import PACKAGE
 from ..run import code_hash
 from ..sweeps import study
 from ..sweeps import sweep
@@ -44,40 +44,9 @@ def page(findings: list[tuple[str, str, Finding]], more: str = "") -> str:
                      for k, (item, text, found) in enumerate(findings))
     shown = {}
     sections = "\n".join(_section(k, *each, shown) for k, each in enumerate(findings))
-    return f"""<!DOCTYPE html>
-<html lang="en"><head><meta charset="utf-8"><title>The paper's statements and our numbers</title>
-<style>
-body {{ font: 15px/1.45 system-ui, sans-serif; color: #222; max-width: 60em; margin: 2em auto; padding: 0 1em }}
-table {{ border-collapse: collapse; width: 100% }} td, th {{ border-bottom: 1px solid #ddd; padding: .35em .6em; text-align: left; \
-vertical-align: top }}
-td a {{ color: inherit }} img {{ max-width: 100% }} h2 {{ margin-top: 2.2em; font-size: 1.1em }}
-h3 {{ margin-top: 1.6em; font-size: 1em }} figure {{ margin: 1em 0 }} figcaption {{ font-size: .85em; color: #555 }} nav {{ font-size: \
-.9em }}
-details {{ font-size: .85em }} pre {{ white-space: pre-wrap }}
-</style></head><body>
-<h1 id="top">The paper's statements and our numbers</h1>
-<p>Buezas, Rosales and Filipich, <i>Nonlinear deformable bodies with unilateral contact including friction</i>. The paper states neither \
-ν (only
-“ν → 0.5”) nor the contact stiffness, ε, mesh or step; a number that it prints is taken as known to half a unit of its last digit.
-Error bars of ours are what refining mesh and step changes. Verdicts follow from the numbers by fixed rules
-(orchestrate/paper/*.py): a statement on St. Venant–Kirchhoff is decided by runs with
-that law; where it loses ellipticity in them “agrees” becomes “partly”, as then the mesh decides, but not of energy and momentum, which \
-every
-step keeps on any mesh; “not decided” means that the effect is smaller than the errors. “As the paper may have run it”: on a coarse mesh \
-of linear triangles.</p>
-<p><b>{counts}</b></p>
-<nav><p>Contents</p><ol>
-{contents}
-</ol></nav>
-<h2 id="all">All verdicts</h2>
-<table><tr><th>where</th><th>the paper</th><th>here</th><th>verdict</th></tr>
-{rows}
-</table>
-{sections}
-{more}
-<p>Made {datetime.now():%Y-%m-%d %H:%M} by ffimpact {__version__}, code sha256 {code_hash()}. {BACK}</p>
-</body></html>
-"""
+    return (PACKAGE / "paper/page.html").read_text("utf-8").format(
+        counts=counts, contents=contents, rows=rows, sections=sections, more=more, now=datetime.now(), version=__version__,
+        code=code_hash(), back=BACK)
 
 
 def _section(k: int, item: str, text: str, found: Finding, shown: dict[Path, int]) -> str:
@@ -156,13 +125,10 @@ def _provenance(folders: list[Path]) -> str:
     warned = study.warned("; ".join(each.get("warnings", [])) for each in records)
     lines = [f"runs          {len(scenes)}", f"warnings      {warned or 'none'}",
              "parameters    " + ", ".join(f"{name} = {value}" for name, value in common.items())]
-    lines += [f"varied        {name}: {_shown(values)}" for name, values in varied.items()]
+    lines += [f"varied        {name}: " + (", ".join(map(str, values)) if len(values) <= 8 else
+                                          f"{len(values)} values from {values[0]} to {values[-1]}") for name, values in varied.items()]
     for name, words in (("git", "commit"), ("code", "code sha256"), ("freefem", "FreeFem++"), ("gmsh", "gmsh")):
         lines.append(f"{words:<14}" + ", ".join(sorted({str(each.get(name)) for each in made})))
     meshes = sorted({str(each.get("mesh")) for each in made})
     lines.append("mesh sha256   " + (", ".join(meshes) if len(meshes) <= 4 else f"{len(meshes)} meshes, in each run's summary.json"))
     return f"<details><summary>parameters and provenance</summary><pre>{escape(chr(10).join(lines))}</pre></details>"
-
-
-def _shown(values: list[Value]) -> str:
-    return ", ".join(map(str, values)) if len(values) <= 8 else f"{len(values)} values from {values[0]} to {values[-1]}"

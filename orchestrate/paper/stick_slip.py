@@ -2,6 +2,7 @@
 contact with its energy constant, and stay 4.5 ms, as the paper tells (section 3.1)? It states none of the three. Its angle pi/3 is 60
 degrees from the plane, as it calls normal incidence pi/2; 30 degrees, pi/3 from the normal, is searched as well."""
 
+import argparse
 import itertools
 from pathlib import Path
 
@@ -13,7 +14,9 @@ from matplotlib.patches import Rectangle
 
 from ..failure import Unreadable
 from ..report.figures import LAWS, SMALL, STYLE, save
+from ..output.folder import result_folder
 from ..output.results import read_history
+from ..places import COMMAND, RESULTS, shown
 from ..sweeps import study
 
 AXES = {"angle": (60.0, 30.0), "slip_velocity": (0.03, 0.3, 1.0, 3.0), "penalty": (1e8, 1e9, 1e10), "nu": (0.3, 0.4, 0.45)}
@@ -29,10 +32,12 @@ THIRDS = ("first", "second", "last")
 
 def main(argv: list[str]) -> int:
     """Runs the grid, prints the share of sliding in each third of the contact, draws the map; 0 whatever is found."""
-    parser = study.command("stick-slip", __doc__)
+    parser = argparse.ArgumentParser(prog=f"{COMMAND} stick-slip", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "stick-slip", help="the result folder")
     parser.add_argument("--quick", action="store_true", help="a corner of the grid")
     options = parser.parse_args(argv)
-    out = options.out
+    out = result_folder(options.out)
     axes = {name: values[-2:] for name, values in AXES.items()} if options.quick else AXES
     points = grid(axes)
     rows = study.study(points, out, BASE, LIMIT, SCENE)
@@ -41,7 +46,9 @@ def main(argv: list[str]) -> int:
     rows["quiet"] = rows.work_last <= QUIET
     rows["time"] = (rows.contact_time / PAPER[0] - 1).abs() <= PAPER[1]
     draw(rows, axes, out / "stick-slip.png")
-    return study.finish(options, rows, report(rows) + "\n", True, files="{csv,png}")
+    study.save(rows, out / "stick-slip.csv")
+    print(f"{report(rows)}\n\n{shown(out)}/stick-slip.{{csv,png}}")
+    return 0
 
 
 def grid(axes: dict[str, tuple[float, ...]]) -> list[study.Point]:

@@ -5,6 +5,7 @@ A map is a sweep over nu and k, for those that lose ellipticity on several coars
 logarithm of k. Runs with det F <= 0 are no answers.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import combinations, product
 
@@ -127,14 +128,14 @@ def at_once(results: Results) -> tuple[str, str]:
     last digit, within the error bar of the runs, or, on coarse meshes, between them. Agrees where some (ν, k) meets all three with
     ellipticity kept; partly where one does whatever is lost; else not."""
     whole, sound = ({angle: _joint(results, angle, kept) for angle in (ANGLE, OTHER)} for kept in (False, True))
-    met, kept = ({angle: {each.nu: each.met for each in maps if each.met} for angle, maps in found.items()} for found in (whole, sound))
+    met, kept = ({angle: _meeting(maps) for angle, maps in found.items()} for found in (whole, sound))
     words = []
     for angle, maps in whole.items():
         nearest = min(maps, key=lambda each: each.miss, default=None)
         words.append(f"oblique at {angle:g}°: " + (f"all three for {_each(met[angle])}" if met[angle] else "no ν and k for all three") + (
             f"; nearest ν = {nearest.nu:g}, k = {nearest.k:.2g} Pa/m: {', '.join(nearest.times)}, off by up to {100 * nearest.miss:.1f} %"
             if nearest else ""))
-    each = {name: _alone(results, name, ANGLE) for name in MAPS}
+    each = {name: _meeting(_joint(results, ANGLE, False, [name])) for name in MAPS}
     alone = ". ".join(f"{name}: {_each(found) or 'nowhere'}" for name, found in each.items())
     pairs = ". ".join(f"{first} and {second}: {_each(_common(each[first], each[second])) or 'nowhere'}"
                       for first, second in combinations(MAPS, 2))
@@ -154,9 +155,9 @@ class Together:
     times: list[str]
 
 
-def _joint(results: Results, angle: float, kept: bool) -> list[Together]:
-    """All maps at once, over the k that they share; kept: from runs alone that keep ellipticity."""
-    maps = {name: _between(results, name, angle, kept) for name in MAPS}
+def _joint(results: Results, angle: float, kept: bool, names: Iterable[str] = MAPS) -> list[Together]:
+    """The maps of these numbers at once, over the k that they share; kept: from runs alone that keep ellipticity."""
+    maps = {name: _between(results, name, angle, kept) for name in names}
     found = []
     for nu in sorted(set.intersection(*(set(each) for each in maps.values()))):
         low, high = max(each[nu].index[0] for each in maps.values()), min(each[nu].index[-1] for each in maps.values())
@@ -170,13 +171,9 @@ def _joint(results: Results, angle: float, kept: bool) -> list[Together]:
     return found
 
 
-def _alone(results: Results, name: str, angle: float) -> dict[float, Ranges]:
-    """For each ν that meets a number of the paper, whatever is lost, the ranges of k that do."""
-    found = {}
-    for nu, each in _between(results, name, angle, False).items():
-        k = np.geomspace(each.index[0], each.index[-1], FINE)
-        found[nu] = sweep_figures.ranges(k, _miss(name, *_bounds(k, each)) <= 0)
-    return {nu: ranges for nu, ranges in found.items() if ranges}
+def _meeting(maps: list[Together]) -> dict[float, Ranges]:
+    """For each ν that meets the numbers, the ranges of k that do."""
+    return {each.nu: each.met for each in maps if each.met}
 
 
 def _common(one: dict[float, Ranges], other: dict[float, Ranges]) -> dict[float, Ranges]:

@@ -224,13 +224,10 @@ def used_tables(scene: Scene, sizes: list[Sizes | None], values: dict[str, Value
     contact = {key: values[key] for key in scene.contact}
     contact |= {SELF_CONTACT.name: scene.given.get("contact", {}).get(SELF_CONTACT.name, SELF_CONTACT.default)}
     contact |= {"pair": [{"bodies": names(pair)} | own for pair, own in zip(scene.pairs, pairs)]}
-    top = {"title": scene.title, "script": scene.script,
-           "dimension": scene.dimension.name} | _symmetry(scene) | {key: values[key] for key in scene.values}
-    return top | {"body": bodies, "obstacle": obstacles, "contact": contact}
-
-
-def _symmetry(scene: Scene) -> dict[str, str]:
-    return {"symmetry": next(word for word, count in COPIES.items() if count == copies(scene))} if scene.dimension is SOLID else {}
+    top = {"title": scene.title, "script": scene.script, "dimension": scene.dimension.name}
+    if scene.dimension is SOLID:
+        top["symmetry"] = next(word for word, count in COPIES.items() if count == copies(scene))
+    return top | {key: values[key] for key in scene.values} | {"body": bodies, "obstacle": obstacles, "contact": contact}
 
 
 def _with_viscosity(k: int, ask: Asker) -> Body:
@@ -373,8 +370,4 @@ def data_file(scene: Scene, disc: dict[str, Value], centres: np.ndarray, rounds:
     lines += [("pairs", len(pairs)), *((pair.first, pair.second, *own.values()) for pair, own in zip(scene.pairs, pairs))]
     damped = [(k, *(getattr(body, name) for name in DAMPING)) for k, body in enumerate(scene.bodies) if body.damped]
     lines += [("damping", len(damped)), *damped] if damped else []
-    return "".join(" ".join(map(_token, line)) + "\n" for line in lines)
-
-
-def _token(value) -> str:
-    return repr(float(value)) if isinstance(value, float) else str(value)
+    return "".join(" ".join(repr(float(one)) if isinstance(one, float) else str(one) for one in line) + "\n" for line in lines)

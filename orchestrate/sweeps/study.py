@@ -1,18 +1,13 @@
 """Studies: many runs of one scene, one FreeFem++ a core at most; whatever a run comes to becomes a row of a table."""
 
-import argparse
 import hashlib
 import multiprocessing
 import os
-import platform
-import re
-import shlex
 import signal
 import time
 from collections import Counter, deque
 from collections.abc import Callable, Hashable, Iterable, Iterator
 from contextlib import contextmanager
-from datetime import date
 from functools import partial
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
@@ -25,8 +20,6 @@ from ..freefem import freefem
 from ..output import estimate as estimates
 from ..failure import BadInput, Busy, Failure, TooLong, Unreadable
 from ..input.parameters import Value
-from ..output.folder import result_folder
-from ..places import COMMAND, RESULTS, shown
 from ..progress import Line, forward
 from ..output.results import read_json
 
@@ -152,9 +145,12 @@ def end_after(limit: float) -> None:
 
 
 def there(folder: Path, wanted: scene.Scene, estimate: bool = False) -> dict | None:
-    """The outcome that is in `folder` already: a finished run, or a failure that FreeFem++ would only repeat."""
-    if failed := _failed_before(wanted, folder):
-        return _row(failed["exit_code"], str(failed.get("message")), True, failed)
+    """The outcome that is in `folder` already: a finished run, or a failure of the same scene and code, which would be repeated."""
+    for place in (folder, folder.with_name(folder.name + ".failed")):
+        failed = read_json(place / "failure.json")
+        made = failed.get("provenance") or {}
+        if failed.get("exit_code") in (11, 12) and made.get("code") == run.code_hash() and made.get("asked") == wanted.asked:
+            return _row(failed["exit_code"], str(failed.get("message")), True, failed)
     try:
         result = run.reusable(wanted, folder, estimate=estimate)
     except Failure:                                      # will be said by the run
@@ -186,37 +182,6 @@ def _row(code: int, message: str, reused: bool, summary: dict) -> dict:
     return {"exit": code, "message": message, "warnings": "; ".join(summary.get("warnings", [])), "reused": reused} | numbers
 
 
-def _failed_before(wanted: scene.Scene, folder: Path) -> dict | None:
-    """The record of the same scene's failure with the same code: FreeFem++ would say the same again."""
-    for place in (folder, folder.with_name(folder.name + ".failed")):
-        record = read_json(place / "failure.json")
-        if record.get("exit_code") in (11, 12) and (record.get("provenance") or {}).get("code") == run.code_hash():
-            if record["provenance"].get("asked") == wanted.asked:
-                return record
-    return None
-
-
-def command(name: str, doc: str, page: bool = False, folder: str = "") -> argparse.ArgumentParser:
-    """The command line of a study: --out, its result folder, checked; --page where what it prints may become a page. For finish()."""
-    parser = argparse.ArgumentParser(prog=f"{COMMAND} {name}", description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", metavar="DIR", type=lambda text: result_folder(Path(text)), default=str(RESULTS / (folder or name)),
-                        help="the result folder")
-    if page:
-        parser.add_argument("--page", metavar="FILE", type=Path, help="also write what is printed as a page")
-    parser.set_defaults(command=name, table=folder or name)
-    return parser
-
-
-def finish(options: argparse.Namespace, rows: pd.DataFrame, text: str, good: bool, argv: list[str] | None = None, title: str = "",
-           files: str = "csv") -> int:
-    """The end of a study: saves its table, prints what it says and where its `files` are, and writes the page where one is asked for; the
-    exit code."""
-    save(rows, options.out / f"{options.table}.csv")
-    print(f"{text}\n{shown(options.out)}/{options.table}.{files}")
-    page(getattr(options, "page", None), title, [options.command, *(argv or [])], text)
-    return 0 if good else 1
-
-
 def warned(warnings: Iterable[str]) -> str:
     """How many runs have which warning, from the warnings of each, joined by "; "; empty where none has any."""
     every = list(warnings)
@@ -241,21 +206,6 @@ def save(frame: pd.DataFrame, path: Path) -> None:
     """Writes a tidy CSV, a row a run."""
     with complete(path) as part:
         frame.to_csv(part, index=False)
-
-
-def page(path: Path | None, title: str, command: list[str], text: str) -> None:
-    """Writes a report as a page of docs/, where a path is given, behind what measured it and its last paragraph, the verdict."""
-    if path:
-        report, _, verdict = text.rpartition("\n\n")
-        with complete(path) as part:
-            part.write_text(f"# {title}\n{measured(command)}\n\n{verdict}\n\n{report}\n")
-
-
-def measured(command: list[str]) -> str:
-    """Which command measured what follows, its words behind `python -m orchestrate`; at which commit, when, and on which machine."""
-    model = re.search(r"^model name\s*: (.*)", Path("/proc/cpuinfo").read_text(), re.MULTILINE)
-    return (f"Written by `{COMMAND} {shlex.join(command)}` at commit {run.commit(10)}, {date.today()}, on {CORES} cores, "
-            f"{model[1] if model else platform.machine()}.")
 
 
 @contextmanager

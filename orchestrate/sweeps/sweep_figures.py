@@ -189,9 +189,10 @@ def _lines(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
             axes.errorbar(group[x][there], _factor(y) * group[y][there], None if np.isnan(errors).all() else errors, color=colour,
                           marker=marker, markersize=3, linewidth=1.1, elinewidth=0.9, capsize=1.5, label=words or None)
             if not there.all():
+                why = "broke down (det F ≤ 0), no value" if (group.exit[~there] == 12).all() else "failed, no value"
                 axes.plot(group[x][~there], np.full((~there).sum(), -0.03 - 0.03 * k), marker="x", linestyle="", markersize=4, color=colour,
                           transform=axes.get_xaxis_transform(), clip_on=False,
-                          label=f"{words}: {_why(group.exit[~there])}".removeprefix(": "))
+                          label=f"{words}: {why}".removeprefix(": "))
                 axes.tick_params(axis="x", pad=3.5 + 9 * (k + 1))     # its row of marks is below the axis, where no value can be
         _published(axes, sweep, x, y)
         axes.set_ylabel(label(y, sweep.figure["per"]))
@@ -208,11 +209,6 @@ def _lines(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
     if handles:
         grid[0, 0].legend(*zip(*handles))
     return figure
-
-
-def _why(codes: pd.Series) -> str:
-    """Why runs have no value, by their exit codes."""
-    return "broke down (det F ≤ 0), no value" if (codes == 12).all() else "failed, no value"
 
 
 def _published(axes: plt.Axes, sweep, x: str, y: str) -> None:

@@ -20,6 +20,7 @@ from orchestrate.report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, P
 from orchestrate.sweeps import study
 from orchestrate.sweeps.sweep_figures import distance, force
 
+from .. import commands
 from . import peers
 
 LEVELS = (5.0, 1.0, 0.1)    # % of error
@@ -85,7 +86,7 @@ CASES = {
 
 def main(argv: list[str]) -> int:
     """Runs all settings one after the other, writes bench.csv, a figure a case and bench.md; 0 if the references are sound."""
-    parser = study.command("bench", __doc__)
+    parser = commands.command("bench", __doc__)
     parser.add_argument("cases", metavar="CASE", nargs="*", default=list(CASES), help=f"(default: {' '.join(CASES)})")
     parser.add_argument("--quick", action="store_true",
                         help="the first case, coarse settings only, a coarser reference; under three minutes")
@@ -101,7 +102,7 @@ def main(argv: list[str]) -> int:
         tables.append(rows)
         pages.append(page(name, rows, bars))
     study.save(pd.concat(tables), out / "bench.csv")
-    text = f"# Run time against error\n{study.measured(['bench', *argv])}\n\n{HEAD}" + "\n\n".join(pages) + "\n"
+    text = f"# Run time against error\n{commands.measured(['bench', *argv])}\n\n{HEAD}" + "\n\n".join(pages) + "\n"
     with study.complete(out / "bench.md") as part:
         part.write_text(text)
     print(text + f"\n{shown(out)}/bench.csv, bench.md, " + ", ".join(f"{name}.png" for name in cases))

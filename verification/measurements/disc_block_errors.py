@@ -12,6 +12,7 @@ from orchestrate.output.results import read_scene
 from orchestrate.progress import in_turn
 from orchestrate.sweeps import study
 
+from .. import commands
 from . import peers
 
 CASES = [{"law": law, "nu": nu, "penalty": k} for law, nu, k in itertools.product(("svk", "neohookean"), (0.3, 0.45), (1e9, 1e10))]
@@ -38,7 +39,7 @@ REFINEMENTS = (0.35, 0.7)
 
 def main(argv: list[str]) -> int:
     """Prints answers, errors and checks, writes disc-block-errors.csv and disc-block-peers.csv; 0 if every run fulfils every check."""
-    parser = study.command("disc-block-errors", __doc__, page=True)
+    parser = commands.command("disc-block-errors", __doc__, page=True)
     parser.add_argument("--cases", metavar="N", type=whole, default=len(CASES), help="the first N of them")
     parser.add_argument("--accuracy", metavar="A", type=float, nargs="+", default=ACCURACIES,
                         help="of the runs, the most accurate last (default: 0.02 0.005)")
@@ -47,7 +48,7 @@ def main(argv: list[str]) -> int:
     table = compare(cases, tuple(options.accuracy), out)
     others, reason = ask_peer([case for case in PEER_CASES if case in cases])
     study.save(others, out / "disc-block-peers.csv")
-    return study.finish(options, table, report(table, others, reason), not violations(table), argv,
+    return commands.finish(options, table, report(table, others, reason), not violations(table), argv,
                         "A disc on a free block, with error bars")
 
 

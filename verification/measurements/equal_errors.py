@@ -11,6 +11,7 @@ from orchestrate.places import shown
 from orchestrate.progress import in_turn
 from orchestrate.sweeps import study
 
+from .. import commands
 from . import peers
 
 LEVELS = (1.0, 0.5, 0.1)    # % of error
@@ -104,7 +105,7 @@ the block NGSolve's own ContactBoundary."""
 
 def main(argv: list[str]) -> int:
     """Runs all cases, writes equal-errors.csv and the page; 0 where all references agree, 1 where they do not or there is no peer."""
-    parser = study.command("equal-errors", __doc__, page=True)
+    parser = commands.command("equal-errors", __doc__, page=True)
     parser.add_argument("cases", metavar="CASE", nargs="*", default=list(CASES), help=f"(default: {' '.join(CASES)})")
     options = parser.parse_args(argv)
     for name in options.cases:
@@ -119,7 +120,7 @@ def main(argv: list[str]) -> int:
     study.save(pd.concat(tables), options.out / "equal-errors.csv")
     report = "\n\n".join([HEAD.format(repeats=REPEATS, long=LONG), *texts, verdict(agreed, ratios)])
     print(report + f"\n\n{shown(options.out)}/equal-errors.csv")
-    study.page(options.page, "Run time at equal errors", ["equal-errors", *argv], report)
+    commands.page(options.page, "Run time at equal errors", ["equal-errors", *argv], report)
     return 0 if all(agreed.values()) else 1
 
 

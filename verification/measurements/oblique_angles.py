@@ -22,7 +22,7 @@ from orchestrate.progress import in_turn
 from orchestrate.report.figures import BLACK, BLUE, DASHED, GREEN, ORANGE, STYLE, save
 from orchestrate.sweeps import study
 
-from .. import hertz
+from .. import commands, hertz
 from ..oblique_ball import DENSITY, MASS, NU, RADIUS, RIGID, YOUNG, slides_throughout, springs
 from ..rigid_disc import STIFF
 
@@ -50,7 +50,7 @@ FORMATS = {"body": "", "kind": "", "angle": "g", "psi_1": ".3f", "e": ".4f", "al
 
 def main(argv: list[str]) -> int:
     """Runs what is not there yet, prints the table, writes oblique-angles.csv and .png; 0 if all that theory holds for agrees with it."""
-    parser = study.command("oblique-angles", __doc__, page=True)
+    parser = commands.command("oblique-angles", __doc__, page=True)
     usual = ",".join(f"{angle:g}" for angle in ANGLES)
     parser.add_argument("--angles", metavar="A,B,...", default=usual, help="of incidence, degrees from the plane (default: %(default)s)")
     parser.add_argument("--friction", metavar="MU", default=f"{FRICTION:g}", help="static and dynamic coefficient (default: %(default)s)")
@@ -65,7 +65,7 @@ def main(argv: list[str]) -> int:
     cases = in_turn("oblique-angles", itertools.product(bodies, kinds))
     table = judge(pd.concat([impacts(body, kind, friction[0], angles, out) for body, kind in cases], ignore_index=True))
     draw(table, out / "oblique-angles.png")
-    return study.finish(options, table, report(table), holds(table), argv, "Disc and ball over the angle of incidence", "{csv,png}")
+    return commands.finish(options, table, report(table), holds(table), argv, "Disc and ball over the angle of incidence", "{csv,png}")
 
 
 def numbers(name: str, text: str, low: float, high: float) -> list[float]:

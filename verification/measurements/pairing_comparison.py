@@ -7,6 +7,8 @@ import pandas as pd
 from orchestrate.output.results import read_history, read_scene
 from orchestrate.sweeps import study
 
+from .. import commands
+
 RADIUS, SPEED, NU = 0.5, 10.0, 0.4                  # of the scene disc-block, section 3.2 of the paper
 LIMIT = 900.0                                       # seconds a run may take
 LAWS = ("neohookean", "svk")
@@ -21,11 +23,11 @@ FORMATS = {"law": "", "pairing": "", "mesh": "", "epsilon/h": ".3g", "k/k0": ".3
 
 def main(argv: list[str]) -> int:
     """Prints the table, writes pairing.csv; 0 if pairwise conserves and agrees with closest points where epsilon is an element."""
-    parser = study.command("pairing-comparison", __doc__, page=True, folder="pairing")
+    parser = commands.command("pairing-comparison", __doc__, page=True, folder="pairing")
     parser.add_argument("--laws", metavar="LAW", nargs="+", default=LAWS, choices=LAWS, help="of the bodies (default: all)")
     options = parser.parse_args(argv)
     table = compare(options.laws, options.out)
-    return study.finish(options, table, report(table), holds(table), argv, "Closest points and pairs of points")
+    return commands.finish(options, table, report(table), holds(table), argv, "Closest points and pairs of points")
 
 
 def solve(points: list[study.Point], base: study.Point, out: Path) -> list[dict]:

@@ -14,6 +14,7 @@ from orchestrate.output import estimate
 from orchestrate.output.results import read_answers
 from orchestrate.sweeps import study
 
+from .. import commands
 from . import draws
 
 SEED, COUNT = 67, 240       # other scenes than those that sizes (seeds 1, 2, 5, 40; 7) and stated errors (60, 61, 64, 66) are calibrated on
@@ -29,7 +30,7 @@ Drawn = tuple[str, study.Point]   # a built-in scene and what it is overridden b
 
 def main(argv: list[str]) -> int:
     """Prints the errors, scene by scene, writes promise.csv; 0 if the promise is kept in enough scenes, and not at too high a price."""
-    parser = study.command("promise", __doc__, page=True)
+    parser = commands.command("promise", __doc__, page=True)
     parser.add_argument("--scenes", metavar="N", type=whole, default=COUNT, help=f"how many (default: {COUNT})")
     parser.add_argument("--seed", metavar="N", type=whole, default=SEED, help=f"other scenes (default: {SEED})")
     parser.add_argument("--hard", action="store_true",
@@ -43,7 +44,7 @@ def main(argv: list[str]) -> int:
     good = silent(table) == 0 if options.hard else kept(table) and covered(table)
     text = report(table) + f"; {'the requirement' if options.hard else 'the promise'} {'is kept' if good else 'IS NOT KEPT'}"
     title = ("Hard scenes" if options.hard else "Whether accuracy means what it says") + (f" of {options.of}" if options.of else "")
-    return study.finish(options, table, text, good, argv, title)
+    return commands.finish(options, table, text, good, argv, title)
 
 
 def compare(drawn: list[Drawn], out: Path) -> pd.DataFrame:

@@ -8,6 +8,8 @@ import pandas as pd
 from orchestrate.input.parameters import whole
 from orchestrate.sweeps import study
 
+from .. import commands
+
 AXES = {"law": ("svk", "neohookean"), "nu": (0.0, 0.3, 0.45, 0.49), "speed": (0.5, 4.0, 10.0), "penalty": (1e9, 1e10, 1e12),
         "exponent": (1.0, 1.5, 2.0), "dt": (0.0, 2e-5, 1e-4)}   # dt = 0: adaptive
 BASE = {"mesh_size": 0.0125, "contact_mesh_size": 0.005, "accuracy": 1.25e-3, "fields": 0}   # the accuracy: of the adaptive step
@@ -19,7 +21,7 @@ KINDS = ("closed", "open", "no step", "breakdown", "other")   # outcomes, in the
 
 def main(argv: list[str]) -> int:
     """Runs the sets, prints the outcomes; 0 if every set does what is required of it, else 1."""
-    parser = study.command("stress", __doc__)
+    parser = commands.command("stress", __doc__)
     parser.add_argument("--quick", metavar="N", type=whole, help="N of the sets, always the same ones")
     options = parser.parse_args(argv)
     points = [dict(zip(AXES, values)) for values in itertools.product(*AXES.values())]
@@ -28,7 +30,7 @@ def main(argv: list[str]) -> int:
     rows = study.study(points, options.out, BASE, LIMIT)
     rows = rows.reindex(columns=rows.columns.union(READ, sort=False))   # also where every run crashed
     rows["outcome"] = rows.apply(outcome, axis=1)
-    return study.finish(options, rows, report(rows) + "\n", holds(rows).all())
+    return commands.finish(options, rows, report(rows) + "\n", holds(rows).all())
 
 
 def outcome(row: pd.Series) -> str:

@@ -21,6 +21,8 @@ from orchestrate.progress import in_turn
 from orchestrate.report.figures import BLACK, BLUE, GREEN, ORANGE, STYLE, save
 from orchestrate.sweeps import study
 
+from .. import commands
+
 YOUNG, NU, DENSITY, RADIUS = 7e6, 0.3, 1722.0, 0.05
 MU, LAMBDA = YOUNG / (2 * (1 + NU)), YOUNG * NU / ((1 + NU) * (1 - 2 * NU))
 MASS = DENSITY * 4 / 3 * math.pi * RADIUS**3
@@ -44,11 +46,11 @@ DISC_FORMATS = {"loss": "g", "tau/T": "g", "e": ".4f", "contact [ms]": ".3f", "l
 
 def main(argv: list[str]) -> int:
     """Runs what is not there yet, prints the tables, writes viscoelastic.csv and .png; 0 if slow balls agree and all balances close."""
-    parser = study.command("viscoelastic", __doc__, page=True)
+    parser = commands.command("viscoelastic", __doc__, page=True)
     options = parser.parse_args(argv)
     tables = [make(options.out) for make in in_turn("viscoelastic", (balls, discs))]
     draw(*tables, options.out / "viscoelastic.png")
-    return study.finish(options, pd.concat(tables), report(*tables), holds(*tables), argv, "Damped impacts", "{csv,png}")
+    return commands.finish(options, pd.concat(tables), report(*tables), holds(*tables), argv, "Damped impacts", "{csv,png}")
 
 
 # ---- theory
