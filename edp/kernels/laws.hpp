@@ -136,7 +136,8 @@ inline void addDampingStress(const Material &m, const double *C0, const double *
 inline void invariantsBeyond(const double *C, const double *A, double *I) {
   double X[9];
   for (int J = 0; J < 3; J++)
-    for (int L = 0; L < 3; L++) X[3 * J + L] = C[sym[J][0]] * A[sym[0][L]] + C[sym[J][1]] * A[sym[1][L]] + C[sym[J][2]] * A[sym[2][L]] - (J == L);
+    for (int L = 0; L < 3; L++)
+      X[3 * J + L] = C[sym[J][0]] * A[sym[0][L]] + C[sym[J][1]] * A[sym[1][L]] + C[sym[J][2]] * A[sym[2][L]] - (J == L);
   I[0] = X[0] + X[4] + X[8];
   I[1] = X[0] * X[4] - X[1] * X[3] + X[4] * X[8] - X[5] * X[7] + X[8] * X[0] - X[6] * X[2];
   I[2] = determinant(X);
