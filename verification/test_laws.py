@@ -1,4 +1,6 @@
-"""A law with a number of its own, Mooney-Rivlin (edp/core/law/mooney-rivlin.idp), in every dimension: what holds for it holds for any in the list of laws.idp."""
+"""Laws with numbers of their own, Mooney-Rivlin and Ogden (edp/core/law), in every dimension: what holds for them holds for any in the list of laws.idp."""
+
+import re
 
 import numpy as np
 import pytest
@@ -7,6 +9,10 @@ from orchestrate.output import vtu
 from verification import test_stress
 
 MOONEY = {"law": "mooney-rivlin", "law_parameters": "0.3"}
+TERMS = ((1.3, 0.5), (5.0, 0.2), (-2.0, 0.3))                    # exponents and shares
+OGDEN = {"law": "ogden", "law_parameters": ",".join(f"{number:g}" for term in TERMS for number in term)}
+NEOHOOKEAN = {"mooney-rivlin": "0", "ogden": "2,1"}              # law_parameters with which they are neo-Hookean
+NU = 0.45
 SCRIPTS = {"disc-plane": {"accuracy": 0.1}, "ball-axisymmetric": {"accuracy": 0.1}, "ball-plane": {"accuracy": 0.2, "mesh_size": 0.03, "contact_mesh_size": 0.015}}
 
 
@@ -20,18 +26,68 @@ def test_stress_is_that_of_the_formula(measure, tmp_path):
     assert found == pytest.approx(np.tile(sigma[[0, 1, 2, 0, 1, 0], [0, 1, 2, 1, 2, 2]], (len(found), 1)), rel=1e-7)
 
 
+def energy(law: str, L: np.ndarray, nu: float) -> float:
+    """W over mu of principal stretches L."""
+    ratio, J = 2 * nu / (1 - 2 * nu), np.prod(L)
+    if law == "mooney-rivlin":
+        b, I1, I2 = 0.3, np.sum(L**2), np.sum((J / L) ** 2)
+        return ((1 - b) * (I1 - 3) + b * (I2 - 3)) / 2 - (1 + b) * np.log(J) + (ratio - 2 * b) / 2 * np.log(J) ** 2
+    return sum(2 * s / a**2 * (np.sum(L**a) - 3 - a * np.log(J)) for a, s in TERMS) + ratio / 2 * np.log(J) ** 2
+
+
+def slope(law: str, of, x: float, nu: float) -> float:
+    """dW/dx over mu of the stretches of(x), by differences of eighth order with a step of 0.01."""
+    weights = {1: 4 / 5, 2: -1 / 5, 3: 4 / 105, 4: -1 / 280}
+    return sum(w * (energy(law, of(x + 0.01 * k), nu) - energy(law, of(x - 0.01 * k), nu)) for k, w in weights.items()) / 0.01
+
+
+def free(law: str, of, nu: float) -> float:
+    """The stretch a of free sides, where W(of(a)) is least, by bisection of its slope."""
+    low, high = 0.15, 3.0
+    for _ in range(60):
+        a = (low + high) / 2
+        low, high = (low, a) if slope(law, of, a, nu) > 0 else (a, high)
+    return a
+
+
+@pytest.mark.parametrize("given", [MOONEY, OGDEN], ids=lambda given: given["law"])
+def test_curves_of_tension_and_shear_are_those_of_the_formula(measure, given):
+    """P = dW/dL where the sides are free, half of it in equibiaxial tension, and dW/dg in shear, at stretches 0.5 to 2.75 and shears to 2.25, as the energy of the principal
+    stretches has them, to 1e-6; energies to 1e-12; equal stretches (L = 1, g = 0; two are equal in all of tension) leave no stress and nothing that is not a number."""
+    found, law = measure("curves", nu=NU, mesh_size=0.025, contact_mesh_size=0.015, **given), given["law"]
+    for i in range(10):
+        L, g = 0.5 + 0.25 * i, 0.25 * i
+        a, b = free(law, lambda x: np.array([L, x, x]), NU), free(law, lambda x: np.array([L, L, x]), NU)
+        sheared = lambda x: np.array([np.sqrt(1 + x**2 / 4) + x / 2, np.sqrt(1 + x**2 / 4) - x / 2, 1.0])
+        assert found[f"uniaxial{i}"] == pytest.approx(slope(law, lambda x: np.array([x, a, a]), L, NU), rel=1e-6, abs=1e-9)
+        assert found[f"equibiaxial{i}"] == pytest.approx(slope(law, lambda x: np.array([x, x, b]), L, NU) / 2, rel=1e-6, abs=1e-9)
+        assert found[f"shear{i}"] == pytest.approx(slope(law, sheared, g, NU), rel=1e-6, abs=1e-9)
+        assert found[f"shearEnergy{i}"] == pytest.approx(energy(law, sheared(g), NU), rel=1e-12, abs=1e-14)
+        assert found[f"uniaxialEnergy{i}"] == pytest.approx(energy(law, np.array([L, a, a]), NU), rel=1e-6, abs=1e-14)
+
+
+@pytest.mark.parametrize("numbers, said", [("2", "shares that add up to 0"), ("2,0.5,4,0.4", "shares that add up to 0.9"), ("0,1", "the exponent 0 with share 1"),
+                                           ("2,1.5,-2,-0.5", "the exponent -2 with share -0.5"), ("1,1,1,1,1,1,1,1", "is not what ogden takes (accepted: one to three")])
+def test_bad_terms_are_refused(disc, numbers, said):
+    """Exponents without shares, of 0 or too many, shares below 0 or without the sum 1: one line."""
+    with pytest.raises(Exception, match=re.escape(said)):
+        disc(law="ogden", law_parameters=numbers, accuracy=0.2)
+
+
+@pytest.mark.parametrize("given", [MOONEY, OGDEN], ids=lambda given: given["law"])
 @pytest.mark.parametrize("body", ["disc", "ball", "3d"])
-def test_tangent_is_the_derivative_of_the_residual(measure, body):
+def test_tangent_is_the_derivative_of_the_residual(measure, body, given):
     """Moduli D = 2 dS/dC, on curved elements in the plane, of revolution and in space, to 1e-6 of central differences."""
     coarse = {"accuracy": 0.1} if body != "3d" else {"mesh_size": 0.025, "contact_mesh_size": 0.015}
-    assert measure(f"tangent-{body}", degree=2, integrator="midpoint", **coarse, **MOONEY)["tangent"] < 1e-6
+    assert measure(f"tangent-{body}", degree=2, integrator="midpoint", **coarse, **given)["tangent"] < 1e-6
 
 
+@pytest.mark.parametrize("own", [MOONEY, OGDEN], ids=lambda given: given["law"])
 @pytest.mark.parametrize("script", SCRIPTS)
-def test_impact_keeps_the_energy(disc, script):
-    """Energy to 1e-9 and momentum to round-off; stiffer than neo-Hookean by less than its share, which without a share it is."""
+def test_impact_keeps_the_energy(disc, script, own):
+    """Energy to 1e-9 and momentum to round-off; other than neo-Hookean, which it is with the numbers for that."""
     runs = {law: disc(script=script, speed=5, nu=0.45, **SCRIPTS[script], **given).summary
-            for law, given in {"own": MOONEY, "none": {"law": "mooney-rivlin", "law_parameters": "0"}, "neo-Hookean": {"law": "neohookean"}}.items()}
+            for law, given in {"own": own, "none": own | {"law_parameters": NEOHOOKEAN[own["law"]]}, "neo-Hookean": {"law": "neohookean"}}.items()}
     assert all(run["energy_drift"] < 1e-9 and run["momentum_drift"] < 1e-12 for run in runs.values())
     assert runs["none"]["impulse"] == pytest.approx(runs["neo-Hookean"]["impulse"], rel=1e-8)
     assert 1e-6 < abs(runs["own"]["contact_time"] / runs["neo-Hookean"]["contact_time"] - 1) < 0.3

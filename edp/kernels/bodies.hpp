@@ -46,7 +46,7 @@ public:
   std::vector<int> unknown;                // (node, component) -> unknown
   std::vector<double> free;                // (ndof) 0 at what is held
   std::vector<laws::Material> material;    // (nq)
-  const double *flowed = nullptr;          // A of relaxation.idp, stacked, where a body relaxes
+  double *damping = nullptr;               // dampingState of damping.idp: A, stacked, and what has been taken
   std::vector<double> weight;              // (nq) [m2, m3] of the WHOLE bodies
   // elements: their nodes, their points, N_a,J of each of these (point, node, slot)
   std::vector<int> firstNode, node, firstPoint, point;
@@ -183,10 +183,28 @@ public:
   // At every point, of C: the energy [J/m3], the smallest stretch of the motions there are, ellipticity; of F: Cauchy's stress (6 nq) and von Mises' [Pa].
   void energies(const double *C, double *W) const {
     at(C, W, [](const laws::Material &m, const double *c) { return laws::energy(m, c); });
+    for (int q = 0; q < nq; q++) if (material[q].relaxing > 0) {
+      double c[6], A[6], I[3];
+      symmetric(C, q, c);
+      symmetric(damping, q, A);
+      laws::invariantsBeyond(c, A, I);
+      W[q] += laws::stored(material[q], I, 1);
+    }
     if (cell.empty()) return;
     std::vector<double> j(nq), theta = means(C, j);
     for (size_t g = 0; g < cell.size(); g++)
       for (int p = firstPoint[g]; p < firstPoint[g + 1]; p++) W[point[p]] += laws::volumeEnergy(material[point[p]], theta[g]);
+  }
+  // `damping` after a step from C0 to C1.
+  void relax(const double *C0, const double *C1, double dt) {
+    for (int q = 0; q < nq; q++) if (material[q].relaxing > 0) {
+      double c0[6], c1[6], A[6];
+      symmetric(C0, q, c0);
+      symmetric(C1, q, c1);
+      symmetric(damping, q, A);
+      damping[components() * nq + q] += laws::relax(material[q], c0, c1, dt, A);
+      for (int k = 0; k < components(); k++) damping[k * nq + q] = A[stands(k)];
+    }
   }
   void ellipticities(const double *C, double *e) const {
     bool spatial = D == 3;
@@ -224,13 +242,18 @@ public:
   }
 
 private:
-  // values = f(material, C), C of point q, all of it.
+  int components() const { return D == 3 ? 6 : 3 + H; }   // of C, S that are stored
+
+  // Where C, S and A have component k in laws.hpp; A of point q, all of it; values = f(material, C) of C likewise.
+  int stands(int k) const { static const int plane[4] = {0, 1, 3, 2}; return D == 3 ? k : plane[k]; }
+  void symmetric(const double *stacked, int q, double *c) const {
+    for (int k = 0; k < 6; k++) c[k] = k < 3;
+    for (int k = 0; k < components(); k++) c[stands(k)] = stacked[k * nq + q];
+  }
   template<class Function> void at(const double *C, double *values, Function f) const {
-    static const int plane[4] = {0, 1, 3, 2};
-    int n = D == 3 ? 6 : 3 + H;
     for (int q = 0; q < nq; q++) {
-      double c[6] = {1, 1, 1, 0, 0, 0};
-      for (int k = 0; k < n; k++) c[D == 3 ? k : plane[k]] = C[k * nq + q];
+      double c[6];
+      symmetric(C, q, c);
       values[q] = f(material[q], c);
     }
   }
@@ -329,11 +352,11 @@ private:
         }
         else laws::stress(material[q], C1, S);
         if (rate > 0) {
-          double ends[6], A[6] = {1, 1, 1, 0, 0, 0};
+          double ends[6], A[6];
           whole<D, H>(at.F1, q, F);
           laws::rightCauchyGreen(F, ends);
           for (int k = 0; k < T::C; k++) C0[T::symmetric(k)] = at.C0[k * nq + q];
-          if (material[q].relaxing > 0) for (int k = 0; k < T::C; k++) A[T::symmetric(k)] = flowed[k * nq + q];
+          if (material[q].relaxing > 0) symmetric(damping, q, A);
           laws::addDampingStress(material[q], C0, ends, A, rate, S);
         }
         if (!cell.empty()) for (int k = 0; k < 6; k++) S[k] += pressed.p * pressed.T[p - firstPoint[g]][k];

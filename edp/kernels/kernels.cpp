@@ -24,7 +24,7 @@ static void addBodies() {
                            Ints neohookean, Reals weight) {
     body.weight = copied<double>(weight);
     body.material.resize(weight.N());
-    body.flowed = dampingState;
+    body.damping = dampingState;
     for (int q = 0; q < weight.N(); q++)
       body.material[q] = {lambda[q], mu[q], eta[q], zeta[q], relaxing[q], relaxTime[q], bulk[q], neohookean[q] == 1};
   });
@@ -46,6 +46,7 @@ static void addBodies() {
     return long(body.forces(d, history, deadLoad, massScale, rate, int(where), breaks, carries, deformation, residual));
   });
   add("kernelEnergy", +[](Reals C, Reals W) { body.energies(C, W); });
+  add("kernelRelax", +[](Reals C0, Reals C1, double dt) { body.relax(C0, C1, dt); });
   add("kernelSmallestStretch", +[](Reals C, Reals stretch) { body.smallestStretches(C, stretch); });
   add("kernelEllipticity", +[](Reals C, Reals e) { body.ellipticities(C, e); });
   add("kernelStresses", +[](Reals F, Reals sigma, Reals mises) { body.stresses(F, sigma, mises); });

@@ -111,10 +111,12 @@ inline void addDampingStress(const Material &m, const double *C0, const double *
   double det = determinantOf(C);
   cofactor(C, inverse);
   for (int k = 0; k < 6; k++) inverse[k] /= det;
-  if (m.relaxing > 0) {
-    double H[6], share = relaxedShare(m, rate);
+  if (m.relaxing > 0) {                    // e as workExcess() has it, of -G ln J
+    double H[6], K[6], share = relaxedShare(m, rate);
     for (int k = 0; k < 6; k++) H[k] = 0.5 * (C1[k] - C0[k]);
-    double e = workExcess({0, m.relaxing, 0, 0, 0, 0, true}, C, H) / (2 * contract(H, H) + 1e-300);
+    cofactor(H, K);
+    double c = determinantOf(H) / det, b = contract(C, K) / det, x = (contract(inverse, H) + c) / (1 + b);
+    double e = -m.relaxing * (atanhRest(x) - x * b + c) / (contract(H, H) + 1e-300);
     for (int k = 0; k < 6; k++) S[k] += share * (A[k] - inverse[k]) + e * H[k];
   }
   if (m.eta == 0 && m.zeta == 0) return;
@@ -128,6 +130,34 @@ inline void addDampingStress(const Material &m, const double *C0, const double *
       for (int K = 0; K < 3; K++) TB += T[J][K] * inverse[sym[K][L]];
       S[sym[J][L]] += rate * (m.eta * TB + bulk * inverse[sym[J][L]]);
     }
+}
+
+// Of X = C A - I: tr X, [(tr X)^2 - tr X^2]/2, det X: invariantsBeyond() of relaxation.idp.
+inline void invariantsBeyond(const double *C, const double *A, double *I) {
+  double X[9];
+  for (int J = 0; J < 3; J++)
+    for (int L = 0; L < 3; L++)
+      X[3 * J + L] = C[sym[J][0]] * A[sym[0][L]] + C[sym[J][1]] * A[sym[1][L]] + C[sym[J][2]] * A[sym[2][L]] - (J == L);
+  I[0] = X[0] + X[4] + X[8];
+  I[1] = X[0] * X[4] - X[1] * X[3] + X[4] * X[8] - X[5] * X[7] + X[8] * X[0] - X[6] * X[2];
+  I[2] = determinant(X);
+}
+
+// G/2 [tr X - ln det(I + X)] of s X [J/m3], I the invariants of X: addStored() of relaxation.idp.
+inline double stored(const Material &m, const double *I, double s) {
+  double r = s * s * (I[1] + s * I[2]), p = s * I[0] + r, z = p / (2 + p);
+  return m.relaxing / 2 * (p * z - 2 * atanhRest(z) - r);
+}
+
+// A at the end of a step from C0 to C1; D [J/m3], what it takes: relax() of relaxation.idp.
+inline double relax(const Material &m, const double *C0, const double *C1, double dt, double *A) {
+  double K[6], inverse[6], I[3], s = std::exp(-dt / m.relaxTime);
+  for (int k = 0; k < 6; k++) K[k] = 0.5 * (C0[k] + C1[k]);
+  invariantsBeyond(K, A, I);
+  double det = determinantOf(K);
+  cofactor(K, inverse);
+  for (int k = 0; k < 6; k++) A[k] = (A[k] - inverse[k] / det) * s + inverse[k] / det;
+  return std::max(0., stored(m, I, 1) - stored(m, I, s));
 }
 
 // What measures volume, j = J or tr E, and T = 2 dj/dC; of a step T : (C1 - C0)/2 = j1 - j0: volumeNow(), volumeOfStep() of volume.idp.

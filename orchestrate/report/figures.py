@@ -28,7 +28,7 @@ from ..input.parameters import Value
 from ..output import vtu
 from . import literature
 
-LAWS = {"svk": "St. Venant–Kirchhoff", "neohookean": "neo-Hookean", "mooney-rivlin": "Mooney–Rivlin"}
+LAWS = {"svk": "St. Venant–Kirchhoff", "neohookean": "neo-Hookean", "mooney-rivlin": "Mooney–Rivlin", "ogden": "Ogden"}
 BLUE, ORANGE, GREEN, PURPLE, BLACK, GREY = "#0072b2", "#d55e00", "#009e73", "#aa4499", "#222222", "#999999"
 SMALL = 7.5   # text of legends, of numbers in cells and below figures; all other text has the style's size
 # hinting, titley: quicker: outlines of letters as they are; titles stand where nothing is to be made way for
