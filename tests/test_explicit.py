@@ -45,6 +45,19 @@ def test_penalty_and_slip_velocity_do_not_set_the_step(runs, change, tmp_path):
     conserves(found, 2e-3)
 
 
+def test_no_node_bounces_alone(runs, tmp_path):
+    """However stiff the penalty, rebound and spin stay within 0.5 % of the speed of the implicit run at 1e11, friction work within 1 % of the energy, and
+    the run says on which one nodes do not bounce."""
+    there = disc(tmp_path / "implicit", **OBLIQUE | {"penalty": 1e11}).summary
+    for penalty in (1e11, 1e13):
+        found = disc(tmp_path / f"{penalty:g}", **OBLIQUE | EXPLICIT | {"penalty": penalty})
+        for name, scale in (("rebound_vx", 12), ("rebound_vy", 12), ("rebound_spin", 12 / 0.05), ("friction_work", 2 * there["energy_initial"])):
+            assert found.summary[name] == pytest.approx(there[name], abs=0.005 * scale), name
+        conserves(found, 1e-3)
+        assert any(words.startswith("explicit penalty: ") for words in found.summary["warnings"])
+    assert not any(words.startswith("explicit penalty: ") for words in runs["explicit"].summary["warnings"])
+
+
 def test_records_follow_the_accuracy(runs):
     """Steps are recorded as often as an implicit run would take them, whatever the parts; their forces add up to the impulse."""
     found = runs["explicit"]

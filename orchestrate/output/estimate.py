@@ -64,12 +64,13 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
     Where sizes and steps follow from the accuracy and the estimate is above it, finer runs take the run's place in `stage`.
     `read` gives the Answers of a folder, `scaled` the entries of the scene with larger or smaller elements and steps (left out: other).
     """
-    scaled = scaled or other
     coarser, finer = stage / COARSE, stage / FINE
     answers = read(stage)
     summary, used = answers.summary, answers.used
+    chosen = {"integrator": summary["integrator"]} if values.get("integrator") == "auto" else {}    # a pair differs in elements and steps alone
+    sizes = lambda *given: (scaled or other)(*given) | chosen   # noqa: E731
     asked, seconds, refinements, estimated, before, sentences = values["accuracy"], 0.0, 0, None, math.inf, []
-    if failure := _ended(solve, scaled(values, used, COARSER, own_mesh), coarser):
+    if failure := _ended(solve, sizes(values, used, COARSER, own_mesh), coarser):
         sentences = [f"the error is not estimated: the run with {COARSER:.1f} times larger elements and steps ended with: {failure}"]
     while not sentences:
         before_it = read(coarser)
@@ -80,6 +81,7 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
                          "ones: ask for a smaller accuracy"]
             break
         estimated = errors(difference(summary, coarse, answers.speed, used.get("radius")), course(answers, before_it), resolved(answers))
+        estimated["energy"] = max(estimated["energy"], summary.get("energy_drift", 0.0))   # of which the pair may have the same
         above = [name for name in wanted(values["accuracy_of"]) if estimated[name] > WORTH * asked]
         scatters, before = above == [SCATTERS] and estimated[SCATTERS] > before / 2, estimated[SCATTERS]
         sentences = excess(estimated, asked, values["accuracy_of"])
@@ -87,7 +89,7 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
         fixed = not own_mesh or any(values[name] for name in SIZES)
         if not above or scatters or fixed or refinements == MOST or summary.get("ellipticity_lost_time") is not None:
             break
-        if failure := _ended(solve, scaled(values, used, 1 / COARSER, own_mesh) | {"fields": values["fields"]}, finer):
+        if failure := _ended(solve, sizes(values, used, 1 / COARSER, own_mesh) | {"fields": values["fields"]}, finer):
             sentences.append(f"a run with {COARSER:.1f} times smaller elements and steps ended with: {failure}")
             break
         _swap(stage, coarser, finer)

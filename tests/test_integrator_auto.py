@@ -1,0 +1,43 @@
+"""`integrator = auto`: explicit steps where their count says that they are the cheaper way, the default elsewhere; what was chosen is said."""
+
+import pytest
+
+from orchestrate import run, scene
+from orchestrate.output import results
+from verification.measure import disc
+
+BALL = {"law": "neohookean", "nu": 0.4, "accuracy": 0.1, "integrator": "auto"}
+FINE = BALL | {"mesh_size": 0.02, "contact_mesh_size": 0.0008, "accuracy": 0.02}      # small elements at the contact: many parts
+
+
+@pytest.mark.parametrize("script, flags, chosen, why", [
+    ("ball-plane", BALL | {"accuracy": 0.02, "end_time": 1e-3}, "central-difference", "implicit steps (a step takes "), ("disc-plane", FINE | {"end_time": 1e-3}, "energy-momentum", "explicit steps (a step takes "),
+    ("disc-plane", BALL | {"loss": 0.1, "end_time": 1e-3}, "energy-momentum", "explicit steps (viscosity needs implicit steps)")], ids=["ball", "fine contact", "viscous"])
+def test_the_cheaper_one_is_taken_and_said(tmp_path, script, flags, chosen, why):
+    """By the parts of a step and the unknowns; summary and the scene as used name it, `skipped` says why, and the run is that of the integrator named."""
+    found = disc(tmp_path / "auto", script, **flags)
+    assert found.summary["integrator"] == chosen == results.read_scene(tmp_path / "auto")["integrator"]
+    assert any(words.startswith(why) for words in found.summary["skipped"])
+    named = disc(tmp_path / "named", script, **flags | {"integrator": chosen})
+    assert all((found.history[name] == column).all() for name, column in named.history.items())
+
+
+def test_the_count_of_parts_is_that_of_the_run(tmp_path):
+    """What the choice was made by: the parts of a step, of half and quarter bodies as of whole ones."""
+    for script, accuracy in (("ball-plane", 0.02), ("disc-plane", 0.005), ("ball-axisymmetric", 0.005)):
+        found = disc(tmp_path / script, script, **BALL | {"accuracy": accuracy})
+        said = next(words for words in found.summary["skipped"] if "explicit parts" in words)
+        parts = found.history["newton_iterations"].max()
+        assert int(said.split("takes ")[1].split()[0]) == pytest.approx(parts, abs=1), script
+
+
+def test_a_stated_error_covers_an_explicit_answer(tmp_path):
+    """The run beside it, which estimates the error, takes the same integrator; the answers of the default's finer run are within what is stated, and the energy's
+    error is no less than its drift."""
+    wanted = scene.load("ball-axisymmetric")
+    found = run.run(wanted, {"integrator": "auto"}, tmp_path / "auto")
+    assert found.summary["integrator"] == "central-difference" and found.summary["estimated_error"]["energy"] >= found.summary["energy_drift"] > 0
+    finer = run.run(wanted, {"accuracy": 0.0005}, tmp_path / "finer", estimate=False).summary
+    for name, stated, scale in (("impulse", "impulse", finer["impulse"]), ("rebound_vy", "rebound", 8), ("energy_final", "energy", finer["energy_initial"]),
+                                ("thresholded_contact_time", "thresholded_contact_time", finer["thresholded_contact_time"])):
+        assert abs(found.summary[name] - finer[name]) <= found.summary["estimated_error"][stated] * scale, name
