@@ -6,7 +6,7 @@ SWEEPS := oblique friction-jump friction-steps slip-limit contact-time-svk law-c
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws $(SWEEPS) stick-slip verify paper movie docs pictures test robustness bench bench-quick equal-errors promise disc-block-errors pairing-comparison oblique-angles viscoelastic clean
+.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws $(SWEEPS) stick-slip verify paper movie docs pictures test robustness bench bench-quick equal-errors promise disc-block-errors pairing-comparison oblique-angles viscoelastic rubber clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z0-9-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
@@ -95,9 +95,10 @@ robustness: $(READY) ## the tests that make test leaves out, malformed input and
 
 disc-block-errors: override ARGS += --page docs/disc-block.md
 pairing-comparison: override ARGS += --page docs/pairing.md
+rubber: override ARGS += --page docs/rubber.md
 equal-errors: override ARGS += --page docs/bench.md
 promise: override ARGS += --page docs/$@.md
-bench equal-errors promise disc-block-errors pairing-comparison: $(READY)
+bench equal-errors promise disc-block-errors pairing-comparison rubber: $(READY)
 	@$(PYTHON) -m orchestrate $@ $(ARGS)
 bench: ## run time against error: meshes, steps, integrators, and other programs where installed
 bench-quick: $(READY) ## the same for one case, coarse
@@ -105,6 +106,7 @@ bench-quick: $(READY) ## the same for one case, coarse
 equal-errors: ## who takes how long for 1, 0.5 and 0.1 %, other programs where installed (docs/bench.md)
 promise: ## whether accuracy means what it says, and stated errors hold, over 240 scenes drawn at random
 disc-block-errors: ## the disc on the free block (section 3.2) over law, nu, stiffness and mesh, with error bars; NGSolve beside it
+rubber: ## disc and ball as nu -> 0.5: answers and cost, with the mean volume of elements and at points, NGSolve where installed
 pairing-comparison: ## closest point against pairs of points (14), (15): rebound, energy and time over epsilon and k
 oblique-angles: $(READY) ## disc and ball over the angle of incidence, beside rigid and elastic theory (ARGS="--friction 0.2 --angles 20,40,60")
 	@$(PYTHON) -m orchestrate $@ $(or $(ARGS),--page docs/$@.md)

@@ -1,0 +1,127 @@
+"""Disc and ball as nu -> 0.5: answers and cost with volume in the mean of elements and at points, NGSolve beside them."""
+
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+
+from orchestrate.report.figures import BLUE, DASHED, ORANGE, STYLE, save
+from orchestrate.sweeps import study
+
+from . import peers
+
+NUS = (0.3, 0.4, 0.45, 0.47, 0.49, 0.499, 0.4999)
+BASE = {"law": "neohookean", "speed": 4.0, "accuracy": 2e-3, "fields": 0}
+BODIES = {"disc": "disc-normal", "ball": "ball-axisymmetric"}
+LIMIT = 120.0                                       # seconds a run may take
+PLAIN = 0.45                                        # nu up to which both are the same (edp/core/law/material.idp)
+DEAREST = 1.5                                       # most processor time at the largest nu, over that at PLAIN
+SLACK = 2 * BASE["accuracy"]                         # both ends of a rise may be off by as much
+PEER_NU, FINE, PEER_DT, PEER_PENALTY, AGREE = 0.499, 0.5, 1e-5, 1e10, 5e-3   # beside NGSolve: sizes over peers.sized(1), [s], [Pa/m]
+ANSWERS = {"contact [ms]": ("thresholded_contact_time", 1e3), "impulse": ("impulse", 1.0), "rebound [m/s]": ("rebound_vy", 1.0)}
+FORMATS = {"body": "", "volume": "", "nu": "g", "contact [ms]": ".3f", "impulse": ".4f", "rebound [m/s]": ".4f", "energy": ".0e",
+           "dofs": ".0f", "steps": ".0f", "iterations": ".0f", "factors": ".0f", "CPU [s]": ".2f", "outcome": ""}
+
+
+def main(argv: list[str]) -> int:
+    """Prints the table, writes rubber.csv and rubber.png; 0 if what is asked of the mean volume holds."""
+    parser = study.command("rubber", __doc__, page=True)
+    parser.add_argument("--nus", metavar="NU", nargs="+", type=float, default=NUS, help="Poisson's ratios (default: %(default)s)")
+    parser.add_argument("--limit", metavar="SECONDS", type=float, default=LIMIT, help="of a run (default %(default)g)")
+    options = parser.parse_args(argv)
+    table = compare(sorted(options.nus), options.limit, options.out)
+    draw(table, options.out / "rubber.png")
+    beside = [row for body in BODIES for row in peer(body)]
+    text = report(table, beside)
+    return study.finish(options, table, text, holds(table) and agrees(beside), argv, "Rubber: nu to 0.5", "csv, .png")
+
+
+def compare(nus: list[float], limit: float, out: Path) -> pd.DataFrame:
+    """A row a run; up to PLAIN nothing is to be compared."""
+    rows = []
+    for body, scene in BODIES.items():
+        points = [{"volume": volume, "nu": nu} for volume in ("projected", "plain") for nu in nus if volume == "projected" or nu > PLAIN]
+        found = study.study(points, out / body, BASE, limit, scene, cores=1)
+        rows += [_row(body, one) for one in found.to_dict("records")]
+    return pd.DataFrame(rows)
+
+
+def _row(body: str, found: dict) -> dict:
+    row = {"body": body, "volume": found["volume"], "nu": found["nu"], "energy": found.get("energy_drift")}
+    row |= {name: factor * found.get(key, float("nan")) for name, (key, factor) in ANSWERS.items()}
+    row["outcome"] = found["message"].split(":")[-1].strip()
+    return row | {"dofs": found.get("dofs"), "steps": found.get("steps"), "iterations": found.get("newton_iterations"),
+                  "factors": found.get("factorizations"), "CPU [s]": found.get("cpu_seconds", float("nan")) - found.get("start_seconds", 0)}
+
+
+def peer(body: str) -> list[dict]:
+    """NGSolve with plain quadratic elements and ours, both with the same sizes and step; nothing where it is not installed."""
+    sizes = peers.sized(FINE, law="neohookean", nu=PEER_NU, speed=4.0, penalty=PEER_PENALTY, dt=PEER_DT)
+    theirs, why = peers.run("ngsolve", "tuned", limit=600, scene=BODIES[body], **sizes)
+    ours, failed = peers.ours(600, BODIES[body], **sizes)
+    if not theirs or not ours:
+        print(f"no NGSolve beside the {body}: {why or failed}")
+        return []
+    return [{"body": body, "answer": name, "ours": ours[name], "NGSolve": theirs[name], "differ": abs(ours[name] / theirs[name] - 1)}
+            for name in ("contact_time", "impulse", "rebound_vy")]
+
+
+def agrees(beside: list[dict]) -> bool:
+    return all(row["differ"] <= AGREE for row in beside)
+
+
+def holds(table: pd.DataFrame) -> bool:
+    """In the mean of elements: every run ends, energy to 1e-9, contact times fall and no answer jumps, at the cost asked for."""
+    mine = table[table.volume == "projected"]
+    good = (mine.outcome == "").all() and (mine.energy < 1e-9).all()
+    for _, one in mine.groupby("body"):
+        times = one["contact [ms]"].to_numpy()
+        good &= (np.diff(times) <= SLACK * times[:-1]).all() and _dearer(one) <= DEAREST
+    return bool(good)
+
+
+def _dearer(one: pd.DataFrame) -> float:
+    """Processor time at the largest nu over that at PLAIN (the nearest there is)."""
+    return one["CPU [s]"].iloc[-1] / one["CPU [s]"].iloc[int(np.argmin(abs(one.nu.to_numpy() - PLAIN)))]
+
+
+def draw(table: pd.DataFrame, path: Path) -> None:
+    """Answers and processor time over 0.5 - nu."""
+    names = [*ANSWERS, "CPU [s]"]
+    with plt.rc_context(STYLE):
+        figure, grid = plt.subplots(len(BODIES), len(names), figsize=(12, 2.9 * len(BODIES)), squeeze=False)
+        for (body, one), axes in zip(table.groupby("body", sort=False), grid):
+            for name, axis in zip(names, axes):
+                for volume, colour, line in (("projected", BLUE, "-"), ("plain", ORANGE, DASHED)):
+                    its = one[one.volume == volume]
+                    axis.plot(0.5 - its.nu, its[name], color=colour, linestyle=line, marker="o", markersize=3, label=volume)
+                axis.set(xscale="log", xlabel="0.5 − ν", ylabel=f"{body}: {name}")
+                axis.invert_xaxis()
+            axes[-1].set_yscale("log")
+        grid[0][0].legend()
+        save(figure, path)
+
+
+def report(table: pd.DataFrame, beside: list[dict]) -> str:
+    """The table, what it says, and the verdict."""
+    mine = table[table.volume == "projected"]
+    lines = [f"Impact on the plane at {BASE['speed']:g} m/s, neo-Hookean, accuracy {BASE['accuracy']:g}. projected: what lambda has beyond "
+             f"nu = {PLAIN:g} acts on the mean volume of each element; plain:",
+             "all of it at points, shown where the two differ. contact: time above 1 % of the largest force; impulse in N s/m, of the ball "
+             "N s; energy: largest error of the balance; CPU: without the start.", "", study.table(table, FORMATS), ""]
+    for body, one in mine.groupby("body", sort=False):
+        first, last = one.iloc[0], one.iloc[-1]
+        lines.append(f"- {body}: from nu = {first.nu:g} to {last.nu:g} the contact time falls by "
+                     f"{100 * (1 - last['contact [ms]'] / first['contact [ms]']):.1f} %, the rebound goes from "
+                     f"{first['rebound [m/s]']:.3f} to {last['rebound [m/s]']:.3f} m/s; processor time at {last.nu:g} is "
+                     f"{_dearer(one):.2f} times that at {PLAIN:g}.")
+    if beside:
+        lines += ["", f"NGSolve, on the same equations with plain quadratic elements, and this program, nu = {PEER_NU:g}, elements "
+                  f"of {FINE:g} times the usual sizes, steps of {PEER_DT:g} s, k = {PEER_PENALTY:g} Pa/m:", "",
+                  study.table(pd.DataFrame(beside), {"body": "", "answer": "", "ours": ".6g", "NGSolve": ".6g", "differ": ".1e"})]
+    said = f"to NGSolve {100 * AGREE:g} %" if beside else "NGSolve was not there"
+    good = holds(table) and agrees(beside)
+    return "\n".join([*lines, "", f"The requirement (in the mean of elements every run ends, energy to 1e-9, contact times "
+                                  f"fall to {SLACK:g}, at most {DEAREST:g} times the processor time; {said}) "
+                                  f"{'holds' if good else 'FAILS'}."])
