@@ -1,10 +1,10 @@
-// factor.hpp: the tangent A = massScale M + stiffnessScale K in CHOLMOD's hands, A = L L^T with the unknowns that can touch ordered last: those of the
-// list `last`, w. The tail of L is then the factor of their Schur complement, S = A_ww - A_wr A_rr^-1 A_rw = L_ww L_ww^T [N/m], and
-// S^-1 = (A^-1)_ww [m/N] their compliance, without a back-substitution for each. Only the numbers are computed anew while pattern and `last` stay. A small
-// matrix CHOLMOD takes column by column, as L D L^T, which may be indefinite, though not in w; a large one by dense blocks of columns, as L L^T, which
-// may not. What is held has a 1 on the diagonal and no other entries.
-// An L that no cache holds is rounded to single precision, and S and its inverse are made of that: all solutions are those of one matrix, off A by 1e-7, as
-// the state that A is frozen at is by more. A back-substitution lasts as long as reading L does.
+// factor.hpp: the tangent A = massScale M + stiffnessScale K in CHOLMOD's hands, A = L L^T with the unknowns that can touch ordered last:
+// those of the list `last`, w. The tail of L is then the factor of their Schur complement, S = A_ww - A_wr A_rr^-1 A_rw = L_ww L_ww^T,
+// and S^-1 = (A^-1)_ww [m/N] their compliance, without a back-substitution for each. Only the numbers are computed anew while pattern and
+// `last` stay. A small matrix CHOLMOD takes column by column, as L D L^T, which may be indefinite, though not in w; a large one by dense
+// blocks of columns, as L L^T, which may not. What is held has a 1 on the diagonal and no other entries.
+// An L that no cache holds is rounded to single precision, and S and its inverse are made of that: all solutions are those of one matrix,
+// off A by 1e-7, as the state that A is frozen at is by more. A back-substitution lasts as long as reading L does.
 #pragma once
 #include <cholmod.h>
 #include <cstring>
@@ -34,13 +34,15 @@ template<class Number> struct Four {
   void dot(const double *z, int first, int last, double *s) const { dot(c[0], c[1], c[2], c[3], z, first, last, s); }
 
 private:
-  WIDE static void subtract(const Number *c0, const Number *c1, const Number *c2, const Number *c3, const double *x, int i, int last, double *z) {
+  WIDE static void subtract(const Number *c0, const Number *c1, const Number *c2, const Number *c3, const double *x, int i, int last,
+                            double *z) {
     const double x0 = x[0], x1 = x[1], x2 = x[2], x3 = x[3];
     for (; i + 8 <= last; i += 8)
       *(Doubles *)(z + i) -= EIGHT(c0 + i) * x0 + EIGHT(c1 + i) * x1 + EIGHT(c2 + i) * x2 + EIGHT(c3 + i) * x3;
     for (; i < last; i++) z[i] -= c0[i] * x0 + c1[i] * x1 + c2[i] * x2 + c3[i] * x3;
   }
-  WIDE static void dot(const Number *c0, const Number *c1, const Number *c2, const Number *c3, const double *z, int i, int last, double *s) {
+  WIDE static void dot(const Number *c0, const Number *c1, const Number *c2, const Number *c3, const double *z, int i, int last,
+                       double *s) {
     const Number *c[4] = {c0, c1, c2, c3};
     Doubles sum[4] = {};
     for (; i + 8 <= last; i += 8) for (int k = 0; k < 4; k++) sum[k] += EIGHT(c[k] + i) * *(const Doubles *)(z + i);
@@ -113,6 +115,10 @@ public:
     return 0;
   }
 
+  // What a factorisation costs, in iterations of solveStep(), most of whose time two back-substitutions take: its operations a number of L
+  // count, and twice as much as an iteration costs the assembly. 30 where L is small, and so is that part of an iteration.
+  long renewalCost() const { return single ? 2 + long(common.fl / (90. * L->xsize)) : 30; }
+
   // A x = b. Of b that is zero but at w so is L^-1 b: it costs half.
   void solve(const double *b, double *x) {
     const int *permutation = (int *)L->Perm;
@@ -173,7 +179,7 @@ private:
   cholmod_dense *solution = nullptr, *work1 = nullptr, *work2 = nullptr;
   std::vector<int> column, row, ordered, last;   // entries of A; CHOLMOD's order; w
   std::vector<size_t> from;                // entry of A -> where in the blocks
-  std::vector<double> value, tail, inverse;      // of A; L_ww (lower triangle by columns); S^-1 (lower triangle), empty until it is asked for
+  std::vector<double> value, tail, inverse;      // of A; L_ww (lower triangle by columns); S^-1 (likewise), empty until it is asked for
   std::vector<double> y, z, right;
 
   void order(const std::vector<int> &w) {
