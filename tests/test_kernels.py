@@ -4,6 +4,8 @@ import os
 
 import pytest
 
+from orchestrate import run, scene
+from orchestrate.failure import BadInput
 from orchestrate.freefem import freefem, kernels
 from verification.measure import disc, measure, prepared
 
@@ -106,3 +108,16 @@ def test_marches_are_those_of_the_scripts(tmp_path, name):
         assert ours == pytest.approx(theirs, rel=0, abs=1e-9 * max(abs(theirs))), column
     for number in ("max_von_mises", "max_tension", "max_shear"):
         assert runs["with"].summary[number] == pytest.approx(runs["without"].summary[number], rel=1e-9)
+
+
+def test_answers_are_the_same_with_any_number_of_threads(tmp_path, monkeypatch):
+    """Two threads write the history that one writes, byte by byte; what is no number of threads is refused."""
+    histories = []
+    for threads in ("1", "2"):
+        monkeypatch.setenv("FFIMPACT_THREADS", threads)
+        run.run(scene.load("ball-oblique"), {"accuracy": 0.1, "end_time": 1e-3, "fields": 0}, tmp_path / threads, estimate=False)
+        histories.append((tmp_path / threads / "history.csv").read_bytes())
+    assert histories[0] == histories[1]
+    monkeypatch.setenv("FFIMPACT_THREADS", "none")
+    with pytest.raises(BadInput, match="FFIMPACT_THREADS: 'none'"):
+        freefem.find()

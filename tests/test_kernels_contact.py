@@ -8,7 +8,7 @@ from verification.measure import measure
 
 DISC = ("kernels-contact", dict(accuracy=0.1))
 BALL = ("kernels-contact-3d", dict(mesh_size=0.025, contact_mesh_size=0.015))
-FINER = ("kernels-contact-3d", dict(mesh_size=0.03, contact_mesh_size=0.005))   # enough unknowns for its iterative solution
+FINER = ("kernels-contact-3d", dict(mesh_size=0.03, contact_mesh_size=0.0058))   # enough unknowns for its iterative solution
 STEADY, JUMPING = dict(friction_static=0.6, friction_dynamic=0.6), dict(friction_static=0.7, friction_dynamic=0.5)
 
 

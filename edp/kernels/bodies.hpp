@@ -259,6 +259,7 @@ private:
   }
 
   mutable std::vector<double> nodal, pull, way, lagging;   // by node and component; way: d - dBase
+  mutable std::vector<double> own, ownLagging;             // pull and lagging, of every element its own
 
   // theta by element of j at the points, which is made of C.
   std::vector<double> means(const double *C, std::vector<double> &j) const {
@@ -274,7 +275,8 @@ private:
     nodal.resize(nodes * D);
     pull.assign(nodes * D, 0.);
     for (int i = 0; i < nodes * D; i++) nodal[i] = d[unknown[i]];
-    double smallest = stretched<D, H>(where, at);
+    stretched<D, H>(where, at);
+    const double smallest = least(at.jacobian1);
     if (smallest != smallest) return notANumber;
     if (smallest <= 0 && breaks) return inverted;
     if (carries) {
@@ -285,6 +287,7 @@ private:
     stressed<D, H>(where, rate, carries, at);
     if (carries) for (int i = 0; i < nodes * D; i++) volume.lag[unknown[i]] = lagging[i] * free[unknown[i]];
     for (int i = 0; i < nodes * D; i++) nodal[i] = massScale * nodal[i] - history[unknown[i]];
+    #pragma omp parallel for
     for (int a = 0; a < nodes; a++)
       for (int e = massRow[a]; e < massRow[a + 1]; e++)
         for (int i = 0; i < D; i++) pull[a * D + i] += massValue[e] * nodal[massColumn[e] * D + i];
@@ -292,11 +295,18 @@ private:
     return fine;
   }
 
-  // F1 = F0 + G d, Fs, det F1; the least det F1, or nan.
-  template<int D, int H> double stretched(int where, const Deformation &at) const {
-    typedef Stored<D, H> T;
+  // The least of the values at all points, or nan.
+  double least(const double *values) const {
     double smallest = 1e300;
-    for (size_t g = 0; g + 1 < firstNode.size(); g++) {
+    for (int q = 0; q < nq; q++) if (!(values[q] >= smallest)) smallest = values[q] == values[q] && smallest == smallest ? values[q] : NAN;
+    return smallest;
+  }
+
+  // F1 = F0 + G d, Fs, det F1.
+  template<int D, int H> void stretched(int where, const Deformation &at) const {
+    typedef Stored<D, H> T;
+    #pragma omp parallel for
+    for (int g = 0; g < int(firstNode.size()) - 1; g++) {
       int n = firstNode[g + 1] - firstNode[g];
       const double *N = &shape[firstShape[g]];
       double its[most * D];
@@ -313,11 +323,9 @@ private:
           at.F1[k * nq + q] = full[3 * T::row(k) + T::column(k)] = after;
           at.Fs[k * nq + q] = where == stepEnd ? after : before + 0.5 * dF[k];
         }
-        double J = at.jacobian1[q] = laws::determinant(full);
-        if (!(J >= smallest)) smallest = J == J && smallest == smallest ? J : NAN;
+        at.jacobian1[q] = laws::determinant(full);
       }
     }
-    return smallest;
   }
 
   // nodal forces += G' (w F S) at point q with shapes N of n nodes.
@@ -331,13 +339,16 @@ private:
     }
   }
 
-  // C1, Ss and pull += G' (w Fs Ss).
+  // C1, Ss and pull += G' (w Fs Ss): of every element its own, then their sums in the order of the elements, however many threads there are.
   template<int D, int H> void stressed(int where, double rate, bool carries, const Deformation &at) const {
     typedef Stored<D, H> T;
-    for (size_t g = 0; g + 1 < firstNode.size(); g++) {
+    own.assign(node.size() * D, 0.);
+    if (carries) ownLagging.assign(node.size() * D, 0.);
+    #pragma omp parallel for
+    for (int g = 0; g < int(firstNode.size()) - 1; g++) {
       int n = firstNode[g + 1] - firstNode[g];
       const double *N = &shape[firstShape[g]];
-      double its[most * D] = {};
+      double *its = &own[size_t(firstNode[g]) * D];
       Pressed pressed;
       if (!cell.empty()) press<D, H>(g, where, carries, at, pressed);
       for (int p = firstPoint[g]; p < firstPoint[g + 1]; p++, N += n * T::slots) {
@@ -365,8 +376,9 @@ private:
         pulled<D, H>(q, n, N, Fs, S, its);
       }
       if (carries) miss<D, H>(g, at, pressed, its);
-      for (int a = 0; a < n; a++) for (int i = 0; i < D; i++) pull[node[firstNode[g] + a] * D + i] += its[a * D + i];
     }
+    for (size_t a = 0; a < node.size(); a++) for (int i = 0; i < D; i++) pull[node[a] * D + i] += own[a * D + i];
+    if (carries) for (size_t a = 0; a < node.size(); a++) for (int i = 0; i < D; i++) lagging[node[a] * D + i] += ownLagging[a * D + i];
   }
 
   // Of an element: T at its points, p, and p* - p.
@@ -423,7 +435,7 @@ private:
     for (int i = 0; i < n * D; i++) {
       double along = slopeKnown ? pressed.left * g0[size_t(firstNode[g]) * D + i] : all[i];
       its[i] += along;
-      lagging[node[firstNode[g] + i / D] * D + i % D] += all[i] - along;
+      ownLagging[size_t(firstNode[g]) * D + i] = all[i] - along;
     }
   }
 

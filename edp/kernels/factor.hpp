@@ -1,13 +1,58 @@
-// factor.hpp: the tangent A = massScale M + stiffnessScale K in CHOLMOD's hands, A = L L^T with the unknowns that can touch ordered last: those of the
-// list `last`, w. The tail of L is then the factor of their Schur complement, S = A_ww - A_wr A_rr^-1 A_rw = L_ww L_ww^T [N/m], and
-// S^-1 = (A^-1)_ww [m/N] their compliance, without a back-substitution for each. Only the numbers are computed anew while pattern and `last` stay. A small
-// matrix CHOLMOD takes column by column, as L D L^T, which may be indefinite, though not in w; a large one by dense blocks of columns, as L L^T, which
-// may not. What is held has a 1 on the diagonal and no other entries.
+// factor.hpp: the tangent A = massScale M + stiffnessScale K in CHOLMOD's hands, A = L L^T with the unknowns that can touch ordered last:
+// those of the list `last`, w. The tail of L is then the factor of their Schur complement, S = A_ww - A_wr A_rr^-1 A_rw = L_ww L_ww^T,
+// and S^-1 = (A^-1)_ww [m/N] their compliance, without a back-substitution for each. Only the numbers are computed anew while pattern and
+// `last` stay. A small matrix CHOLMOD takes column by column, as L D L^T, which may be indefinite, though not in w; a large one by dense
+// blocks of columns, as L L^T, which may not. What is held has a 1 on the diagonal and no other entries.
+// An L that no cache holds is rounded to single precision, and S and its inverse are made of that: all solutions are those of one matrix,
+// off A by 1e-7, as the state that A is frozen at is by more. A back-substitution lasts as long as reading L does.
 #pragma once
 #include <cholmod.h>
+#include <cstring>
 #include "bodies.hpp"
 
 extern "C" void dpotri_(const char *uplo, const int *n, double *A, const int *leading, int *info);
+
+// What the processor at hand does in one go is found when the plugin is loaded; the order of sums is the same on all.
+#if defined(__x86_64__) && defined(__gnu_linux__)
+#define WIDE __attribute__((target_clones("avx512f", "avx2", "default")))
+#else
+#define WIDE
+#endif
+typedef double Doubles __attribute__((vector_size(64), aligned(8), may_alias));
+template<class Number> struct Eight { typedef Doubles Type; };
+template<> struct Eight<float> { typedef float Type __attribute__((vector_size(32), aligned(4), may_alias)); };
+#define EIGHT(at) __builtin_convertvector(*(const typename Eight<Number>::Type *)(at), Doubles)
+
+// Four columns of a dense block from j on, the last again where there are fewer: z -= c x, and s = c^T z, of rows from first to last.
+template<class Number> struct Four {
+  const Number *c[4];
+  int count;
+  Four(const Number *value, int height, int j, int width) : count(std::min(4, width - j)) {
+    for (int k = 0; k < 4; k++) c[k] = value + size_t(j + std::min(k, count - 1)) * height;
+  }
+  void subtract(const double *x, int first, int last, double *z) const { subtract(c[0], c[1], c[2], c[3], x, first, last, z); }
+  void dot(const double *z, int first, int last, double *s) const { dot(c[0], c[1], c[2], c[3], z, first, last, s); }
+
+private:
+  WIDE static void subtract(const Number *c0, const Number *c1, const Number *c2, const Number *c3, const double *x, int i, int last,
+                            double *z) {
+    const double x0 = x[0], x1 = x[1], x2 = x[2], x3 = x[3];
+    for (; i + 8 <= last; i += 8)
+      *(Doubles *)(z + i) -= EIGHT(c0 + i) * x0 + EIGHT(c1 + i) * x1 + EIGHT(c2 + i) * x2 + EIGHT(c3 + i) * x3;
+    for (; i < last; i++) z[i] -= c0[i] * x0 + c1[i] * x1 + c2[i] * x2 + c3[i] * x3;
+  }
+  WIDE static void dot(const Number *c0, const Number *c1, const Number *c2, const Number *c3, const double *z, int i, int last,
+                       double *s) {
+    const Number *c[4] = {c0, c1, c2, c3};
+    Doubles sum[4] = {};
+    for (; i + 8 <= last; i += 8) for (int k = 0; k < 4; k++) sum[k] += EIGHT(c[k] + i) * *(const Doubles *)(z + i);
+    for (int k = 0; k < 4; k++) {
+      s[k] = 0;
+      for (int l = 0; l < 8; l++) s[k] += sum[k][l];
+      for (int m = i; m < last; m++) s[k] += c[k][m] * z[m];
+    }
+  }
+};
 
 class Factor {
 public:
@@ -63,19 +108,41 @@ public:
     tail.assign(last.size() * last.size(), 0.);
     cholmod_factorize(&A, L, &common);
     if (common.status != CHOLMOD_OK || L->minor < L->n) return 1;
-    if (L->is_super) takeBlocks(); else takeColumns();
+    single = L->is_super && L->xsize > mostDouble;
+    if (single) roundBlocks();
+    if (!L->is_super) takeColumns(); else if (single) takeBlocks<float>(); else takeBlocks<double>();
     for (size_t j = 0; j < last.size(); j++) if (!(tail[j * last.size() + j] > 0)) return 1;
     return 0;
   }
 
-  // A x = b.
-  void solve(const double *b, double *x) { solve(b, x, 0); }
+  // What a factorisation costs, in iterations of solveStep(), most of whose time two back-substitutions take: its operations a number of L
+  // count, and twice as much as an iteration costs the assembly. 30 where L is small, and so is that part of an iteration.
+  long renewalCost() const { return single ? 2 + long(common.fl / (90. * L->xsize)) : 30; }
 
-  // A x = b, b of entries at u alone, all of which are in w: the rest of L^-1 b is zero.
+  // A x = b. Of b that is zero but at w so is L^-1 b: it costs half.
+  void solve(const double *b, double *x) {
+    const int *permutation = (int *)L->Perm;
+    if (!L->is_super) {
+      cholmod_dense given = cholmod_dense();
+      given.nrow = given.nzmax = given.d = n;
+      given.ncol = 1;
+      given.x = const_cast<double *>(b);
+      given.xtype = CHOLMOD_REAL;  given.dtype = CHOLMOD_DOUBLE;
+      cholmod_solve2(CHOLMOD_A, L, &given, nullptr, &solution, nullptr, &work1, &work2, &common);
+      std::copy((double *)solution->x, (double *)solution->x + n, x);
+      return;
+    }
+    y.resize(n);
+    for (int k = 0; k < n; k++) y[k] = b[permutation[k]];
+    if (single) substitute<float>(); else substitute<double>();
+    for (int k = 0; k < n; k++) x[permutation[k]] = y[k];
+  }
+
+  // A x = b, b of entries at u alone.
   void respond(const std::vector<int> &u, const double *b, double *x) {
     right.assign(n, 0.);
     for (size_t j = 0; j < u.size(); j++) right[u[j]] = b[j];
-    solve(right.data(), x, n - int(last.size()));
+    solve(right.data(), x);
   }
 
   // C = (A^-1)_uu by columns, u in w.
@@ -103,14 +170,16 @@ public:
   }
 
 private:
+  const size_t mostDouble = 2000000;       // numbers of L that caches hold: 16 MB
   int n = 0;
+  bool single = false;
   cholmod_common common;
   cholmod_sparse A = cholmod_sparse();
   cholmod_factor *L = nullptr;
   cholmod_dense *solution = nullptr, *work1 = nullptr, *work2 = nullptr;
   std::vector<int> column, row, ordered, last;   // entries of A; CHOLMOD's order; w
   std::vector<size_t> from;                // entry of A -> where in the blocks
-  std::vector<double> value, tail, inverse;      // of A; L_ww (lower triangle by columns); S^-1 (lower triangle), empty until it is asked for
+  std::vector<double> value, tail, inverse;      // of A; L_ww (lower triangle by columns); S^-1 (likewise), empty until it is asked for
   std::vector<double> y, z, right;
 
   void order(const std::vector<int> &w) {
@@ -127,64 +196,53 @@ private:
     L = cholmod_analyze_p(&A, permutation.data(), nullptr, 0, &common);
   }
 
-  // A x = b, b zero before `first` in the order of L. Where L is small its loops are ours: they are so short that BLAS takes longer to be called.
-  void solve(const double *b, double *x, int first) {
-    const int *permutation = (int *)L->Perm, *super = (int *)L->super;
-    if (!L->is_super || (first == 0 && L->xsize > 1000000)) {
-      cholmod_dense given = cholmod_dense();
-      given.nrow = given.nzmax = given.d = n;
-      given.ncol = 1;
-      given.x = const_cast<double *>(b);
-      given.xtype = CHOLMOD_REAL;  given.dtype = CHOLMOD_DOUBLE;
-      cholmod_solve2(CHOLMOD_A, L, &given, nullptr, &solution, nullptr, &work1, &work2, &common);
-      std::copy((double *)solution->x, (double *)solution->x + n, x);
-      return;
-    }
-    y.resize(n);
-    for (int k = 0; k < n; k++) y[k] = b[permutation[k]];
-    for (int s = 0; s < int(L->nsuper); s++) if (super[s + 1] > first) forward(block(s));
-    for (int s = int(L->nsuper) - 1; s >= 0; s--) backward(block(s));
-    for (int k = 0; k < n; k++) x[permutation[k]] = y[k];
+  // Columns of L that have their rows in common, themselves first.
+  template<class Number> struct Block { int first, width, height;  const int *rows;  const Number *value; };
+  template<class Number> Block<Number> block(int s) const {
+    const int *super = (int *)L->super, *pi = (int *)L->pi, *px = (int *)L->px;
+    return {super[s], super[s + 1] - super[s], pi[s + 1] - pi[s], (int *)L->s + pi[s], (Number *)L->x + px[s]};
   }
 
-  // Columns of L that have their rows in common, themselves first; of them four at a time, the last again where there are fewer.
-  struct Block { int first, width, height;  const int *rows;  const double *value; };
-  struct Four {
-    const double *c[4];
-    int count;
-    Four(const Block &B, int j) : count(std::min(4, B.width - j)) {
-      for (int k = 0; k < 4; k++) c[k] = B.value + size_t(j + std::min(k, count - 1)) * B.height;
+  // The numbers of L in single precision, in the place of those in double.
+  void roundBlocks() {
+    const char *from = (char *)L->x;
+    char *to = (char *)L->x;
+    for (size_t k = 0; k < L->xsize; k++, from += sizeof(double), to += sizeof(float)) {
+      double exact;
+      std::memcpy(&exact, from, sizeof exact);
+      const float rounded = float(exact);
+      std::memcpy(to, &rounded, sizeof rounded);
     }
-  };
-  Block block(int s) const {
-    const int *super = (int *)L->super, *pi = (int *)L->pi, *px = (int *)L->px;
-    return {super[s], super[s + 1] - super[s], pi[s + 1] - pi[s], (int *)L->s + pi[s], (double *)L->x + px[s]};
   }
-  void forward(const Block &B) {
+
+  // L^-1, then L^-T.
+  template<class Number> void substitute() {
+    for (int s = 0; s < int(L->nsuper); s++) forward(block<Number>(s));
+    for (int s = int(L->nsuper) - 1; s >= 0; s--) backward(block<Number>(s));
+  }
+  template<class Number> void forward(const Block<Number> &B) {
+    if (std::all_of(&y[B.first], &y[B.first] + B.width, [](double v) { return v == 0; })) return;
     z.assign(B.height, 0.);
     std::copy(&y[B.first], &y[B.first] + B.width, z.begin());
     for (int j = 0; j < B.width; j += 4) {
-      const Four F(B, j);
-      double x[4] = {}, *to = z.data();
+      const Four<Number> F(B.value, B.height, j, B.width);
+      double x[4] = {};
       for (int k = 0; k < F.count; k++) {
         for (int l = 0; l < k; l++) z[j + k] -= F.c[l][j + k] * x[l];
         x[k] = z[j + k] /= F.c[k][j + k];
       }
-      const double *c0 = F.c[0], *c1 = F.c[1], *c2 = F.c[2], *c3 = F.c[3], x0 = x[0], x1 = x[1], x2 = x[2], x3 = x[3];
-      for (int i = j + F.count; i < B.height; i++) to[i] -= c0[i] * x0 + c1[i] * x1 + c2[i] * x2 + c3[i] * x3;
+      F.subtract(x, j + F.count, B.height, z.data());
     }
     std::copy(z.begin(), z.begin() + B.width, &y[B.first]);
     for (int i = B.width; i < B.height; i++) y[B.rows[i]] += z[i];
   }
-  void backward(const Block &B) {
+  template<class Number> void backward(const Block<Number> &B) {
     z.resize(B.height);
     for (int i = 0; i < B.height; i++) z[i] = y[B.rows[i]];
     for (int j = (B.width - 1) / 4 * 4; j >= 0; j -= 4) {
-      const Four F(B, j);
-      const double *c0 = F.c[0], *c1 = F.c[1], *c2 = F.c[2], *c3 = F.c[3], *of = z.data();
-      double s0 = 0, s1 = 0, s2 = 0, s3 = 0;
-      for (int i = j + F.count; i < B.height; i++) { s0 += c0[i] * of[i];  s1 += c1[i] * of[i];  s2 += c2[i] * of[i];  s3 += c3[i] * of[i]; }
-      const double s[4] = {s0, s1, s2, s3};
+      const Four<Number> F(B.value, B.height, j, B.width);
+      double s[4];
+      F.dot(z.data(), j + F.count, B.height, s);
       for (int k = F.count - 1; k >= 0; k--) {
         z[j + k] -= s[k];
         for (int l = k + 1; l < F.count; l++) z[j + k] -= F.c[k][j + l] * z[j + l];
@@ -195,10 +253,11 @@ private:
   }
 
   // L_ww, out of blocks of columns that have their rows in common.
-  void takeBlocks() {
+  template<class Number> void takeBlocks() {
     const int m = int(last.size()), first = n - m;
-    for (int s = int(L->nsuper) - 1; s >= 0 && block(s).first + block(s).width > first; s--) {
-      const Block B = block(s);
+    for (int s = int(L->nsuper) - 1; s >= 0; s--) {
+      const Block<Number> B = block<Number>(s);
+      if (B.first + B.width <= first) break;
       for (int j = std::max(0, first - B.first); j < B.width; j++)
         for (int k = j; k < B.height; k++) tail[size_t(B.first + j - first) * m + B.rows[k] - first] = B.value[size_t(j) * B.height + k];
     }

@@ -59,6 +59,7 @@ static void addFactor() {
   });
   add("kernelTangentProduct", +[](Reals x, Reals y) { factor.product(x, y); });
   add("kernelFactorise", +[](Ints last) { return long(factor.factorise(copied<int>(last))); });
+  add("kernelRenewalCost", +[]() { return factor.renewalCost(); });
   add("kernelSolve", +[](Reals b, Reals x) { factor.solve(b, x); });
   add("kernelRespond", +[](Ints unknowns, Reals b, Reals x) { factor.respond(copied<int>(unknowns), b, x); });
   add("kernelCompliance", +[](Ints unknowns, Table C) {       // C = (A^-1)_uu of the unknowns u, all of which are in w

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import NamedTuple, TextIO
 
 from . import kernels
-from ..failure import NotInstalled
+from ..failure import BadInput, NotInstalled
 from ..places import INSTALLED, PACKAGE, ROOT
 
 CORES = len(os.sched_getaffinity(0))
@@ -65,7 +65,7 @@ def _find(variables: tuple[tuple[str, str], ...]) -> FreeFem:
     command = shutil.which(wanted)
     if not command:
         raise NotInstalled(f"{wanted} not found; {HOW}")
-    environment |= {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}   # one process a core
+    environment |= _threads(environment.get("FFIMPACT_THREADS", "1"))
     environment = _blas_kernels() | environment | _quick_clock(environment)
     version = _probe(command, environment)
     if not version and "FF_LOADPATH" not in environment:
@@ -77,6 +77,15 @@ def _find(variables: tuple[tuple[str, str], ...]) -> FreeFem:
         raise NotInstalled(f"{command} is version {version}, needed is {OLDEST[0]}.{OLDEST[1]} or newer; {HOW}")
     kernels.build(command, version, environment)
     return FreeFem(command, version, environment)
+
+
+def _threads(wanted: str) -> dict[str, str]:
+    """What lets a process have so many threads. One is best where processes fill the cores: sweeps, and a run with the one beside it that
+    estimates its error. Answers are the same with any number. CHOLMOD takes four (of its own) unless there is a limit; OpenBLAS, whose
+    sums depend on it, has one."""
+    if not (wanted.isdecimal() and 1 <= int(wanted) <= 64):
+        raise BadInput(f"FFIMPACT_THREADS: '{wanted}' in the environment is no number of threads (accepted: 1 to 64)")
+    return {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": wanted, "OMP_THREAD_LIMIT": wanted, "OMP_WAIT_POLICY": "passive"}
 
 
 def _blas_kernels() -> dict[str, str]:

@@ -15,6 +15,7 @@ from ..places import ROOT
 SOURCES = ROOT / "edp/kernels"
 BUILT = ROOT / "edp/dev"                 # edp/kernels.idp says why it is called so
 LIBRARIES = ("-lcholmod", "-lumfpack")
+THREADS = ("-fopenmp",), ()              # where the compiler has no OpenMP: one thread
 
 
 def build(command: str, version: str, environment: Mapping[str, str]) -> bool:
@@ -54,8 +55,11 @@ def _build(command: str, maker: Path, plugin: Path, loading: str, environment: M
     """The plugin, then the file that loads it: whoever starts meanwhile finds the old, nothing or the new, and all of it."""
     if not plugin.exists():
         with tempfile.TemporaryDirectory(dir=BUILT) as folder:
-            subprocess.run([maker, SOURCES / "kernels.cpp", *LIBRARIES], cwd=folder, env=environment, check=True, timeout=300,
-                           stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            for flags in THREADS:
+                made = subprocess.run([maker, *flags, SOURCES / "kernels.cpp", *LIBRARIES], cwd=folder, env=environment, check=not flags,
+                                      timeout=300, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                if made.returncode == 0:
+                    break
             (Path(folder) / "try.edp").write_text('load "./kernels"\n')
             subprocess.run([command, "-nw", "-ne", "-v", "0", "try.edp"], cwd=folder, env=environment, check=True, timeout=60,
                            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
