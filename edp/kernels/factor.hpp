@@ -116,8 +116,8 @@ public:
   }
 
   // What a factorisation costs, in iterations of solveStep(), most of whose time two back-substitutions take: its operations a number of L
-  // count, and twice as much as an iteration costs the assembly. 30 where L is small, and so is that part of an iteration.
-  long renewalCost() const { return single ? 2 + long(common.fl / (90. * L->xsize)) : 30; }
+  // count, and twice as much as an iteration costs the assembly. 0 where L is small, and so is that part of an iteration.
+  long renewalCost() const { return single ? 2 + long(common.fl / (90. * L->xsize)) : 0; }
 
   // A x = b. Of b that is zero but at w so is L^-1 b: it costs half.
   void solve(const double *b, double *x) {

@@ -7,6 +7,7 @@
 #include "contact.hpp"
 #include "pairs.hpp"
 #include "numbers.hpp"
+#include "secant.hpp"
 
 static bodies::Bodies body;
 static bodies::Deformation deformation;
@@ -74,6 +75,7 @@ static void addKernels() {
   addFactor();
   contact::addContact();
   pairs::addPairs();
+  secant::addSecant();
   add("kernelRows", numbers::write);
 }
 
