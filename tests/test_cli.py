@@ -99,6 +99,7 @@ def test_quiet_is_quiet(fake, tmp_path):
     (["run", "disc-normal", "--out", "orchestrate"], 14, "ffimpact: "),
     (["run", "disc-normal", "--out", "/proc/nowhere"], 14, "ffimpact: "),
     (["figures", "nowhere"], 14, "ffimpact: "),
+    (["swep"], 10, "ffimpact: argument COMMAND: invalid choice: 'swep' (choose from 'run', 'list', 'parameters', 'figures', 'sweep', "),
 ])
 def test_expected_errors_are_one_line(fake, arguments, code, line):
     """An expected error is one line on stderr and its exit code; no traceback."""
