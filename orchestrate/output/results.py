@@ -171,7 +171,7 @@ def read_answers(folder: Path) -> Answers:
     seen = common if frame is None else np.broadcast_to(frame, common.shape)
     speed = max(float(np.linalg.norm([history[f"v{axis}{of}"] - seen[:, i] for i, axis in enumerate(axes)], axis=0).max()) for of in bodies)
     shared = mass * (seen * (seen / 2 - common)).sum(axis=1)                 # from the scene's frame to the other
-    energy = float((history["kinetic"] + history["elastic"] + history["contact"] + shared).max())
+    energy = float((mechanical_energy(history) + shared).max())
     last = np.array([summary.get(f"rebound_v{axis}", 0.0) for axis in axes])
     at = last if frame is None else frame
     found = summary | {"largest_energy": energy, "energy_final": summary["energy_final"] + mass * float(at @ (at / 2 - last))}
@@ -185,6 +185,11 @@ def _frame(used: dict, like: np.ndarray, bodies: int) -> np.ndarray | None:
     obstacles = [one.get("velocity", np.zeros_like(like)) for one in used.get("obstacle", [])]
     # of revolution: along the axis
     return np.mean([[0.0, one] if np.isscalar(one) else one for one in obstacles], axis=0) if obstacles else None
+
+
+def mechanical_energy(history: dict[str, np.ndarray]) -> np.ndarray:
+    """Kinetic, elastic and contact energy together (steps,) [J, in plane strain J/m]."""
+    return history["kinetic"] + history["elastic"] + history["contact"]
 
 
 def suffixes(columns: Iterable[str]) -> list[str]:

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from .judging import CONSTANT, DIFFERS, History, Lost, Results, both_times, finished, graded, lost, states, total, when
+from ..output.results import mechanical_energy
+from .judging import CONSTANT, DIFFERS, History, Lost, Results, both_times, finished, graded, lost, states, when
 
 BLOCK = {"svk": "disc-block", "neohookean": "disc-block-neohookean"}
 MOMENTUM = 1e-8             # of the disc's momentum: below, that of both bodies is kept
@@ -48,7 +49,7 @@ def passes(results: Results, law: str) -> tuple[bool, str]:
     """With a law: where the disc ends with less than at the start and the block with more, and each keeps kinetic and elastic energy
     together to 1e-9 of the start's in the flight after the last touch."""
     history, end = results.history(BLOCK[law]), results.summary(BLOCK[law])
-    disc, block = (100 * (history[f"kinetic_{b}"] + history[f"elastic_{b}"]) / total(history)[0] for b in (1, 2))
+    disc, block = (100 * (history[f"kinetic_{b}"] + history[f"elastic_{b}"]) / mechanical_energy(history)[0] for b in (1, 2))
     flight = slice(np.flatnonzero(history["normal_force"] > 0)[-1], None)
     after = max(np.ptp(own[flight]) if len(own[flight]) > 1 else np.inf for own in (disc, block)) / 100
     shares = [100 * end[f"vibration_energy_{b}"] / end["energy_initial"] for b in (1, 2)]
@@ -62,7 +63,8 @@ def passes(results: Results, law: str) -> tuple[bool, str]:
 def total_energy(results: Results, law: str) -> tuple[bool, str]:
     """With a law: where kinetic, elastic and contact energy together change by less than 1e-9 of the start's over the whole run."""
     history = results.history(BLOCK[law])
-    moved, most = np.ptp(total(history)) / total(history)[0], (history["contact"] / total(history)[0]).max()
+    energy = mechanical_energy(history)
+    moved, most = np.ptp(energy) / energy[0], (history["contact"] / energy[0]).max()
     return moved < CONSTANT, f"constant to {moved:.0e}, at most {100 * most:.1f} % of it in the contact"
 
 

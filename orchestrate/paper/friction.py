@@ -10,11 +10,12 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from ..output.results import mechanical_energy
 from ..report.friction_laws import VALUES
 from ..report.vibration import spectrum
 from . import stick_slip
 from ..sweeps import study
-from .judging import CONSTANT, LAWS, OPEN, History, Lost, Results, bar, finished, graded, lost, maxima, of_both, states, total, touching
+from .judging import CONSTANT, LAWS, OPEN, History, Lost, Results, bar, finished, graded, lost, maxima, of_both, states, touching
 
 JUMP, SPEED, ANGLE = "friction-jump", 12.0, 60.0   # m/s, degrees from the plane: the paper's normal incidence is pi/2
 FLAT = 30.0                 # degrees from the plane, as if the paper's pi/3 were from the normal
@@ -197,7 +198,7 @@ def energy(results: Results, law: str) -> tuple[bool, str]:
 
 def _losses(history: History) -> tuple[float, float, float]:
     """Of the energy at the start: its range after the last touch, its largest rise of a step, what is lost; inf where no step is after."""
-    energies, last = total(history) / total(history)[0], touching(history)[-1]
+    energies, last = mechanical_energy(history) / mechanical_energy(history)[0], touching(history)[-1]
     after = np.ptp(energies[last:]) if len(energies) > last + 1 else np.inf
     return float(after), max(0.0, float(np.diff(energies).max())), float(1 - energies[-1])
 
@@ -218,7 +219,7 @@ def elastic(results: Results, law: str) -> tuple[str, str, str]:
 def _exchange(history: History) -> tuple[float, float, float, int]:
     """Of the elastic energy: its share of the total before the contact, the correlation of its changes in a step with those of the kinetic
     energy, its largest share, and the maxima that stand out by more than 1 % of the total."""
-    steps, start = touching(history), total(history)[0]
+    steps, start = touching(history), mechanical_energy(history)[0]
     mirror = np.corrcoef(*(np.diff(history[name])[steps[1:] - 1] for name in ("kinetic", "elastic")))[0, 1]
     return (float(abs(history["elastic"][:max(steps[0], 1)]).max() / start), float(mirror), float(history["elastic"].max() / start),
             maxima(history["elastic"][steps], 0.01 * start))

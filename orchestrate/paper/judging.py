@@ -211,11 +211,6 @@ def within(value: float, paper: float, half_digit: float, error: float = 0.0) ->
     return abs(value - paper) <= half_digit + error
 
 
-def total(history: History) -> np.ndarray:
-    """Kinetic, elastic and contact energy together."""
-    return history["kinetic"] + history["elastic"] + history["contact"]
-
-
 def touching(history: History) -> np.ndarray:
     """The steps from the first to the last touch, as indices."""
     steps = np.flatnonzero(history["normal_force"] > 0)

@@ -16,10 +16,10 @@ from ..places import PACKAGE
 from ..run import code_hash
 from ..sweeps import study
 from ..sweeps import sweep
-from ..report.figures import STYLE
+from ..report.figures import GREEN, ORANGE, STYLE
 from .judging import AGREES, DIFFERS, OPEN, PARTLY, Finding
 
-COLOURS = {AGREES: "#009e73", DIFFERS: "#d55e00", PARTLY: "#b8860b", OPEN: "#777777"}
+COLOURS = {AGREES: GREEN, DIFFERS: ORANGE, PARTLY: "#b8860b", OPEN: "#777777"}
 SHOWN = {"energies": "energies over time", "force": "contact force over time",
          "rolling": "velocity of the centre and the rim, and the share that slides",
          "velocity": "velocities over time", "contact": "contact pressure along the outline and over time",

@@ -13,7 +13,7 @@ from matplotlib.image import AxesImage
 from matplotlib.patches import Rectangle
 
 from ..failure import Unreadable
-from ..report.figures import LAWS, SMALL, STYLE, save
+from ..report.figures import LAWS, ORANGE, SMALL, STYLE, save
 from ..output.folder import result_folder
 from ..output.results import read_history
 from ..places import COMMAND, RESULTS, shown
@@ -119,7 +119,7 @@ def draw(rows: pd.DataFrame, axes: dict[str, tuple[float, ...]], path: Path) -> 
         for panel in grid[:, 0]:
             panel.set_ylabel("k [Pa/m]")
         bar = figure.colorbar(picture, ax=grid, label="contact time [ms]", shrink=0.6)
-        bar.ax.axhline(1e3 * PAPER[0], color="#d55e00", linewidth=2)
+        bar.ax.axhline(1e3 * PAPER[0], color=ORANGE, linewidth=2)
         figure.suptitle("Share of the normal load that slides [%], a bar each for the first, second and last third of the contact (full "
                         "height: 100 %);\n"
                         f"framed ({rows['order'].sum()} of {len(rows)}): slides first, sticks last, as in the paper, whose contact time is "
@@ -136,7 +136,7 @@ def _cells(panel: plt.Axes, here: pd.DataFrame, axes: dict[str, tuple[float, ...
             row = here.loc[(k, e)]
             _bars(panel, j, i, row)
             if row["order"]:
-                panel.add_patch(Rectangle((j - 0.48, i - 0.47), 0.96, 0.94, fill=False, color="#d55e00", linewidth=2))
+                panel.add_patch(Rectangle((j - 0.48, i - 0.47), 0.96, 0.94, fill=False, color=ORANGE, linewidth=2))
     panel.set_xticks(range(len(axes["slip_velocity"])), [f"{e:g}" for e in axes["slip_velocity"]])
     panel.set_yticks(range(len(axes["penalty"])), [f"$10^{{{np.log10(k):.0f}}}$" for k in axes["penalty"]])
     panel.spines[:].set_visible(False)

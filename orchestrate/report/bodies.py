@@ -11,7 +11,7 @@ from ..output import vtu
 from ..scenes import obstacles
 from ..scenes.obstacles import Obstacle
 from ..input.parameters import Value
-from ..output.results import body_names, suffixes
+from ..output.results import body_names, mechanical_energy, suffixes
 from .figures import (BLACK, BLUE, GREEN, GREY, ORANGE, ORIGIN, PURPLE, VISCOUS, Body, as_written, balance_error, deformed, instants,
                       is_half, least, material, over_time, per_metre, plt, side_by_side)
 
@@ -100,7 +100,7 @@ def energies(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fig
     if not several:
         together.plot(t, history["kinetic"], color=BLUE, linewidth=2.8, label="kinetic")
         together.plot(t, history["elastic"], color=ORANGE, linewidth=2.3, label="elastic")
-    total, words = history["kinetic"] + history["elastic"] + history["contact"], "total"
+    total, words = mechanical_energy(history), "total"
     lines = {"contact": (history["contact"], "#56b4e9")}
     for name, column, words_of_it, sign, colour in (("lost to friction", "friction_work", "+ lost", 1, "#d4a017"),
                                                     ("lost to viscosity", "viscous_work", "+ lost", 1, VISCOUS),

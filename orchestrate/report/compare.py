@@ -11,7 +11,7 @@ from ..failure import BadInput, Failure
 from ..output.folder import result_folder
 from ..input.parameters import overrides
 from ..places import COMMAND, RESULTS, shown
-from ..output.results import RunResult, body_names, suffixes
+from ..output.results import RunResult, body_names, mechanical_energy, suffixes
 from ..run import run
 from . import report
 from .figures import ABOVE, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE, numbers_of_the_paper, per_metre, touched, save
@@ -65,7 +65,7 @@ def draw(results: dict[str, RunResult], path: Path) -> None:
                        label=f"{name}: {_material(used)}{result.summary['dofs']} dofs{_doubts(result.summary)}")
             _contact(force, result, colour)
             drag.plot(t, 1e-3 * h["friction_force"] / heavy if rubs else h["max_penetration"] * 1e3, color=colour)
-            energy.plot(t, (h["kinetic"] + h["elastic"] + h["contact"]) / start, color=colour, linewidth=2.4,
+            energy.plot(t, mechanical_energy(h) / start, color=colour, linewidth=2.4,
                         linestyle=(2 * k, (2, 2 * len(results) - 2)))
             energy.plot(t, h["elastic"] / start, color=colour, linewidth=0.9)
             for of, body in zip(suffixes(h), body_names(used)):

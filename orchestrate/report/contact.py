@@ -7,18 +7,17 @@ from matplotlib.colors import ListedColormap
 
 from ..input.parameters import Value
 from ..output.results import read_table
-from .figures import plt
+from .figures import BLACK, BLUE, ORANGE, plt
 
 INSTANTS = 6                     # profiles at most
 SLOW = 0.03                      # speed over sqrt(E/rho) up to which the pressure of a ball is shown beside Hertz'
 MOST_BODIES = 4                  # those with the largest pressure
 PRESSURE = "contact pressure [MPa]"
-SLIP = {"slips back": "#0072b2", "sticks": "#bbbbbb", "slips forward": "#d55e00"}    # v_T < 0, > 0: on the plane along x
-RADIAL = {"slips inwards": "#0072b2", "sticks": "#bbbbbb", "slips outwards": "#d55e00"}    # from the axis
-SLIDES = {"sticks": "#bbbbbb", "slides": "#d55e00"}
+SLIP = {"slips back": BLUE, "sticks": "#bbbbbb", "slips forward": ORANGE}    # v_T < 0, > 0: on the plane along x
+RADIAL = {"slips inwards": BLUE, "sticks": "#bbbbbb", "slips outwards": ORANGE}    # from the axis
+SLIDES = {"sticks": "#bbbbbb", "slides": ORANGE}
 MAPS = 5                         # instants at most
 ALONG = "along the outline"
-WIDTH, LOAD = "#0072b2", "#d55e00"
 ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 1), "ncols": 3, "fontsize": 6.5, "handlelength": 1.0, "columnspacing": 0.8}
 COLUMNS = ["t", "body", "partner", "s", "X", "Y", "x", "y", "weight", "pressure", "shear", "slip_velocity", "slides", "projected_pressure"]
 
@@ -131,8 +130,8 @@ def _history(axes: plt.Axes, history: dict[str, np.ndarray], of: str) -> None:
     """Half-width [mm] and, on the right, largest pressure [MPa] of the contact over time; in the flight neither."""
     touches = history[f"contact_half_width{of}"] > 0
     other = axes.twinx()
-    for where, name, scale, colour, label in ((axes, "contact_half_width", 1e3, WIDTH, "half-width [mm]"),
-                                              (other, "max_pressure", 1e-6, LOAD, "largest pressure [MPa]")):
+    for where, name, scale, colour, label in ((axes, "contact_half_width", 1e3, BLUE, "half-width [mm]"),
+                                              (other, "max_pressure", 1e-6, ORANGE, "largest pressure [MPa]")):
         where.plot(1e3 * history["t"], np.where(touches, scale * history[name + of], np.nan), color=colour, linewidth=1)
         where.set_ylim(0, None)
         where.set_ylabel(label, color=colour)
@@ -223,7 +222,7 @@ def _over_radius(axes: plt.Axes, table: np.recarray, ball: dict[str, Value]) -> 
             r, pressure = hertz((now.pressure * now.weight).sum(), ball)
             axes.plot(1e3 * r, 1e-6 * pressure, color=colour, linewidth=0.9)
     if slow:
-        axes.plot([], [], color="#222222", linewidth=0.9, label="Hertz, same force")
+        axes.plot([], [], color=BLACK, linewidth=0.9, label="Hertz, same force")
     axes.set(xlabel="distance from the axis [mm]", ylabel=PRESSURE, xlim=(0, None), ylim=(0, None))
     axes.legend(**ABOVE)
 

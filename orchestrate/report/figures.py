@@ -26,6 +26,7 @@ from PIL import Image
 from ..input import dimension
 from ..input.parameters import Value
 from ..output import vtu
+from ..output.results import mechanical_energy
 from . import literature
 
 LAWS = {"svk": "St. Venant–Kirchhoff", "neohookean": "neo-Hookean", "mooney-rivlin": "Mooney–Rivlin", "ogden": "Ogden"}
@@ -154,7 +155,7 @@ def _energies(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fi
     one on another is seen, and the total is a band.
     """
     t = 1e3 * history["t"]
-    total = history["kinetic"] + history["elastic"] + history["contact"]
+    total = mechanical_energy(history)
     start = total[0] or total.max() or 1.0   # at rest: over the largest energy
     figure, (top, bottom) = plt.subplots(2, sharex=True, figsize=(5.6, 4.6), height_ratios=[3, 1])
     lines = {"kinetic": (history["kinetic"], BLUE), "elastic": (history["elastic"], ORANGE),

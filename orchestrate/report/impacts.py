@@ -5,14 +5,14 @@ from pathlib import Path
 import numpy as np
 
 from ..output.results import read_table
-from .figures import plt
+from .figures import BLUE, GREEN, GREY, ORANGE, plt
 
 LIGHTEST = 0.01                  # of the largest impulse of a meeting: what is less is the grazing end of an impact
 # of the approach, and of the largest slip of a meeting: of less the restitution along the partner is that of vibrations
 LEAST_SLIP = 0.05
 LEAST_APPROACH = 0.01            # of the largest of a meeting: of less, as of a body that lies on its partner, there is no restitution
 HIGHEST = 1.5                    # restitution that is drawn to scale: above it a body that vibrates was pushed off as it hardly approached
-COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"]
+COLOURS = [BLUE, ORANGE, GREEN, "#cc79a7", "#e69f00", "#56b4e9"]
 TOLD = 5                         # restitutions written beside the first impacts
 NEEDED = ["body", "partner", "start", "end", "impulse", "approach", "separation", "restitution", "restitution_tangential"]
 
@@ -58,7 +58,7 @@ def draw(table: np.recarray, names: list[str], rigid: list[str]) -> plt.Figure |
         if np.isfinite(along).any():
             below.plot(t, rows.slip_before, "s--", color=colour, markersize=4, linewidth=0.8, fillstyle="none")
     top.set(ylabel="restitution", ylim=(min(0.0, top.get_ylim()[0]), max(1.05, top.get_ylim()[1])))
-    top.axhline(1, color="#999999", linewidth=0.6)
+    top.axhline(1, color=GREY, linewidth=0.6)
     top.legend(ncols=2, loc="lower center", bbox_to_anchor=(0.5, 1))
     below.set(xlabel="start of the contact [ms]", ylabel="speed before [m/s]", ylim=(0, 1.1 * below.get_ylim()[1]))
     return figure

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from ..output.results import read_table
-from .figures import plt
+from .figures import BLUE, GREEN, plt
 
 
 NEEDED = ["mode", "frequency", "energy", "strain_energy", "kinetic_energy"]
@@ -34,9 +34,9 @@ def draw(table: np.recarray, history: dict[str, np.ndarray], per: str) -> plt.Fi
     most = np.nanmax(table.energy)
     figure, (top, below) = plt.subplots(2, 1, figsize=(6.4, 5), sharex=True)
     frequencies = np.linspace(0, 1.05 * table.frequency.max(), 600)
-    top.plot(1e-3 * frequencies, spectrum(history["t"], history["dt"], history["normal_force"], frequencies), color="#0072b2", linewidth=1)
+    top.plot(1e-3 * frequencies, spectrum(history["t"], history["dt"], history["normal_force"], frequencies), color=BLUE, linewidth=1)
     top.set(ylabel=f"spectrum of the force [N s{per}]", yscale="log")
-    for name, colour, style in (("kinetic_energy", "#e69f00", "s"), ("strain_energy", "#009e73", "^"), ("energy", "black", "o")):
+    for name, colour, style in (("kinetic_energy", "#e69f00", "s"), ("strain_energy", GREEN, "^"), ("energy", "black", "o")):
         shown = table[table[name] > 1e-6 * most]
         below.plot(1e-3 * shown.frequency, shown[name], style, color=colour, markersize=3.5, label=name.replace("_", " "))
     below.vlines(1e-3 * table.frequency, 1e-6 * most, table.energy, color="#bbbbbb", linewidth=0.6, zorder=0)

@@ -9,6 +9,7 @@ import pandas as pd
 from orchestrate.report.figures import BLUE, DASHED, ORANGE, STYLE, save
 from orchestrate.sweeps import study
 
+from .. import commands
 from . import peers
 
 NUS = (0.3, 0.4, 0.45, 0.47, 0.49, 0.499, 0.4999)
@@ -26,7 +27,7 @@ FORMATS = {"body": "", "volume": "", "nu": "g", "contact [ms]": ".3f", "impulse"
 
 def main(argv: list[str]) -> int:
     """Prints the table, writes rubber.csv and rubber.png; 0 if what is asked of the mean volume holds."""
-    parser = study.command("rubber", __doc__, page=True)
+    parser = commands.command("rubber", __doc__, page=True)
     parser.add_argument("--nus", metavar="NU", nargs="+", type=float, default=NUS, help="Poisson's ratios (default: %(default)s)")
     parser.add_argument("--limit", metavar="SECONDS", type=float, default=LIMIT, help="of a run (default %(default)g)")
     options = parser.parse_args(argv)
@@ -34,7 +35,7 @@ def main(argv: list[str]) -> int:
     draw(table, options.out / "rubber.png")
     beside = [row for body in BODIES for row in peer(body)]
     text = report(table, beside)
-    return study.finish(options, table, text, holds(table) and agrees(beside), argv, "Rubber: nu to 0.5", "csv, .png")
+    return commands.finish(options, table, text, holds(table) and agrees(beside), argv, "Rubber: nu to 0.5", "csv, .png")
 
 
 def compare(nus: list[float], limit: float, out: Path) -> pd.DataFrame:
