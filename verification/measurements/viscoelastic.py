@@ -1,12 +1,15 @@
 """Damped impacts. A ball of Kelvin and Voigt's solid at low speed, against quasi-static theory: 1 - e over v^(1/5), its slope and its
-coefficient (Kuwabara, Kono 1987; Brilliantov, Spahn, Hertzsch, Poeschel 1996). A disc over its loss factor, and over the relaxation time
-of a Maxwell branch: restitution and contact time.
+coefficient (Kuwabara, Kono 1987; Brilliantov, Spahn, Hertzsch, Poeschel 1996); the same ball with a Maxwell branch. A disc over its loss
+factor, and over the relaxation time of a Maxwell branch: restitution and contact time.
 
 Quasi-static theory, F = k (x^(3/2) + 3/2 A x^(1/2) x'), k = 4/3 E* R^(1/2), E* = 4 mu (lambda + mu)/(lambda + 2 mu), of the approach x:
   1 - e = 1.730 A (k/m)^(2/5) v^(1/5) + O(A^2)
 A = (eta d/dmu + zeta d/dlambda) ln E*: the rate at which Hertz' own motion dissipates is that of a flat punch as wide as the contact,
 2 b x'^2 (eta d/dmu + zeta d/dlambda) E*, as an elastic energy at given motion of the punch is least. Brilliantov et al. have
 A = zeta^2/(zeta + 2 eta) (1 - nu^2)(1 - 2 nu)/(E nu^2): the same for zeta/lambda = eta/mu, 0 for zeta = 0.
+A branch G, tau takes of Hertz' motion, to first order in G, by the same punches, of half-widths b at the two times,
+  D = G dE*/dmu times the double integral of exp(-|t - s|/tau) min(b(t), b(s)) x'(t) x'(s),
+as what a punch presses down by, and how far the surface bulges beside it, is the same for all moduli.
 """
 
 import itertools
@@ -28,7 +31,8 @@ MU, LAMBDA = YOUNG / (2 * (1 + NU)), YOUNG * NU / ((1 + NU) * (1 - 2 * NU))
 MASS = DENSITY * 4 / 3 * math.pi * RADIUS**3
 SPRING = 4 / 3 * YOUNG / (1 - NU**2) * math.sqrt(RADIUS)  # k [N/m^(3/2)]
 TIME = 1e-4                                               # eta/mu, zeta/lambda [s]
-KINDS = {"elastic": (0.0, 0.0), "both": (TIME * MU, TIME * LAMBDA), "shear": (TIME * MU, 0.0)}
+RELAXES = (0.01 * MU, 0.005)                              # G [Pa], tau [s] of the ball's branch
+KINDS = {"elastic": (0.0, 0.0), "both": (TIME * MU, TIME * LAMBDA), "shear": (TIME * MU, 0.0), "branch": RELAXES}
 COLOURS, WORDS = {"both": BLUE, "shear": ORANGE}, {"both": "η/μ = ζ/λ", "shear": "η alone"}
 SPEEDS = (1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0)               # m/s; sqrt(E/rho) is 64
 SLOW = 1e-2                                               # up to here the contact is small (b/R < 0.04) and long: theory is asked for
@@ -89,6 +93,25 @@ def impact(a: float, speed: float, steps: int = 4000) -> tuple[float, float]:
     return -state[1] / speed, t
 
 
+def lost_to_branch(speed: float, steps: int = 2000) -> float:
+    """The share of its energy that the ball loses to RELAXES: D of Hertz' motion x = x0 sin^(4/5), as x' = v (1 - (x/x0)^(5/2))^(1/2)."""
+    depth = (1.25 * MASS * speed**2 / SPRING) ** 0.4
+    ends = np.linspace(0, math.pi, steps + 1)
+    middle, x = (ends[1:] + ends[:-1]) / 2, depth * np.abs(np.sin(ends)) ** 0.8
+    pace = 0.8 * depth / speed * np.sin(middle) ** -0.2 * math.pi / steps
+    t, way, width = np.cumsum(pace) - pace / 2, np.diff(x), np.sqrt(RADIUS * depth * np.sin(middle) ** 0.8)
+    kernel = np.exp(-np.abs(t[:, None] - t) / RELAXES[1]) * np.minimum(width[:, None], width)
+    return YOUNG / (1 - NU**2) * coefficient(RELAXES[0], 0) * way @ kernel @ way / (MASS * speed**2 / 2)
+
+
+def theory(kind: str, speed: float) -> tuple[float, float]:
+    """1 - e and contact time [s] of a kind."""
+    if kind == "branch":
+        return 1 - math.sqrt(1 - lost_to_branch(speed)), impact(0, speed)[1]
+    e, contact = impact(coefficient(*KINDS[kind]), speed)
+    return 1 - e if kind != "elastic" else 0.0, contact
+
+
 # ---- the runs
 
 def balls(out: Path) -> pd.DataFrame:
@@ -96,20 +119,18 @@ def balls(out: Path) -> pd.DataFrame:
     bar = math.sqrt(YOUNG / DENSITY)
     base = {"law": "neohookean", "young": YOUNG, "nu": NU, "density": DENSITY, "radius": RADIUS, "fields": 0, "accuracy": 0.002}
     cases = list(itertools.product(KINDS, SPEEDS))
-    points = [{"speed": speed, "viscosity": float(f"{KINDS[kind][0]:.6g}"), "bulk_viscosity": float(f"{KINDS[kind][1]:.6g}"),
-               "penalty": float(f"{STIFF * YOUNG * 200 / math.pi / (1.31 * RADIUS * (speed / bar) ** 0.4):.4g}")}
-              for kind, speed in cases]
+    names = {kind: ("relaxation_modulus", "relaxation_time") if kind == "branch" else ("viscosity", "bulk_viscosity") for kind in KINDS}
+    points = [{"speed": speed, "penalty": float(f"{STIFF * YOUNG * 200 / math.pi / (1.31 * RADIUS * (speed / bar) ** 0.4):.4g}")}
+              | {name: float(f"{value:.6g}") for name, value in zip(names[kind], KINDS[kind])} for kind, speed in cases]
     found, rows = study.study(points, out / "ball", base, LIMIT, "ball-axisymmetric"), []
     period = 2 * math.pi * RADIUS / 2.65 / math.sqrt(MU / DENSITY)
     for (kind, speed), (_, run) in zip(cases, found.iterrows()):
-        a = coefficient(*KINDS[kind])
-        e, contact = impact(a, speed)
-        width = math.sqrt(RADIUS * (1.25 * MASS * speed**2 / SPRING) ** 0.4)
-        row = {"viscous": kind, "speed": speed, "b/R": width / RADIUS, "T/own": contact / period, "theory": 1 - e if a else 0.0,
-               "first order": first_order(a, speed), "theory [ms]": 1e3 * contact}
-        lost = 1 - run.restitution
+        expected, contact = theory(kind, speed)
+        width, lost = math.sqrt(RADIUS * (1.25 * MASS * speed**2 / SPRING) ** 0.4), 1 - run.restitution
+        row = {"viscous": kind, "speed": speed, "b/R": width / RADIUS, "T/own": contact / period, "theory": expected,
+               "first order": first_order(coefficient(*KINDS[kind]), speed) if kind in COLOURS else math.nan, "theory [ms]": 1e3 * contact}
         row |= measured(run) | {"contact [ms]": 1e3 * run.contact_time, "1 - e": lost}
-        rows.append(row | {"off [%]": 100 * (lost / (1 - e) - 1) if a else math.nan})
+        rows.append(row | {"off [%]": 100 * (lost / expected - 1) if expected else math.nan})
     return pd.DataFrame(rows)
 
 
@@ -153,18 +174,22 @@ def report(ball: pd.DataFrame, disc: pd.DataFrame) -> str:
     least, most = disc.loc[disc["tau/T"].notna(), "e"].idxmin(), max(disc.balance.max(), ball.balance.max())
     ours, theirs = ([each(*KINDS[kind]) for kind in COLOURS] for each in (coefficient, brilliantov))
     off, fitted = slow["off [%]"], ", ".join(f"{fit:.4f} ({kind})" for kind, fit in fits.items())
+    branch = ball[(ball.viscous == "branch") & (ball.speed <= SLOW)]
+    peak = branch.loc[branch["1 - e"].idxmax()]
     said = [
         f"Ball of revolution on a rigid plane, neo-Hookean, E = {1e-6 * YOUNG:g} MPa, nu = {NU:g}, R = {RADIUS:g} m, penalty {STIFF:g}",
-        f"times the usual one. viscous: none (elastic), eta/mu = zeta/lambda = {TIME:g} s (both), eta alone (shear). Theory: quasi-static,",
-        f"F = k (x^(3/2) + 3/2 A x^(1/2) x'), integrated; A = {ours[0]:.3g} s (both), {ours[1]:.3g} s (shear). That of Brilliantov et al.",
-        f"1996 is {theirs[0]:.3g} and {theirs[1]:.3g} s: the same where both viscosities go with the moduli; without the second one it",
+        f"times the usual one. viscous: none (elastic), eta/mu = zeta/lambda = {TIME:g} s (both), eta alone (shear), a Maxwell branch of",
+        f"{RELAXES[0] / MU:g} mu and {1e3 * RELAXES[1]:g} ms (branch; its theory is of first order in G). Theory of the others:",
+        f"quasi-static, F = k (x^(3/2) + 3/2 A x^(1/2) x'), integrated; A = {ours[0]:.3g} s (both), {ours[1]:.3g} s (shear). That of Brilliantov",
+        f"et al. 1996 is {theirs[0]:.3g} and {theirs[1]:.3g} s: the same where both viscosities go with the moduli; without the second one it",
         "says that nothing is lost, which the runs refute (the head of verification/measurements/viscoelastic.py derives A).", "",
         "- b/R: Hertz' half-width; T/own: contact time over the period of the ball's first mode.",
         "- first order: 1.730 A (k/m)^(2/5) v^(1/5); lost: viscous_work over the energy at the start.", "",
         study.table(ball, BALL_FORMATS), "",
         f"- Range of the theory: up to {SLOW:g} m/s, b/R = {slow['b/R'].max():.3f} and {slow['T/own'].min():.0f} periods; there 1 - e is",
         f"  off by {off.min():+.1f} to {off.max():+.1f} %, and grows as v to the {fitted}.",
-        "- Beyond, the contact is not small: a ball is stiffer than Hertz' half-space, as contact times say, and strains are finite.", "",
+        "- Beyond, the contact is not small: a ball is stiffer than Hertz' half-space, as contact times say, and strains are finite.",
+        f"- The branch takes most at {peak.speed:g} m/s, where the contact lasts {peak['contact [ms]'] / 1e3 / RELAXES[1]:.1f} tau.", "",
         f"Disc, neo-Hookean, nu = {DISC['nu']:g}, {DISC['speed']:g} m/s: over loss, tan delta of shear at its first mode; over tau of a",
         f"Maxwell branch of {BRANCH:g} mu, T the contact time without it (above 1 % of the peak force, as in the table).", "",
         study.table(disc, DISC_FORMATS), "",
@@ -179,7 +204,7 @@ def report(ball: pd.DataFrame, disc: pd.DataFrame) -> str:
 def draw(ball: pd.DataFrame, disc: pd.DataFrame, path: Path) -> None:
     """1 - e of the ball over v^(1/5); restitution and contact time of the disc over the loss factor and over the relaxation time."""
     with plt.rc_context(STYLE):
-        figure, panels = plt.subplots(1, 3, figsize=(11, 3.4))
+        figure, panels = plt.subplots(1, 4, figsize=(14, 3.4))
         speeds = np.geomspace(min(SPEEDS), max(SPEEDS), 40)
         for kind, colour in COLOURS.items():
             rows, a = ball[ball.viscous == kind], coefficient(*KINDS[kind])
@@ -190,6 +215,12 @@ def draw(ball: pd.DataFrame, disc: pd.DataFrame, path: Path) -> None:
         panels[0].plot(elastic.speed**0.2, elastic["1 - e"], "s", color=GREEN, markersize=3, label="elastic")
         panels[0].set(xlabel="$v^{1/5}$ [(m/s)$^{1/5}$]", ylabel="$1 - e$", title="ball; lines: theory, dotted: first order")
         panels[0].legend()
+        rows = ball[ball.viscous == "branch"]
+        panels[3].semilogx(speeds, [theory("branch", v)[0] for v in speeds], color=BLUE, linewidth=1, label="first order in G")
+        panels[3].semilogx(rows.speed, rows["1 - e"], "o", color=BLUE, markersize=4)
+        panels[3].set(xlabel="$v$ [m/s]", ylabel="$1 - e$", ylim=(0, None),
+                      title=f"ball, branch of {RELAXES[0] / MU:g} μ, {1e3 * RELAXES[1]:g} ms")
+        panels[3].legend()
         for panel, x, words in ((panels[1], "loss", "loss factor tan δ"), (panels[2], "tau/T", "relaxation time / contact time")):
             rows, beside = disc[disc[x].notna()], panel.twinx()
             panel.plot(rows[x], rows.e, "o-", color=BLUE, markersize=4)
