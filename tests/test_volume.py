@@ -85,3 +85,37 @@ def test_linear_elements_are_refused(tmp_path):
         describe({"volume": "mean"})
     with pytest.raises(Exception, match="volume: projected is of degree=2"):
         disc(tmp_path, volume="projected", degree=1)
+
+
+HELD = {"law": "incompressible", "nu": 0.5, "accuracy": 0.1, "speed": 4}
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_incompressible_bodies_keep_their_volume(tmp_path, name):
+    """J = 1: the mean volume of every element stays to 1e-6, energy and momenta to 1e-9, with kernels as without."""
+    script, flags = SCENES[name]
+    given = HELD | {"tolerance": 1e-14} | {key: value for key, value in flags.items() if key != "law"}
+    run, scripted = (disc(tmp_path / without, script, **given, without=without) for without in ("none", "kernels"))
+    summary = run.summary
+    assert summary["volume_change"] < 1e-6 and summary["energy_drift"] < 1e-9
+    assert summary["momentum_drift"] < 1e-9 and (summary["angular_momentum_drift"] or 0) < 1e-9
+    for column in ("normal_force", "kinetic", "elastic", "min_stretch"):
+        assert run.history[column] == pytest.approx(scripted.history[column], rel=0, abs=1e-8 * max(abs(run.history[column]))), column
+
+
+def test_it_is_the_limit_of_nu(tmp_path):
+    """The answers of nu = 0.4999 go on to those of J = 1, in as many iterations, give or take a quarter."""
+    held = disc(tmp_path / "held", **HELD | {"accuracy": 0.02}).summary
+    near = disc(tmp_path / "near", **HELD | {"accuracy": 0.02, "law": "neohookean", "nu": 0.4999}).summary
+    assert held["impulse"] == pytest.approx(near["impulse"], rel=1e-3) and held["rebound_vy"] == pytest.approx(near["rebound_vy"], rel=2e-3)
+    assert held["newton_iterations"] < 1.25 * near["newton_iterations"]
+    assert near["volume_change"] > 1e-6 > held["volume_change"]
+
+
+@pytest.mark.parametrize("flags", [{"nu": 0.4}, {"degree": 1}, {"volume": "plain"}, {"integrator": "newmark"}, {"integrator": "central-difference"}])
+def test_what_cannot_be_incompressible_is_refused(tmp_path, flags):
+    """One line that says what is accepted: nu = 0.5, quadratic elements whose mean volume is held, the energy-momentum step."""
+    with pytest.raises(Exception, match="exit code 10.*law: incompressible has .*accepted: nu = 0.5, degree = 2"):
+        disc(tmp_path, **HELD | flags)
+    with pytest.raises(Exception, match="nu: 0.5 is out of range .accepted: 0 to 0.4999; 0.5 of law=incompressible"):
+        disc(tmp_path, **HELD | {"law": "neohookean"})

@@ -219,23 +219,13 @@ public:
       return std::sqrt(std::max(0., L[2]));
     });
   }
-  void stresses(const double *F, double *sigma, double *mises) const {
+  void stresses(const double *F, const double *pressure, double *sigma, double *mises) const {
     std::vector<double> p(nq, 0.);
-    auto wholeOf = [this, F](int q, double *f) {
-      if (D == 3) whole<3, 0>(F, q, f); else if (H == 1) whole<2, 1>(F, q, f); else whole<2, 0>(F, q, f);
-    };
-    for (size_t g = 0; g < cell.size(); g++) {
-      double theta = 0, f[9], c[6];
-      for (int i = firstPoint[g]; i < firstPoint[g + 1]; i++) {
-        wholeOf(point[i], f);
-        laws::rightCauchyGreen(f, c);
-        theta += weight[point[i]] * laws::volume(material[point[i]], c) / cellWeight[g];
-      }
-      for (int i = firstPoint[g]; i < firstPoint[g + 1]; i++) p[point[i]] = laws::pressure(material[point[i]], theta);
-    }
+    for (size_t g = 0; g < cell.size(); g++)
+      for (int i = firstPoint[g]; i < firstPoint[g + 1]; i++) p[point[i]] = pressure[cell[g]];
     for (int q = 0; q < nq; q++) {
       double f[9], s[6];
-      wholeOf(q, f);
+      if (D == 3) whole<3, 0>(F, q, f); else if (H == 1) whole<2, 1>(F, q, f); else whole<2, 0>(F, q, f);
       mises[q] = laws::cauchy(material[q], f, p[q], s);
       for (int k = 0; k < 6; k++) sigma[k * nq + q] = s[k];
     }
@@ -411,6 +401,7 @@ private:
       its.p = volume.carried[cell[g]];
       if (slopeKnown) its.p += slope[g] * alongG0(g);
     }
+    if (m.held) star = its.p + m.bulk / 2 * (theta1 - 1);
     its.left = star - its.p;
     volume.star[cell[g]] = star;
     volume.now[cell[g]] = its.p;

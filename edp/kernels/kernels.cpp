@@ -27,7 +27,7 @@ static void addBodies() {
     body.material.resize(weight.N());
     body.damping = dampingState;
     for (int q = 0; q < weight.N(); q++)
-      body.material[q] = {lambda[q], mu[q], eta[q], zeta[q], relaxing[q], relaxTime[q], bulk[q], neohookean[q] == 1};
+      body.material[q] = {lambda[q], mu[q], eta[q], zeta[q], relaxing[q], relaxTime[q], bulk[q], neohookean[q] >= 1, neohookean[q] == 2};
   });
   add("kernelBodies", +[](Sparse gradient, Sparse mass, Reals free) {
     body.free = copied<double>(free);
@@ -50,7 +50,7 @@ static void addBodies() {
   add("kernelRelax", +[](Reals C0, Reals C1, double dt) { body.relax(C0, C1, dt); });
   add("kernelSmallestStretch", +[](Reals C, Reals stretch) { body.smallestStretches(C, stretch); });
   add("kernelEllipticity", +[](Reals C, Reals e) { body.ellipticities(C, e); });
-  add("kernelStresses", +[](Reals F, Reals sigma, Reals mises) { body.stresses(F, sigma, mises); });
+  add("kernelStresses", +[](Reals F, Reals p, Reals sigma, Reals mises) { body.stresses(F, p, sigma, mises); });
 }
 
 static void addFactor() {
