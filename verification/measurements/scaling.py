@@ -13,6 +13,8 @@ from orchestrate.freefem import freefem
 from orchestrate.output.results import read_json
 from orchestrate.sweeps import study
 
+from .. import commands
+
 
 @dataclass(frozen=True)
 class Case:
@@ -38,7 +40,7 @@ PHASES = ("assembly", "factor", "solve", "contact", "search", "audit", "output")
 
 def main(argv: list[str]) -> int:
     """Prints seconds a step, memory and their exponents, writes scaling.csv; 0 if none is above what is asked."""
-    parser = study.command("scaling", __doc__, page=True)
+    parser = commands.command("scaling", __doc__, page=True)
     parser.add_argument("--meshes", metavar="N", type=int, default=4, help="the coarsest N of each case (default: all four)")
     parser.add_argument("--cases", metavar="CASE", nargs="+", default=list(CASES), choices=CASES, help=", ".join(CASES))
     options = parser.parse_args(argv)
@@ -57,7 +59,7 @@ def main(argv: list[str]) -> int:
                                                   | dict.fromkeys((*PHASES, "step"), ".3g") | {"memory": ".0f"}))
     verdict = (f"Seconds of processor time a step, by phase, from the first touch on; memory in MB. "
                f"{'No exponent is' if good else 'An exponent is'} above what is asked.")
-    return study.finish(options, pd.concat(rows), "\n\n".join([*texts, verdict]), good, argv, "Time and memory over the number of unknowns")
+    return commands.finish(options, pd.concat(rows), "\n\n".join([*texts, verdict]), good, argv, "Time and memory over the number of unknowns")
 
 
 def _row(case: Case, finer: float, out: Path) -> dict:
