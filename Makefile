@@ -6,7 +6,7 @@ SWEEPS := oblique friction-jump friction-steps slip-limit contact-time-svk law-c
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws $(SWEEPS) stick-slip verify paper movie docs pictures test robustness bench bench-quick equal-errors promise disc-block-errors pairing-comparison oblique-angles viscoelastic rubber clean
+.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws $(SWEEPS) stick-slip verify paper movie docs pictures test robustness bench bench-quick scaling equal-errors promise disc-block-errors pairing-comparison oblique-angles viscoelastic rubber clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z0-9-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
@@ -97,12 +97,13 @@ disc-block-errors: override ARGS += --page docs/disc-block.md
 pairing-comparison: override ARGS += --page docs/pairing.md
 rubber: override ARGS += --page docs/rubber.md
 equal-errors: override ARGS += --page docs/bench.md
-promise: override ARGS += --page docs/$@.md
-bench equal-errors promise disc-block-errors pairing-comparison rubber: $(READY)
+promise scaling: override ARGS += --page docs/$@.md
+bench scaling equal-errors promise disc-block-errors pairing-comparison rubber: $(READY)
 	@$(PYTHON) -m orchestrate $@ $(ARGS)
 bench: ## run time against error: meshes, steps, integrators, and other programs where installed
 bench-quick: $(READY) ## the same for one case, coarse
 	@$(PYTHON) -m orchestrate bench --quick $(ARGS)
+scaling: ## what a step costs over the number of unknowns, by phase, and memory: exponents (docs/scaling.md)
 equal-errors: ## who takes how long for 1, 0.5 and 0.1 %, other programs where installed (docs/bench.md)
 promise: ## whether accuracy means what it says, and stated errors hold, over 240 scenes drawn at random
 disc-block-errors: ## the disc on the free block (section 3.2) over law, nu, stiffness and mesh, with error bars; NGSolve beside it

@@ -16,7 +16,7 @@ from .places import COMMAND, from_source, shown
 PACKAGES = {f"{__package__}.sweeps": ("sweep",), f"{__package__}.report": ("friction-laws", "compare", "movie", "pages"),
             f"{__package__}.paper": ("paper", "stick-slip"), "verification": ("verify",),
             "verification.measurements": ("oblique-angles", "viscoelastic", "stress", "bench", "promise", "pairing-comparison",
-                                          "disc-block-errors", "equal-errors", "rubber")}
+                                          "disc-block-errors", "equal-errors", "scaling", "rubber")}
 OWN_MAIN = {name: f"{package}.{name.replace('-', '_')}" for package, names in PACKAGES.items() for name in names}
 FROM_SOURCE = ("pages", "paper", *(name for name, module in OWN_MAIN.items() if module.startswith("verification.")))
 

@@ -182,7 +182,7 @@ def test_a_full_disk_is_one_line(tmp_path, monkeypatch, capsys):
     assert code == 14 and error.count("\n") == 1 and "No space left on device" in error and "--out" in error
 
 
-@pytest.mark.parametrize("command", ["promise", "bench", "stress", "verify", "stick-slip", "oblique-angles", "disc-block-errors", "equal-errors", "rubber"])
+@pytest.mark.parametrize("command", ["promise", "bench", "stress", "verify", "stick-slip", "oblique-angles", "disc-block-errors", "equal-errors", "scaling", "rubber"])
 def test_a_loop_of_links_is_no_folder(tmp_path, command):
     """A result folder behind a loop of links is exit code 14 in one line, for every study."""
     (tmp_path / "loop").symlink_to(tmp_path / "pool")
