@@ -288,9 +288,9 @@ COARSE = {"speed": "1.84", "accuracy": "0.01", "degree": "1", "mesh_size": "0.02
 
 @pytest.mark.parametrize("how", ["stop", "continue"])
 def test_chatter_is_11_or_a_warning(tmp_path, how):
-    """A single node of a coarse mesh on a far too stiff penalty bounces without end: exit code 11, or with chatter=continue a finished
-    run that warns in its summary and in print, in both ways to start it."""
-    given = COARSE | {"penalty": "8.39e12", "chatter": how}
+    """A single node of a coarse mesh on a far too stiff penalty, at steps that follow it, bounces without end: exit code 11, or with
+    chatter=continue a finished run that warns in its summary and in print, in both ways to start it."""
+    given = COARSE | {"penalty": "8.39e12", "dt": "4e-6", "chatter": how}
     process = call(*(f"{name}={value}" for name, value in given.items()), out=tmp_path / "out")
     plain = direct(*(word for name, value in given.items() for word in (f"-{name}", value)), "-fields", "0", "-out", str(tmp_path / "direct"))
     told = r"chatter: by t = \S+ s the body had left the plane and was back within a wave's transit \d+ times in a row: .*a smaller penalty, or a finer mesh"

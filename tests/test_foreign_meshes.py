@@ -3,6 +3,7 @@
 import math
 import re
 import subprocess
+import resource
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -137,15 +138,21 @@ def refused(direct):
     return go
 
 
+def spent() -> float:
+    """Processor time [s] of the processes that have ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
 @pytest.mark.parametrize("name", BAD)
 def test_bad_mesh_is_named_alike_on_both_ways(refused, fake, tmp_path, name):
     """What is wrong with a mesh, and where, is one line and exit code 10, from the script and from Python, which starts no run;
-    within a second."""
+    within a second of processor time."""
     text, words = BAD[name]
     (tmp_path / "m.msh").write_text(text)
-    started = time.perf_counter()
+    started = spent()
     said = refused(tmp_path / "m.msh", tmp_path / "out")
-    assert time.perf_counter() - started < 1
+    assert spent() - started < 1
     assert said.startswith("mesh: ") and words in said
     with pytest.raises(BadInput) as error:
         run.run(scene.load("disc-normal"), {"penalty": "auto"}, tmp_path / "out", mesh_file=tmp_path / "m.msh")

@@ -50,9 +50,9 @@ MEASURES = ("impulse", "contact_time", "peak_force")
 
 
 def test_two_equal_discs_are_a_disc_on_a_plane_of_doubled_penalty(march):
-    """Head-on, to the 0.5 % that are asked for: impulse, contact time, rebound."""
-    two = march(scene(disc(-0.0501, 0, 4, 0), disc(0.0501, 0, -4, 0), penalty=1e10, accuracy=5e-3))
-    one = march(scene(disc(-0.0501, 0, 4, 0), obstacles=(plane(normal=(-1, 0)),), penalty=2e10, accuracy=5e-3))
+    """Head-on, to 0.5 %: impulse, contact time, rebound; 0.2 % are asked for, as the instant of the last touch scatters more."""
+    two = march(scene(disc(-0.0501, 0, 4, 0), disc(0.0501, 0, -4, 0), penalty=1e10, accuracy=2e-3))
+    one = march(scene(disc(-0.0501, 0, 4, 0), obstacles=(plane(normal=(-1, 0)),), penalty=2e10, accuracy=2e-3))
     assert differ(two, one, "impulse", "contact_time") < 5e-3
     assert two.summary["rebound_vx_1"] == pytest.approx(one.summary["rebound_vx"], rel=5e-3)
 
