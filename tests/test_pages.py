@@ -64,3 +64,12 @@ def test_tables_and_lists_begin_after_a_heading_or_an_empty_line(path):
     prose = re.sub(r"(?ms)^```.*?^```$", "```", path.read_text()).splitlines()
     starts = [(before, line) for before, line in zip(prose, prose[1:]) if line.startswith(("| ", "- ")) and not before.startswith((line[:2], "|", "#", "<!--", "  "))]
     assert not [line for before, line in starts if before.strip()]
+
+
+@pytest.mark.parametrize("path", [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))], ids=lambda path: path.name)
+def test_files_that_a_page_names_are_there(path):
+    """Every script and module in code type; those that a worked example makes are announced as new."""
+    text = path.read_text()
+    named = set(re.findall(r"`([\w./-]+\.(?:idp|edp|hpp|py))`", text)) - set(re.findall(r"`(\S+)`, new\b", text))
+    there = [str(file) for folder in ("edp", "orchestrate", "verification", "tests") for file in (ROOT / folder).rglob("*.*")]
+    assert not [name for name in named if not any(file.endswith(f"/{name}") for file in there)]
