@@ -1,9 +1,11 @@
-// secant.hpp: pairs of the iterations with a frozen matrix, as core/step/secant.idp says: their Gram matrix, what they give to a new defect.
+// secant.hpp: pairs of the iterations with a frozen matrix, as core/step/secant.idp says: their Gram matrix, what they give to a new
+// defect.
 #pragma once
 #include "call.hpp"
 #include "contact-solve.hpp"
 
-extern "C" void dgemv_(const char *, const int *, const int *, const double *, const double *, const int *, const double *, const int *, const double *,
+extern "C" void dgemv_(const char *, const int *, const int *, const double *, const double *, const int *, const double *, const int *,
+    const double *,
                        double *, const int *);
 
 namespace secant {
