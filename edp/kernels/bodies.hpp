@@ -1,7 +1,7 @@
-// bodies.hpp: the bodies as their operators see them, made once of the sparse matrices of edp/core/discrete: forces and tangent, in any dimension.
-// Displacements are taken by nodes: (node, component), D components. F_iJ - delta_iJ = sum over the nodes a of a point of N_a,J u_ai; of bodies of
-// revolution (H = 1) there is F_33 = 1 + u_r/r as well, with N_a/r in the place of a derivative. Points that have the same nodes, those of an element,
-// go together. Arrays over points are stacked as in the scripts: component k of point q at k nq + q.
+// bodies.hpp: the bodies as their operators see them, made once of the sparse matrices of edp/core/discrete: forces and tangent, in any
+// dimension. Displacements are taken by nodes: (node, component), D components. F_iJ - delta_iJ = sum over the nodes a of a point of N_a,J
+// u_ai; of bodies of revolution (H = 1) there is F_33 = 1 + u_r/r as well, with N_a/r in the place of a derivative. Points that have the
+// same nodes, those of an element, go together. Arrays over points are stacked as in the scripts: component k of point q at k nq + q.
 #pragma once
 #include <algorithm>
 #include <map>
@@ -159,9 +159,9 @@ public:
     block.assign(pairA.size() * D * D, 0.);
   }
 
-  // G' (w P) + M (massScale d - history) - deadLoad, 0 at what is held [N/m, N]: the inertia, the inner forces and the dead load of (2) at the increment
-  // d, and the deformation that they are taken at. `rate`: 1/dt, 0 where no body is damped; `breaks`: det F <= 0 ends a step; `carries`: pressures of
-  // elements are carried (volume.idp), and the residual is the condensed one.
+  // G' (w P) + M (massScale d - history) - deadLoad, 0 at what is held [N/m, N]: the inertia, the inner forces and the dead load of (2) at
+  // the increment d, and the deformation that they are taken at. `rate`: 1/dt, 0 where no body is damped; `breaks`: det F <= 0 ends a step;
+  // `carries`: pressures of elements are carried (volume.idp), and the residual is the condensed one.
   int forces(const double *d, const double *history, const double *deadLoad, double massScale, double rate, int where, bool breaks,
              bool carries, const Deformation &at, double *residual) const {
     return D == 3 ? forces<3, 0>(d, history, deadLoad, massScale, rate, where, breaks, carries, at, residual)
@@ -180,7 +180,8 @@ public:
         for (int i = 0; i < D; i++) block[size_t(pairOfMass[e]) * D * D + i * D + i] += massScale * massValue[e];
   }
 
-  // At every point, of C: the energy [J/m3], the smallest stretch of the motions there are, ellipticity; of F: Cauchy's stress (6 nq) and von Mises' [Pa].
+  // At every point, of C: the energy [J/m3], the smallest stretch of the motions there are, ellipticity; of F: Cauchy's stress (6 nq) and
+  // von Mises' [Pa].
   void energies(const double *C, double *W) const {
     at(C, W, [](const laws::Material &m, const double *c) { return laws::energy(m, c); });
     for (int q = 0; q < nq; q++) if (material[q].relaxing > 0) {
@@ -329,7 +330,8 @@ private:
     }
   }
 
-  // C1, Ss and pull += G' (w Fs Ss): of every element its own, then their sums in the order of the elements, however many threads there are.
+  // C1, Ss and pull += G' (w Fs Ss): of every element its own, then their sums in the order of the elements, however many threads there
+  // are.
   template<int D, int H> void stressed(int where, double rate, bool carries, const Deformation &at) const {
     typedef Stored<D, H> T;
     own.assign(node.size() * D, 0.);

@@ -1,5 +1,5 @@
-// contact-law.hpp: forces of a contact point in a step, normal (10) and, with friction, along the obstacle (11)-(13), and their derivatives. The same as
-// core/contact/normal.idp, friction.idp and tractions.idp, which say what the symbols mean, a point at a time.
+// contact-law.hpp: forces of a contact point in a step, normal (10) and, with friction, along the obstacle (11)-(13), and their
+// derivatives. The same as core/contact/normal.idp, friction.idp and tractions.idp, which say what the symbols mean, a point at a time.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -28,7 +28,8 @@ struct Law {
       if (!stays) t = k * (std::pow(std::max(qa, qb), m + 1) / (m + 1) / std::abs(qb - qa));
       else if (m == 1) t = k * middle;
       else if (moves) t = k * ((std::pow(qb, m + 1) - std::pow(qa, m + 1)) / (m + 1) / (qb - qa));
-      else t = k * (std::pow(middle, m) * (1 + m * (m - 1) / 6 * turn2 * (1 + (m - 2) * (m - 3) / 20 * turn2 * (1 + (m - 4) * (m - 5) / 42 * turn2))));
+      else t = k * (std::pow(middle, m)
+                    * (1 + m * (m - 1) / 6 * turn2 * (1 + (m - 2) * (m - 3) / 20 * turn2 * (1 + (m - 4) * (m - 5) / 42 * turn2))));
       if (stays && m == 1) stiff = k / 2;
       else if (!stays || moves) stiff = ((qb > 0 ? k * std::pow(qb, m) : 0) - t) / (qb - qa);
       else stiff = k * m / 2 * std::pow(middle, m - 1) * (1 + (m - 1) / 3 * turn);
@@ -39,7 +40,8 @@ struct Law {
 
   void ratioOf(double v, const Point &a, double &ratio, double &slope) const {
     // mu_f phi [-] and its derivative [s/m] at the velocity v [m/s]
-    const double pi = 3.14159265358979323846, size = std::abs(v) / slipVelocity, low = a.muStatic * (1 - bridge) / 2, rise = (a.muDynamic - low) / bridge;
+    const double pi = 3.14159265358979323846, size = std::abs(v) / slipVelocity, low = a.muStatic * (1 - bridge) / 2,
+        rise = (a.muDynamic - low) / bridge;
     double phi = 0, steep = 0, mu = a.sticks ? a.muStatic : a.muDynamic, muSteep = 0;
     switch (regularization) {
       case sqrtOf: phi = size / std::sqrt(size * size + 1);  steep = std::pow(size * size + 1, -1.5);  break;
@@ -59,7 +61,8 @@ struct Law {
     if (jumps && regularization == linearPrinted) {
       if (a.sticks) { ratio = a.muStatic * std::min(size, 1.) / 2;  slope = size < 1 ? a.muStatic / 2 : 0; }
       else {
-        ratio = size < 1 - bridge ? std::min(a.muDynamic, a.muStatic * size / 2) : std::min(a.muDynamic, low + std::max(rise, 0.) * (size - 1 + bridge));
+        ratio = size < 1 - bridge ? std::min(a.muDynamic, a.muStatic * size / 2)
+            : std::min(a.muDynamic, low + std::max(rise, 0.) * (size - 1 + bridge));
         slope = ratio >= a.muDynamic ? 0 : (size < 1 - bridge ? a.muStatic / 2 : rise);
       }
     }

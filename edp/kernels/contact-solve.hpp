@@ -1,4 +1,5 @@
-// contact-solve.hpp: contact and friction of a Newton step, solved on a frozen factorisation: what core/contact/solve.idp says, in the unknowns of the window.
+// contact-solve.hpp: contact and friction of a Newton step, solved on a frozen factorisation: what core/contact/solve.idp says, in the
+// unknowns of the window.
 //   tau = t(x),  x = x_w - B C B^T tau                                          C: compliance of the unknowns [m/N], S = C^-1;
 // (of explicit steps both are diagonal, n values)
 // Newton's matrix is that of the moves y of the unknowns, with K = B^T D B sparse, D = dt/dx:
@@ -12,8 +13,10 @@
 #include "contact-law.hpp"
 
 extern "C" {
-void dsymv_(const char *, const int *, const double *, const double *, const int *, const double *, const int *, const double *, double *, const int *);
-void dgemm_(const char *, const char *, const int *, const int *, const int *, const double *, const double *, const int *, const double *, const int *,
+void dsymv_(const char *, const int *, const double *, const double *, const int *, const double *, const int *, const double *,
+    double *, const int *);
+void dgemm_(const char *, const char *, const int *, const int *, const int *, const double *, const double *, const int *,
+    const double *, const int *,
             const double *, double *, const int *);
 void dgetrf_(const int *, const int *, double *, const int *, int *, int *);
 void dgetrs_(const char *, const int *, const int *, const double *, const int *, const int *, double *, const int *, int *);
@@ -29,7 +32,11 @@ using Indices = std::vector<int>;
 inline double dot(const Vector &a, const Vector &b) { double s = 0;  for (size_t i = 0; i < a.size(); i++) s += a[i] * b[i];  return s; }
 inline double norm(const Vector &a) { return std::sqrt(dot(a, a)); }
 inline void add(double s, const Vector &a, Vector &b) { for (size_t i = 0; i < a.size(); i++) b[i] += s * a[i]; }
-inline double largest(const Vector &a) { double m = 0;  for (double v : a) if (!(std::abs(v) <= m)) { m = std::abs(v);  if (m != m) return m; }  return m; }
+inline double largest(const Vector &a) {
+  double m = 0;
+  for (double v : a) if (!(std::abs(v) <= m)) { m = std::abs(v);  if (m != m) return m; }
+  return m;
+}
 inline bool isDiagonal(const Vector &A, int n) { return n > 1 && A.size() == (size_t)n; }
 inline void symmetric(const Vector &A, const Vector &x, Vector &y) {     // y = A x
   const double one = 1, zero = 0;
@@ -44,12 +51,14 @@ inline void product(const char *which, int m, int n, int k, double scale, const 
   if (m > 0 && n > 0) dgemm_(which, which + 1, &m, &n, &k, &scale, A, &apartA, B, &apartB, &keep, C, &apart);
 }
 
-// The points of the window, its springs behind them, and their rows B on its n unknowns: a block of `kinds` values for each unknown of a point.
+// The points of the window, its springs behind them, and their rows B on its n unknowns: a block of `kinds` values for each unknown of a
+// point.
 struct Rows {
   int n = 0, points = 0, kinds = 1;
   Indices first{0}, column, owner;                                 // of a point its entries; of an entry its column and point
   Vector value, spring;                                            // kinds an entry; stiffness c of the springs
-  Indices start, row, place;                                       // entries of K and the diagonal by columns; where those of stiffness() are
+  // entries of K and the diagonal by columns; where those of stiffness() are
+  Indices start, row, place;
   std::shared_ptr<void> symbolic;                                  // what UMFPACK makes of that
 
   int blocks() const { return first.size() - 1; }
@@ -64,16 +73,19 @@ struct Rows {
   void end(const Vector &springs) { spring = springs;  points = blocks() - spring.size(); }
   void push(const Vector &t, Vector &force) const {                // B^T t
     force.assign(n, 0.);
-    for (size_t e = 0; e < column.size(); e++) for (int c = 0; c < kinds; c++) force[column[e]] += value[kinds * e + c] * t[kinds * owner[e] + c];
+    for (size_t e = 0; e < column.size(); e++)
+      for (int c = 0; c < kinds; c++) force[column[e]] += value[kinds * e + c] * t[kinds * owner[e] + c];
   }
   void pull(const Vector &way, Vector &move) const {               // B way
     move.assign(kinds * blocks(), 0.);
-    for (size_t e = 0; e < column.size(); e++) for (int c = 0; c < kinds; c++) move[kinds * owner[e] + c] += value[kinds * e + c] * way[column[e]];
+    for (size_t e = 0; e < column.size(); e++)
+      for (int c = 0; c < kinds; c++) move[kinds * owner[e] + c] += value[kinds * e + c] * way[column[e]];
   }
   void slope(const Vector &D, const Vector &move, Vector &change) const {   // D move
     change.assign(move.size(), 0.);
     for (int b = 0; b < blocks(); b++)
-      for (int i = 0; i < kinds; i++) for (int j = 0; j < kinds; j++) change[kinds * b + i] += D[kinds * (kinds * b + i) + j] * move[kinds * b + j];
+      for (int i = 0; i < kinds; i++)
+        for (int j = 0; j < kinds; j++) change[kinds * b + i] += D[kinds * (kinds * b + i) + j] * move[kinds * b + j];
   }
   template <class Function> void stiffness(const Vector &D, Function add) const {   // add(t, i, j, what), which sum to K_ij; t counts them
     for (int b = 0, t = 0; b < blocks(); b++) {
@@ -95,7 +107,8 @@ struct Rows {
     Indices I, J;
     void *made = nullptr;
     for (int b = 0; b < blocks(); b++)
-      for (int e = first[b]; e < first[b + 1]; e++) for (int o = first[b]; o < first[b + 1]; o++) { I.push_back(column[o]);  J.push_back(column[e]); }
+      for (int e = first[b]; e < first[b + 1]; e++)
+        for (int o = first[b]; o < first[b + 1]; o++) { I.push_back(column[o]);  J.push_back(column[e]); }
     for (int j = 0; j < n; j++) { I.push_back(j);  J.push_back(j); }
     start.resize(n + 1);
     row.resize(I.size());
@@ -205,15 +218,16 @@ class Problem {
   void compliance(int n, const double *given) {
     const int before = order(C);
     bool grows = n >= before;                                      // the same columns, and more
-    for (int j = 0; j < before && grows; j++) grows = std::equal(&C[(size_t)before * j], &C[(size_t)before * j] + before, given + (size_t)n * j);
+    for (int j = 0; j < before && grows; j++)
+      grows = std::equal(&C[(size_t)before * j], &C[(size_t)before * j] + before, given + (size_t)n * j);
     if (!grows) S.clear();
     C.assign(given, given + (size_t)n * n);
   }
   void looseness(int n, const double *given) { C.assign(given, given + n);  S.clear(); }   // diagonal
 
   int solve(long mostInverses, long &inversesOfStep) {
-    // Newton; with friction on the linearised law, and with a matrix that serves on near the end and at the start of the next solve. Returns the
-    // iterations, or -1.
+    // Newton; with friction on the linearised law, and with a matrix that serves on near the end and at the start of the next solve.
+    // Returns the iterations, or -1.
     const int rubs = law.slips > 0;
     if (!newton.fits(B)) newton.forget();
     place();
@@ -296,7 +310,8 @@ class Problem {
       const double *linearised = at && (*at)[law.slips * b] == (*at)[law.slips * b] ? &(*at)[law.slips * b] : nullptr;
       law.at(point[b], &x[k * b], linearised, f);
       for (int i = 0; i < k; i++) t[k * b + i] = f.t[i];
-      for (int i = 0; i < k; i++) for (int j = 0; j < k; j++) slopes[k * k * b + k * i + j] = i == j ? std::max(f.slope[i][j], 0.) : f.slope[i][j];
+      for (int i = 0; i < k; i++)
+        for (int j = 0; j < k; j++) slopes[k * k * b + k * i + j] = i == j ? std::max(f.slope[i][j], 0.) : f.slope[i][j];
     }
     for (size_t s = 0; s < B.spring.size(); s++) {
       const int b = B.points + s;
@@ -308,8 +323,8 @@ class Problem {
   }
 
   void linearise() {
-    // Friction where force and velocity agree best: at the velocity x with phi(x) + x/sigma = t_T/(mu_f t_N) + v/sigma, phi taken as linear, sigma the
-    // change of velocity that full friction makes in the step.
+    // Friction where force and velocity agree best: at the velocity x with phi(x) + x/sigma = t_T/(mu_f t_N) + v/sigma, phi taken as
+    // linear, sigma the change of velocity that full friction makes in the step.
     const int k = B.kinds, slips = law.slips, blocks = B.points;
     if (sigma.empty()) {
       Vector full(x.size(), 0.), way;
@@ -327,7 +342,8 @@ class Problem {
       if (!(t[k * b] > 0 && off > 0.1 * cap)) continue;
       for (int i = 0; i < slips; i++) blend[i] = tau[k * b + 1 + i] / cap + x[k * b + 1 + i] / law.dt / sigma[b];
       const double length = std::hypot(blend[0], blend[1]);
-      const double factor = length <= 1 + law.slipVelocity / sigma[b] ? 1 / (1 / law.slipVelocity + 1 / sigma[b]) : sigma[b] * (length - 1) / length;
+      const double factor = length <= 1 + law.slipVelocity / sigma[b] ? 1 / (1 / law.slipVelocity + 1 / sigma[b])
+          : sigma[b] * (length - 1) / length;
       for (int i = 0; i < slips; i++) at[slips * b + i] = factor * blend[i];
     }
     evaluate(&at);
@@ -347,7 +363,8 @@ class Problem {
   }
 
   bool advance(bool searches) {
-    // tau and x go along step and move: fully, or to where the slope of the convex potential has become small (bisection); false where it is no descent.
+    // tau and x go along step and move: fully, or to where the slope of the convex potential has become small (bisection); false where it
+    // is no descent.
     double low = 0, high = 1, s = 1, gone = 0;
     const double slopeStart = dot(unbalance, move);
     if (searches && !(slopeStart < 0)) return false;

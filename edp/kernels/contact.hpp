@@ -8,11 +8,13 @@ namespace contact {
 static Problem problem;
 static Law &law = problem.law;
 
-static void setLaw(double exponent, double slipVelocity, double bridge, double sticksBelow, std::string &regularization, bool jumps, long slips) {
+static void setLaw(double exponent, double slipVelocity, double bridge, double sticksBelow, std::string &regularization, bool jumps,
+    long slips) {
   law.exponent = exponent;
   law.slipVelocity = slipVelocity;
   law.bridge = bridge;
-  law.regularization = regularization == "sqrt" ? sqrtOf : regularization == "tanh" ? tanhOf : regularization == "linear" ? linear : linearPrinted;
+  law.regularization = regularization == "sqrt" ? sqrtOf : regularization == "tanh" ? tanhOf : regularization == "linear" ? linear
+      : linearPrinted;
   law.jumps = jumps;
   law.slips = slips;
   problem.sticksBelow = sticksBelow;
@@ -60,7 +62,8 @@ static void take(Reals q, double reach, long kinds, Ints rowStart, Ints rowUnkno
   std::vector<long> slot = copied<long>(slots), unknown = copied<long>(unknowns);
   const auto join = [&](long j, double value) { if (value != 0 && index[j] < 0) { index[j] = unknown.size();  unknown.push_back(j); } };
   for (long s = 0; s < ns; s++) if (inWindow[s] == 0 && q[s] > -reach) { inWindow[s] = 1;  outWindow[s] = 0;  slot.push_back(s); }
-  for (long s : slot) for (long r = s; r < kinds * ns; r += ns) for (long k = rowStart[r]; k < rowStart[r + 1]; k++) join(rowUnknown[k], rowValue[k]);
+  for (long s : slot) for (long r = s; r < kinds * ns; r += ns)
+    for (long k = rowStart[r]; k < rowStart[r + 1]; k++) join(rowUnknown[k], rowValue[k]);
   for (long k = 0; k < springUnknown.n; k++) join(springUnknown[k], springValue[k]);
   slots.resize(slot.size());
   unknowns.resize(unknown.size());
@@ -87,8 +90,8 @@ static void setWindow(Ints slots, Ints index, long unknowns, long ns, Ints rowSt
 
 static long solve(Ints slots, Reals q, Reals place, Reals ahead, double dt, long where, double enough, bool known, Ints sticks, Ints turns,
                   Reals k, Reals muStatic, Reals muDynamic, long mostInverses, long &inversesOfStep, Reals tau, Reals force) {
-  // Slots of the window; of all slots penetrations at the start, x_w, sides of the jump and how often they changed, stiffness, coefficients. The springs are
-  // unstretched at -ahead. `known`: whether the matrix of the last solve may serve.
+  // Slots of the window; of all slots penetrations at the start, x_w, sides of the jump and how often they changed, stiffness,
+  // coefficients. The springs are unstretched at -ahead. `known`: whether the matrix of the last solve may serve.
   Problem &p = problem;
   const Rows &B = p.B;
   const long points = slots.n, ns = q.n, kinds = B.kinds;

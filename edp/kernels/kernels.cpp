@@ -1,5 +1,5 @@
-// kernels.cpp: the plugin of FreeFEM that edp/kernels.idp loads: every kernel by its name in the scripts. One process runs one scene: its bodies, and the
-// factorisation of their tangent, are made once and stay.
+// kernels.cpp: the plugin of FreeFEM that edp/kernels.idp loads: every kernel by its name in the scripts. One process runs one scene: its
+// bodies, and the factorisation of their tangent, are made once and stay.
 #include <cholmod.h>   // first: without SuiteSparse's headers the build ends at once
 #include "call.hpp"
 #include "bodies.hpp"

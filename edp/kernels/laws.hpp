@@ -213,7 +213,8 @@ inline double cauchy(const Material &m, const double *F, double p, double *sigma
   nominalStress(F, S, P);
   for (int i = 0; i < 3; i++)
     for (int k = i; k < 3; k++) sigma[sym[i][k]] = (P[3 * i] * F[3 * k] + P[3 * i + 1] * F[3 * k + 1] + P[3 * i + 2] * F[3 * k + 2]) / J;
-  for (int k = 0; k < 3; k++) mises += 0.5 * (sigma[k] - sigma[(k + 1) % 3]) * (sigma[k] - sigma[(k + 1) % 3]) + 3 * sigma[3 + k] * sigma[3 + k];
+  for (int k = 0; k < 3; k++)
+    mises += 0.5 * (sigma[k] - sigma[(k + 1) % 3]) * (sigma[k] - sigma[(k + 1) % 3]) + 3 * sigma[3 + k] * sigma[3 + k];
   return std::sqrt(mises);
 }
 
@@ -231,7 +232,8 @@ inline double smallerInPlane(const double *C) {
   return 0.5 * (C[0] + C[1] - std::sqrt((C[0] - C[1]) * (C[0] - C[1]) + 4 * C[3] * C[3]));
 }
 
-// The smallest eigenvalue of the acoustic tensor over mu, of waves in a plane with that trace and determinant J^2 of C: planeEllipticity() of svk.idp.
+// The smallest eigenvalue of the acoustic tensor over mu, of waves in a plane with that trace and determinant J^2 of C: planeEllipticity()
+// of svk.idp.
 inline double planeEllipticity(const Material &m, double trace, double J) {
   double k = 1 + (m.lambda + m.bulk) / m.mu;
   if (trace - (1 + k + 1 / (1 + k)) * J > 0)

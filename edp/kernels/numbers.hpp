@@ -10,8 +10,10 @@
 namespace numbers {
 
 static void append(std::string &text, double value) {
-  // Nine digits of |value| 10^(8 - e), e the exponent of the first. What is within round-off of a tie, and what is not in 1e-14 to 1e9, is printf's.
-  static const double power[] = {1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+  // Nine digits of |value| 10^(8 - e), e the exponent of the first. What is within round-off of a tie, and what is not in 1e-14 to 1e9, is
+  // printf's.
+  static const double power[] = {1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18,
+      1e19, 1e20, 1e21, 1e22};
   const double size = std::abs(value);
   const bool plain = size >= 1e-14 && size < 1e9;
   const int e = plain ? int(std::floor(std::log10(size))) : 0;

@@ -1,5 +1,6 @@
-// pairs.hpp: the gap between deformable bodies, of core/contact/pair.idp, where its formulas stand: which points are near which cells of another body (edges in
-// the plane, faces in space, A components), the closest points of these, the rows of the conserving gap, and the springs at vertices.
+// pairs.hpp: the gap between deformable bodies, of core/contact/pair.idp, where its formulas stand: which points are near which cells of
+// another body (edges in the plane, faces in space, A components), the closest points of these, the rows of the conserving gap, and the
+// springs at vertices.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -90,7 +91,8 @@ inline void closest(const Patch<2> &patch, Foot<2> &foot) {
   double r = clip(-dot(a, chord) / square);
   Convergence steps;
   for (int it = 0; it < 40 && steps.going(); it++) {
-    const double f = c0 + r * (c1 + r * (c2 + r * c3)), slope = c1 + r * (2 * c2 + r * 3 * c3), next = clip(r - f / std::max(slope, square / 4));
+    const double f = c0 + r * (c1 + r * (c2 + r * c3)), slope = c1 + r * (2 * c2 + r * 3 * c3),
+                 next = clip(r - f / std::max(slope, square / 4));
     steps.moved(std::abs(next - r));
     r = next;
   }
@@ -122,7 +124,8 @@ inline void closest(const Patch<3> &patch, Foot<3> &foot) {
     double hrr = dot(yr, yr), hrs = dot(yr, ys), hss = dot(ys, ys);
     const double krr = 2 * dot(y, patch.c[3]), krs = dot(y, patch.c[4]), kss = 2 * dot(y, patch.c[5]);
     // the curvature where the matrix stays definite with it; beyond the centre of curvature that of the tangents alone, so that it descends
-    if ((hrr + krr) * (hss + kss) - (hrs + krs) * (hrs + krs) > 0.1 * (hrr * hss - hrs * hrs) && hrr + krr + hss + kss > 0) { hrr += krr;  hrs += krs;  hss += kss; }
+    if ((hrr + krr) * (hss + kss) - (hrs + krs) * (hrs + krs) > 0.1 * (hrr * hss - hrs * hrs)
+        && hrr + krr + hss + kss > 0) { hrr += krr;  hrs += krs;  hss += kss; }
     const Vector<2> next = stepOnFace(foot.r, dot(y, yr), dot(y, ys), hrr, hrs, hss);
     steps.moved(farthest(next, foot.r));
     foot.r = next;
@@ -227,7 +230,10 @@ public:
       const Place place = project(patchAtStart, int(k));
       if (A == 3 && place.gap > reach) continue;   // the boxes were wider
       for (int e = first[k]; e < first[k + 1]; e++)
-        if (A == 2 || length(feet[e - first[k]].arm) <= std::abs(place.gap) + 2 * reach) { cells.push_back(cell[e]);  kept.push_back(patchAtStart[e]); }
+        if (A == 2 || length(feet[e - first[k]].arm) <= std::abs(place.gap) + 2 * reach) {
+          cells.push_back(cell[e]);
+          kept.push_back(patchAtStart[e]);
+        }
       slots.push_back(slot[k]);
       firsts.push_back(int(cells.size()));
       startGap.push_back(gapOf(int(k), place));
@@ -283,7 +289,8 @@ public:
   }
 
 private:
-  // Of a slot in one configuration: the candidate that is closest and where, its own normal m, the gap and its normal n; whether there is none.
+  // Of a slot in one configuration: the candidate that is closest and where, its own normal m, the gap and its normal n; whether there is
+  // none.
   struct Place { int pick;  Foot<A> foot;  Vector<A> m, n;  double gap;  bool unseen; };
   struct Before { int cell;  double r, length;  Vector<A> n; };   // at the evaluation before; cell -1: there is none in this step
 
@@ -311,7 +318,8 @@ private:
     return y;
   }
 
-  // A curved edge lies within |C|/4 of its chord, y = chord + r (r - 1) C; a curved face in the hull of its corners and of 2 m - (a + b)/2, m the middle of ab.
+  // A curved edge lies within |C|/4 of its chord, y = chord + r (r - 1) C; a curved face in the hull of its corners and of 2 m - (a + b)/2,
+  // m the middle of ab.
   void box(const double *x, int c) {
     const int nodes = surface.nodes;
     for (int i = 0; i < A; i++) {
@@ -367,7 +375,8 @@ private:
 
   // Points and cells of two bodies, or of one and itself, near each other: only those in the overlap of the bodies' boxes, sorted along its
   // longest side.
-  void sweep(const double *x, const std::vector<int> &bodyA, const std::vector<int> &bodyB, std::vector<std::pair<long, int>> &found) const {
+  void sweep(const double *x, const std::vector<int> &bodyA, const std::vector<int> &bodyB,
+             std::vector<std::pair<long, int>> &found) const {
     Vector<A> from, to;
     int axis = 0;
     for (int i = 0; i < A; i++) {
@@ -389,7 +398,8 @@ private:
     for (int c : bodyB) if (meet(c, from, to)) { nearB.push_back(c);  widest = std::max(widest, high[c][axis] - low[c][axis]); }
     std::sort(nearB.begin(), nearB.end(), [&](int c, int e) { return low[c][axis] < low[e][axis]; });
     for (int c : bodyA) if (meet(c, from, to)) {
-      auto e = std::lower_bound(nearB.begin(), nearB.end(), low[c][axis] - widest, [&](int f, double least) { return low[f][axis] < least; });
+      auto e = std::lower_bound(nearB.begin(), nearB.end(), low[c][axis] - widest,
+                                [&](int f, double least) { return low[f][axis] < least; });
       for (; e != nearB.end() && low[*e][axis] <= high[c][axis]; ++e)
         if (meet(*e, low[c], high[c]) && (!itself || (c < *e && sightOf(c, *e) > 0))) { join(x, c, *e, found);  join(x, *e, c, found); }
     }
@@ -435,7 +445,8 @@ private:
     const Vector<A> arm = feet[pick].arm;
     const auto tied = [&](int e) { return farthest(feet[e].arm, arm) <= 1e4 * roundOff; };
     Vector<A - 1> r = feet[pick].r;
-    // of several cells that meet there the edge that ends in the vertex, the first face: which of them turns with the rows is not left to round-off
+    // of several cells that meet there the edge that ends in the vertex, the first face: which of them turns with the rows is not left to
+    // round-off
     if (onBoundary(r)) {
       if (A == 2) toVertex(patch, k, node(cell[first[k] + pick], 0, r[0] == 0 ? 0 : 1));
       for (int e = m - 1; e >= 0; e--) if (tied(e) && (A == 3 ? e < pick : feet[e].r[0] == 1)) pick = e;
@@ -450,7 +461,8 @@ private:
     place.gap = -dot(place.foot.arm, place.n);
     place.unseen = false;
     if (edge) onEdge(place, k, feet[pick].arm);
-    if (A == 3 && std::abs(place.gap) > reach) place.gap = std::abs(place.gap);   // no touch; farther than the search looked the side is not known
+    // no touch; farther than the search looked the side is not known
+    if (A == 3 && std::abs(place.gap) > reach) place.gap = std::abs(place.gap);
     return place;
   }
 
@@ -462,7 +474,8 @@ private:
     }
   }
 
-  // n along x - y, outwards by the mean normal of the cells there. Where only one is there the point counts if it is within 45 degrees of its normal.
+  // n along x - y, outwards by the mean normal of the cells there. Where only one is there the point counts if it is within 45 degrees of
+  // its normal.
   void onEdge(Place &place, int k, const Vector<A> &arm) {
     Vector<A> mean = {};
     int count = 0;
