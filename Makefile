@@ -107,12 +107,12 @@ scaling: ## what a step costs over the number of unknowns, by phase, and memory:
 equal-errors: ## who takes how long for 1, 0.5 and 0.1 %, other programs where installed (docs/bench.md)
 promise: ## whether accuracy means what it says, and stated errors hold, over 240 scenes drawn at random
 disc-block-errors: ## the disc on the free block (section 3.2) over law, nu, stiffness and mesh, with error bars; NGSolve beside it
-rubber: ## disc and ball as nu -> 0.5: answers and cost, with the mean volume of elements and at points, NGSolve where installed
 pairing-comparison: ## closest point against pairs of points (14), (15): rebound, energy and time over epsilon and k
 oblique-angles: $(READY) ## disc and ball over the angle of incidence, beside rigid and elastic theory (ARGS="--friction 0.2 --angles 20,40,60")
 	@$(PYTHON) -m orchestrate $@ $(or $(ARGS),--page docs/$@.md)
 viscoelastic: $(READY) ## damped impacts: a slow ball against quasi-static theory, a disc over loss factor and relaxation time
 	@$(PYTHON) -m orchestrate $@ $(or $(ARGS),--page docs/$@.md)
+rubber: ## disc and ball as nu -> 0.5: answers and cost, with the mean volume of elements and at points, NGSolve where installed
 
 clean: ## remove all results (keeps .venv)
 	@find results -mindepth 1 ! -name README.md -delete

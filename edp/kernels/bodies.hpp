@@ -37,8 +37,8 @@ const int most = 10, mostPoints = 8;       // nodes of an element: those of a qu
 // The arrays of integrators.idp that forces() reads (F0, C0) and fills.
 struct Deformation { double *F0, *C0, *F1, *C1, *jacobian1, *Fs, *Ss; };
 
-// Those of volume.idp (by elements, as `cell` has them), and det F at the start of a step.
-struct Volume { double *jacobian0, *carried, *star, *now, *dBase, *lag; };
+// Those of volume.idp, by elements, as `cell` has them.
+struct Volume { double *carried, *star, *now, *dBase, *lag; };
 
 class Bodies {
 public:
@@ -384,12 +384,12 @@ private:
       double F[9], C0[6] = {1, 1, 1, 0, 0, 0}, C1[6], *to = its.T[p - firstPoint[g]], w = weight[q] / cellWeight[g];
       whole<D, H>(where == stepMiddle ? at.Fs : at.F1, q, F);
       laws::rightCauchyGreen(F, C1);
-      double J0 = volume.jacobian0[q], J1 = at.jacobian1[q];
       if (where == stepMean) {
         for (int k = 0; k < T::C; k++) C0[T::symmetric(k)] = at.C0[k * nq + q];
-        laws::volumeDirection(m, C0, C1, J0 + J1, to);
-        theta0 += w * (m.neohookean ? J0 : laws::volume(m, C0));
-        theta1 += w * (m.neohookean ? J1 : laws::volume(m, C1));
+        double j0 = laws::volume(m, C0), j1 = laws::volume(m, C1);
+        laws::volumeDirection(m, C0, C1, j0 + j1, to);
+        theta0 += w * j0;
+        theta1 += w * j1;
       }
       else {
         double j = laws::volume(m, C1);

@@ -39,8 +39,8 @@ static void addBodies() {
   add("kernelDeformation", +[](Reals F0, Reals C0, Reals F1, Reals C1, Reals jacobian1, Reals Fs, Reals Ss) {
     deformation = {F0, C0, F1, C1, jacobian1, Fs, Ss};
   });
-  add("kernelVolume", +[](Ints cellOfPoint, Reals jacobian0, Reals carried, Reals star, Reals now, Reals dBase, Reals lag) {
-    body.cells(copied<int>(cellOfPoint), {jacobian0, carried, star, now, dBase, lag});
+  add("kernelVolume", +[](Ints cellOfPoint, Reals carried, Reals star, Reals now, Reals dBase, Reals lag) {
+    body.cells(copied<int>(cellOfPoint), {carried, star, now, dBase, lag});
   });
   add("kernelForces", +[](Reals d, Reals history, Reals deadLoad, double massScale, double rate, long where, bool breaks, bool carries,
                           Reals residual) {
