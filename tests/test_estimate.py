@@ -88,14 +88,29 @@ def test_an_estimate_is_no_less_than_the_difference_nor_fooled_by_chance():
 def test_an_estimate_is_the_geometric_mean_of_three_measures(others, own, steps, raised):
     """Eight times the differences of all answers, or steps sqrt(8) times as large, state twice the error, of times the fourth root of it; where that
     says nothing (steps of spin and peak force, other answers of friction work) the course alone does. All three eight times are eight times the error."""
-    small, way = usual(1e-6), usual(1.0)
+    small, way = usual(1e-6), usual(1.0) | {"rebound_spin": 1e-4}     # little spin: its share in the rebound is another test
     times = ("thresholded_contact_time", "contact_time")
     found, before = estimate.errors(usual(others * 1e-6), way, steps * STEPS), estimate.errors(small, way, STEPS)
     for name in estimate.BOUND:
         assert found[name] / before[name] == pytest.approx(8**0.25 if name in times else 2 if name in raised else 1), name
-    all_three = estimate.errors(usual(8e-6), usual(8.0), 8 * STEPS)
+    all_three = estimate.errors(usual(8e-6), {name: 8 * value for name, value in way.items()}, 8 * STEPS)
     for name in estimate.BOUND:
         assert all_three[name] / before[name] == pytest.approx(8**0.75 if name in times else 8), name
+
+
+def test_what_friction_ties_together_is_stated_together():
+    """What turns is stated a rebound of LEVER times its spin; where nothing turns friction's work, larger there, is no more than the energy
+    that is stated, nor a quarter of it more than the impulse, half of it than the rebound; without friction none of it counts."""
+    small, way = usual(1e-6), usual(1e-3)
+    turns = estimate.errors(small, way | {"rebound_spin": 1.0}, STEPS)
+    assert turns["rebound"] == pytest.approx(estimate.LEVER * turns["rebound_spin"])
+    still = way | {"rebound_spin": 0.0, "friction_work": 1.0}
+    rubs = estimate.errors(small, still, STEPS)
+    work = estimate.errors(small, still | {"rebound_spin": 1e-9}, STEPS)["friction_work"]
+    assert rubs["friction_work"] == pytest.approx(estimate.STILL * work)
+    assert [rubs[name] for name in ("energy", "rebound", "impulse")] == pytest.approx([rubs["friction_work"] / part for part in (1, 2, 4)])
+    slides = estimate.errors(small, still | {"friction_work": 0.0}, STEPS)
+    assert all(slides[name] < rubs[name] / 2 for name in ("energy", "rebound", "impulse"))
 
 
 def test_steps_count_where_the_force_is_high():
