@@ -6,7 +6,7 @@ SWEEPS := oblique friction-jump friction-steps slip-limit contact-time-svk law-c
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws $(SWEEPS) stick-slip verify paper movie docs pictures test robustness bench bench-quick scaling equal-errors promise disc-block-errors rubber pairing-comparison oblique-angles viscoelastic clean
+.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws $(SWEEPS) stick-slip verify paper movie docs pictures test robustness bench bench-quick scaling equal-errors promise disc-block-errors pairing-comparison oblique-angles viscoelastic rubber clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z0-9-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
@@ -35,6 +35,7 @@ ball-oblique: $(READY) ## a ball hits the plane at 60 degrees, with friction, in
 	@$(PYTHON) -m orchestrate run $@ $(ARGS)
 
 ball-comparison: $(READY) ## accelerations of the centre of mass: disc with both laws, ball with both laws (figure 11); again with the same penalty
+	@$(PYTHON) -m orchestrate run disc-normal-incompressible $(ARGS)
 	@$(PYTHON) -m orchestrate compare disc-normal disc-normal-neohookean ball-axisymmetric-svk ball-axisymmetric $(ARGS)
 	@$(PYTHON) -m orchestrate compare disc-normal disc-normal-neohookean ball-axisymmetric-svk ball-axisymmetric --set penalty=1e10 --out results/same-penalty $(ARGS)
 

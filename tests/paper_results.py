@@ -155,7 +155,7 @@ def base() -> dict:
         "stick-slip": pd.DataFrame({"angle": [60.0, 60.0, 60.0, 30.0], "law": ["svk", "svk", "neohookean", "svk"], "exit": 0, "order": [False, False, True, False],
                                     "quiet": [False, True, True, True], "ellipticity_lost_time": np.nan}),
         "modes": pd.DataFrame({"mode": [1, 2, 3], "frequency": [300.0, 790.0, 1200.0], "energy": [1.0, 1.0, 1e-3]}),
-        "summary": {"disc-normal": KEPT | {"contact_time": 4.65e-3, "thresholded_contact_time": 4.62e-3}, "disc-normal-neohookean": KEPT | {"min_jacobian": 0.88, "contact_time": 4.2e-3, "thresholded_contact_time": 4.18e-3},
+        "summary": {"disc-normal": KEPT | {"contact_time": 4.65e-3, "thresholded_contact_time": 4.62e-3}, "disc-normal-incompressible": KEPT | {"min_jacobian": 0.98, "volume_change": 5e-9, "thresholded_contact_time": 4.1e-3}, "disc-normal-neohookean": KEPT | {"min_jacobian": 0.88, "contact_time": 4.2e-3, "thresholded_contact_time": 4.18e-3},
                     "disc-oblique-svk": END, "disc-oblique": KEPT, "disc-rolling": KEPT | {"rebound_vx": 0.666}, "disc-block": BLOCK_END, "disc-block-neohookean": BLOCK_END,
                     "ball-axisymmetric-svk": END | {"contact_time": 6.03e-3, "thresholded_contact_time": 5.9e-3}, "ball-axisymmetric": SPACE, "ball": SPACE},
         "history": {name: PUSH for name in ("disc-normal", "disc-normal-neohookean", "ball-axisymmetric-svk")} | {"disc-block": BLOCK, "disc-block-neohookean": BLOCK},

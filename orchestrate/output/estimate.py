@@ -7,12 +7,13 @@ geometric mean of three measures that mislead for different reasons,
     BOUND (D d A)^(1/3),   D: the mean of the promised answers' differences, over their usual ones;
                            d: the largest difference of its course over its scale: running impulse, velocities, elastic energy (course());
                            A = 1/n^2, n: the steps in which the force is above half its peak: what second-order steps are good for,
-and no less than the difference; what friction ties together is stated together (_together()). Three answers differ (MEASURES): the steps of an impact say little of spin and peak force (d for A), the
-other answers little of friction work (d for D). A touch ends between two steps, so that times converge more slowly: the fourth root. BOUND
-is what 97 of 100 runs keep on scenes other than those of docs/promise.md, some three times the usual error. It is that of mesh and steps:
-penalty and slip velocity are the same in all runs. Where that of a promised answer is more than WORTH times what is asked finer runs
-follow. Where the contact time alone is off and a finer run has not halved its estimate it scatters with the vibration at the last touch (by
-0.8 % rms in hard impacts, on any mesh and at any step that was tried): no finer run follows, and the estimate says by how much.
+and no less than the difference; what friction ties together is stated together (_together()). Three answers differ (MEASURES): the
+steps of an impact say little of spin and peak force (d for A), the other answers little of friction work (d for D). A touch ends between
+two steps, so that times converge more slowly: the fourth root. BOUND is what 97 of 100 runs keep on scenes other than those of
+docs/promise.md, some three times the usual error. It is that of mesh and steps: penalty and slip velocity are the same in all runs. Where
+that of a promised answer is more than WORTH times what is asked finer runs follow. Where the contact time alone is off and a finer run has
+not halved its estimate it scatters with the vibration at the last touch (by 0.8 % rms in hard impacts, on any mesh and at any step that
+was tried): no finer run follows, and the estimate says by how much.
 """
 
 import math

@@ -23,12 +23,14 @@ from . import limits, friction, impacts, pairs, bodies, times   # noqa: F401: th
 from .page import COLOURS, page, verification
 
 # the runs, and the pictures of them on the page
-RUNS = {"disc-normal": ("force",), "disc-normal-neohookean": (), "disc-oblique": ("flight", "force", "energies"),
+RUNS = {"disc-normal": ("force",), "disc-normal-neohookean": (), "disc-normal-incompressible": (),
+        "disc-oblique": ("flight", "force", "energies"),
         "disc-oblique-svk": ("flight", "force", "rolling", "energies"), "disc-rolling": ("rolling",),
         "disc-block": ("velocity", "shapes", "energies"), "disc-block-neohookean": ("velocity",),
         "ball": ("shapes", "force"), "ball-axisymmetric": (), "ball-axisymmetric-svk": ("energies", "force")}
+# the make target of a case, where it is not its own name
 TARGETS = {"disc-oblique-svk": "disc-oblique", "disc-block-neohookean": "disc-block", "ball-axisymmetric-svk": "ball-axisymmetric",
-           "disc-normal-neohookean": "ball-comparison"}   # the make target of a case, where it is not its own name
+           "disc-normal-neohookean": "ball-comparison", "disc-normal-incompressible": "ball-comparison"}
 
 
 def main(argv: list[str]) -> int:
