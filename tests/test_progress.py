@@ -126,6 +126,6 @@ def test_paper_counts_its_parts(shown, monkeypatch, capsys):
     assert targets[:2] == ["disc-normal", "disc-oblique"] and {"stick-slip", "verify", "contact-time-svk"} < set(targets)
     assert paper_making.make(targets) == 1 and ran[:3] == [["run", "disc-normal"], ["compare", "disc-oblique-svk", "disc-oblique"], ["run", "disc-rolling"]]
     assert ran[-1] == ["sweep", "oblique"] and any(words == f"paper: 2 of {len(targets)}" for _, words in shown[0].seen)
-    assert [words[0] for words in paper_making.commands("ball-comparison")] == ["compare", "compare"]     # every line of a recipe
+    assert [words[0] for words in paper_making.commands("ball-comparison")] == ["run", "compare", "compare"]     # every line of a recipe
     with pytest.raises(BadInput, match="--make: 'clean' is no target"):
         paper_making.make(["clean"])

@@ -70,6 +70,7 @@ def test_a_ball_comes_to_rest(tmp_path):
     assert found.history["contact_half_width"][-1] == pytest.approx((0.75 * load * RADIUS * (1 - NU**2) / YOUNG)**(1 / 3), abs=0.001)
 
 
+@pytest.mark.robustness
 def test_friction_stops_a_disc(tmp_path):
     """With a backspin of 2 v/R friction takes sliding and spin alike: the disc stops where it no longer slides, on a rough plane after v^2/(2 mu g)."""
     found = disc(tmp_path, **REST | {"speed": 0.5, "angle": 0, "spin": 20, "friction_static": 0.5, "symmetry": "full"})
@@ -108,6 +109,7 @@ def test_a_scene_says_it_in_toml_and_python(tmp_path):
         run.run(scene.load("disc-block"), {"until": "rest", "gravity": 9.81, "loss": 1, "accuracy": 0.3}, tmp_path / "block", estimate=False)
 
 
+@pytest.mark.robustness
 def test_two_bodies_rest(tmp_path):
     """A disc that falls on another one in a bowl: both rest, their weights on the bowl."""
     body = {"shape": "disc", "radius": 0.05, "law": "neohookean", "young": 2e6, "nu": 0.3, "density": 1000.0, "loss": 2.0, "mesh_size": 0.03,

@@ -24,6 +24,7 @@ def test_theory(monkeypatch):
     assert study.coefficient(*shear) > 0.8 * study.TIME and study.brilliantov(*shear) == 0
 
 
+@pytest.mark.robustness
 def test_impacts_agree_with_it(tmp_path, monkeypatch, capsys):
     """Two speeds, a loss and a relaxation time: the requirement holds, table and figure are there; it fails where a balance does not close or 1 - e is off."""
     for name, few in (("SPEEDS", (1e-3, 1e-2)), ("LOSSES", (0.0, 0.1)), ("TIMES", (0.3,))):
