@@ -4,6 +4,7 @@ import pytest
 
 from orchestrate.failure import BadInput
 from orchestrate.freefem.describe import describe
+from orchestrate.output import vtu
 from verification.measure import bodies, disc, measure
 
 PLACES = {"plane": ("tangent-disc", {"accuracy": 0.1}), "axisymmetric": ("tangent-ball", {"accuracy": 0.1}),
@@ -101,6 +102,15 @@ def test_incompressible_bodies_keep_their_volume(tmp_path, name):
     assert summary["momentum_drift"] < 1e-9 and (summary["angular_momentum_drift"] or 0) < 1e-9
     for column in ("normal_force", "kinetic", "elastic", "min_stretch"):
         assert run.history[column] == pytest.approx(scripted.history[column], rel=0, abs=1e-8 * max(abs(run.history[column]))), column
+
+
+def test_snapshots_have_their_own_pressures(tmp_path):
+    """Of a body with J = 1: none before it touches, above 0 under the contact while it is pressed; -tr/3 of the stress."""
+    disc(tmp_path, **HELD | {"fields": 5})
+    shots = [vtu.read(path).fields for _, path in vtu.series(tmp_path / "fields.pvd")]
+    assert all(shot["pressure"] == pytest.approx(-shot["cauchy_stress"][:, :3].sum(axis=1) / 3, rel=1e-6, abs=1e-3) for shot in shots)
+    largest = [abs(shot["pressure"]).max() for shot in shots]
+    assert largest[0] < 1e-6 * max(largest) and max(shot["pressure"].max() for shot in shots[1:]) > 1e5
 
 
 def test_it_is_the_limit_of_nu(tmp_path):
