@@ -103,6 +103,10 @@ class Disc:
     def velocity(self) -> float:
         return self.momentum @ self.v / self.weight
 
+    def reported(self) -> dict[str, float]:
+        """What is printed beside the march's own numbers."""
+        return {}
+
     def penetration(self) -> float:
         return -((self.heights + self.u[self.edges]) @ GAUSS).min()
 
