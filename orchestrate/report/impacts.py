@@ -78,13 +78,13 @@ def heights(history: dict[str, np.ndarray], table: np.recarray, names: list[str]
 
     for colour, (body, name) in zip(COLOURS, enumerate(names, 1)):
         of = f"_{body}" if len(names) > 1 else ""
-        axes.plot(dense, above(dense, of), color=colour, label=f"{name}: rests at {history[f'y{of}'][-1]:.4g} m")
+        axes.plot(dense, above(dense, of), color=colour, label=f"{name}: at rest y = {history[f'y{of}'][-1]:.4g} m")
         impacts = table[(table.body == body) & np.isfinite(table.restitution)]
         axes.plot(impacts.start, above(impacts.start, of), "o", color=colour, markersize=3)
         for one in impacts[:TOLD]:
             axes.annotate(f"{one.restitution:.2f}", (one.start, above(one.start, of)), (0, -4), textcoords="offset points", ha="center",
                           va="top", fontsize=7.5)
-    axes.set(xlabel="time [s]", ylabel="height of the centre [mm]", xlim=(t[0], t[-1]))
+    axes.set(xlabel="time [s]", ylabel="centre above its place at rest [mm]", xlim=(t[0], t[-1]))
     axes.margins(y=0.12)
     axes.legend(ncols=2, loc="lower center", bbox_to_anchor=(0.5, 1), title="dots: impacts, with their restitutions", title_fontsize=7.5)
     return figure

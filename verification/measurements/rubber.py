@@ -103,7 +103,8 @@ def draw(table: pd.DataFrame, path: Path) -> None:
                     axis.plot(0.5 - its.nu, its[name], color=colour, linestyle=line, marker="o", markersize=3, label=volume)
                 for value in held[name]:
                     axis.axhline(value, color=BLUE, linewidth=0.6, label="J = 1")
-                axis.set(xscale="log", xlabel="0.5 − ν", ylabel=f"{body}: {name}")
+                unit = {"impulse": " [N s/m]" if body == "disc" else " [N s]"}.get(name, "")
+                axis.set(xscale="log", xlabel="0.5 − ν", ylabel=f"{body}: {name}{unit}")
                 axis.invert_xaxis()
             axes[-1].set_yscale("log")
         grid[0][0].legend()
