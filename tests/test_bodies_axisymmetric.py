@@ -163,7 +163,7 @@ def test_obstacles_off_the_axis_are_refused(obstacle, words):
 @pytest.mark.parametrize("old, new, said", [
     ("0 1.5 0.0 0.0 -10", "0 1.5 0.0 1.0 -10", "ball leaves the axis of revolution: its x, angle, vx or spin is not 0"),
     ("plane 4 0.0 -1.0 0.0 1.0", "plane 4 0.0 -1.0 1.0 1.0", "obstacle 1 is none of revolution"),
-    (" 2\n", " 1\n", "on the axis x = 0 (accepted: 2 on the axis, and nowhere else)")])
+    (" 2\n", " 1\n", "has the label 1 (accepted: 2 on x = 0")])
 def test_the_script_looks_at_its_files(tmp_path, old, new, said):
     """Of files that were made by hand the script refuses what is not of revolution, with exit code 10 and one line."""
     assembly.assemble(read(BALL, mesh_size=0.3, contact_mesh_size=0.1)).write(tmp_path)

@@ -32,7 +32,7 @@ MESHES = {
     "region": (lambda text: block(text, "Tetrahedra", lambda w: [*w[:4], "2"]), "mesh: tetrahedron 1 .* is of region 2 .accepted: the bodies, 0 to 1"),
     "mixed": (lambda text: block(text, "Tetrahedra", lambda w: [*w[:4], "1"]), "mesh: tetrahedron .* has neighbours of another"),
     "bare face": (lambda text: block(text, "Triangles", lambda w: [*text.splitlines()[text.splitlines().index(" ".join(w)) + 1].split()]), "mesh: .* but not among the boundary faces"),
-    "symmetry": (lambda text: block(text, "Triangles", lambda w: [*w[:3], "3"]), "mesh: boundary face 1 has the label 3 of a plane of symmetry"),
+    "symmetry": (lambda text: block(text, "Triangles", lambda w: [*w[:3], "3"]), "mesh: boundary face 1 has the label 3 .accepted: 2 on x = 0"),
     "nowhere": (lambda text: block(text, "Vertices", lambda w: ["1e10", *w[1:]]), "mesh: vertex 1 at .1e.10"),
 }
 SCENES = {
