@@ -55,47 +55,53 @@ inline void nominalStress(const double *F, const double *S, double *P) {
 }
 
 // S = g(E): lambda tr(E) I + 2 mu E (5), or mu I + (lambda ln J - mu) C^-1 (6); not a number where det C <= 0.
-inline void stress(const Material &m, const double *C, double *S) {
+// Returns lambda ln J - mu.
+inline double stress(const Material &m, const double *C, double *S) {
   if (m.neohookean) {
-    double det = determinantOf(C), t = (m.lambda / 2 * std::log(det) - m.mu) / det;
+    double det = determinantOf(C), slope = m.lambda / 2 * std::log(det) - m.mu, t = slope / det;
     cofactor(C, S);
     for (int k = 0; k < 6; k++) S[k] *= t;
     for (int k = 0; k < 3; k++) S[k] += m.mu;
-    return;
+    return slope;
   }
   double t = m.lambda / 2 * ((C[0] - 1) + (C[1] - 1) + (C[2] - 1));
   for (int k = 0; k < 3; k++) S[k] = m.mu * (C[k] - 1) + t;
   for (int k = 3; k < 6; k++) S[k] = m.mu * C[k];
+  return 0;
 }
 
 // atanh x - x without cancellation: the series x^3/3 + x^5/5 + ... up to the last bit, beyond 0.3 the logarithm.
 inline double atanhRest(double x) {
+  static const double enough[] = {1e-18, 1e-9, 1e-6, 3.1622776601683795e-5, 2.5118864315095822e-4, 1e-3};   // 10^(-18/k)
   double y = x * x, rest = 0;
+  int k = 0;
   if (std::abs(x) > 0.3) return 0.5 * std::log((1 + x) / (1 - x)) - x;
   if (y == 0) return 0;
-  for (int k = int(18 / -std::log10(y)); k >= 0; k--) rest = rest * y + 1. / (2 * k + 3);
+  if (y < enough[5]) while (y >= enough[k]) k++; else k = int(18 / -std::log10(y));
+  for (; k >= 0; k--) rest = rest * y + 1. / (2 * k + 3);
   return rest * y * x;
 }
 
-// 2 [W(M+H) - W(M-H) - S(M):H], third order in H [J/m3]: neohookeanWorkExcess() of neohookean.idp; 0 where W is quadratic in C.
-inline double workExcess(const Material &m, const double *M, const double *H) {
+// 2 [W(M+H) - W(M-H) - S(M):H], third order in H [J/m3]: neohookeanWorkExcess() of neohookean.idp; 0 where W is quadratic in C. `slope`: of
+// stress() at M.
+inline double workExcess(const Material &m, const double *M, const double *H, double slope) {
   if (!m.neohookean) return 0;
   double K[6], det = determinantOf(M);
   cofactor(M, K);
   double a = contract(K, H) / det, c = determinantOf(H) / det;
   cofactor(H, K);
   double b = contract(M, K) / det, odd = a + c, x = odd / (1 + b), D = atanhRest(x) - x * b + c;
-  return m.lambda / 2 * std::log((1 + b) * (1 + b) - odd * odd) * (a + D) + 2 * (m.lambda / 2 * std::log(det) - m.mu) * D;
+  return m.lambda / 2 * std::log((1 + b) * (1 + b) - odd * odd) * (a + D) + 2 * slope * D;
 }
 
 // S with S : (C1 - C0)/2 = W1 - W0, second order: that at the mean of C, corrected along C1 - C0 (Gonzalez 2000).
 inline void algorithmicStress(const Material &m, const double *C0, const double *C1, double *S) {
   double M[6], H[6];
   for (int k = 0; k < 6; k++) M[k] = 0.5 * (C0[k] + C1[k]);
-  stress(m, M, S);
+  const double slope = stress(m, M, S);
   if (!m.neohookean) return;
   for (int k = 0; k < 6; k++) H[k] = 0.5 * (C1[k] - C0[k]);
-  double e = workExcess(m, M, H) / (2 * contract(H, H) + 1e-300);
+  double e = workExcess(m, M, H, slope) / (2 * contract(H, H) + 1e-300);
   for (int k = 0; k < 6; k++) S[k] += e * H[k];
 }
 
@@ -197,8 +203,8 @@ inline double energy(const Material &m, const double *C) {
   double M[6], H[6], S[6];
   for (int k = 0; k < 6; k++) { M[k] = 0.5 * (C[k] + (k < 3));  H[k] = 0.5 * (C[k] - (k < 3)); }
   if (!m.neohookean) return m.mu * contract(H, H) + m.lambda / 2 * (H[0] + H[1] + H[2]) * (H[0] + H[1] + H[2]);
-  stress(m, M, S);
-  return workExcess(m, M, H) / 2 + contract(S, H);
+  const double slope = stress(m, M, S);
+  return workExcess(m, M, H, slope) / 2 + contract(S, H);
 }
 
 // Cauchy's stress F S F^T / det F, with the pressure p of the element, and von Mises' of it.
