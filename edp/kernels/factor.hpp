@@ -1,7 +1,7 @@
 // factor.hpp: the tangent A = massScale M + stiffnessScale K in CHOLMOD's hands, A = L L^T with the unknowns that can touch ordered last:
 // those of the list `last`, w. The tail of L is then the factor of their Schur complement, S = A_ww - A_wr A_rr^-1 A_rw = L_ww L_ww^T,
-// and S^-1 = (A^-1)_ww [m/N] their compliance, without a back-substitution for each. Only the numbers are computed anew while pattern and
-// `last` stay. A small matrix CHOLMOD takes column by column, as L D L^T, which may be indefinite, though not in w; a large one by dense
+// and S^-1 = (A^-1)_ww [m/N] their compliance, without a back-substitution for each; of others columns of A^-1 are solved for, eight at
+// once, in the blocks of L that lead from them to the last. Only the numbers are computed anew while pattern and `last` stay. A small matrix CHOLMOD takes column by column, as L D L^T, which may be indefinite, though not in w; a large one by dense
 // blocks of columns, as L L^T, which may not. What is held has a 1 on the diagonal and no other entries.
 // An L that no cache holds is rounded to single precision, and S and its inverse are made of that: all solutions are those of one matrix,
 // off A by 1e-7, as the state that A is frozen at is by more. A back-substitution lasts as long as reading L does.
@@ -30,8 +30,11 @@ template<class Number> struct Four {
   Four(const Number *value, int height, int j, int width) : count(std::min(4, width - j)) {
     for (int k = 0; k < 4; k++) c[k] = value + size_t(j + std::min(k, count - 1)) * height;
   }
-  void subtract(const double *x, int first, int last, double *z) const { subtract(c[0], c[1], c[2], c[3], x, first, last, z); }
-  void dot(const double *z, int first, int last, double *s) const { dot(c[0], c[1], c[2], c[3], z, first, last, s); }
+  // of one right side, or of eight side by side
+  template<class Value> void subtract(const Value *x, int first, int last, Value *z) const {
+    subtract(c[0], c[1], c[2], c[3], x, first, last, z);
+  }
+  template<class Value> void dot(const Value *z, int first, int last, Value *s) const { dot(c[0], c[1], c[2], c[3], z, first, last, s); }
 
 private:
   WIDE static void subtract(const Number *c0, const Number *c1, const Number *c2, const Number *c3, const double *x, int i, int last,
@@ -51,6 +54,20 @@ private:
       for (int l = 0; l < 8; l++) s[k] += sum[k][l];
       for (int m = i; m < last; m++) s[k] += c[k][m] * z[m];
     }
+  }
+  WIDE static void subtract(const Number *c0, const Number *c1, const Number *c2, const Number *c3, const Doubles *x, int i, int last,
+                            Doubles *z) {
+    const Doubles x0 = x[0], x1 = x[1], x2 = x[2], x3 = x[3];
+    for (; i < last; i++) z[i] -= double(c0[i]) * x0 + double(c1[i]) * x1 + double(c2[i]) * x2 + double(c3[i]) * x3;
+  }
+  WIDE static void dot(const Number *c0, const Number *c1, const Number *c2, const Number *c3, const Doubles *z, int i, int last,
+                       Doubles *s) {
+    Doubles s0 = {}, s1 = {}, s2 = {}, s3 = {};
+    for (; i < last; i++) {
+      const Doubles v = z[i];
+      s0 += double(c0[i]) * v;  s1 += double(c1[i]) * v;  s2 += double(c2[i]) * v;  s3 += double(c3[i]) * v;
+    }
+    s[0] = s0;  s[1] = s1;  s[2] = s2;  s[3] = s3;
   }
 };
 
@@ -134,7 +151,7 @@ public:
     }
     y.resize(n);
     for (int k = 0; k < n; k++) y[k] = b[permutation[k]];
-    if (single) substitute<float>(); else substitute<double>();
+    if (single) substitute<float, double>(y); else substitute<double, double>(y);
     for (int k = 0; k < n; k++) x[permutation[k]] = y[k];
   }
 
@@ -145,18 +162,28 @@ public:
     solve(right.data(), x);
   }
 
-  // C = (A^-1)_uu by columns, u in w.
-  void compliance(const std::vector<int> &u, double *C) {
-    const int m = int(last.size()), k = int(u.size());
+  // C = (A^-1)_uu by columns, where it has not got the first `known`: of those in w that no other comes before, from S.
+  void compliance(const std::vector<int> &u, size_t known, double *C) {
+    const int m = int(last.size());
+    const size_t k = u.size();
     int info = 0;
-    if (inverse.empty() && m > 0) {
+    std::vector<int> at(n, -1);
+    for (int j = 0; j < m; j++) at[last[j]] = j;
+    size_t inside = 0;
+    while (inside < k && at[u[inside]] >= 0) inside++;
+    if (inverse.empty() && inside > known) {
       inverse = tail;                      // of which dpotri leaves the lower triangle
       dpotri_("L", &m, inverse.data(), &m, &info);
     }
-    std::vector<size_t> at(n);
-    for (int j = 0; j < m; j++) at[last[j]] = j;
-    for (int j = 0; j < k; j++)
-      for (int i = 0; i < k; i++) C[size_t(j) * k + i] = inverse[std::min(at[u[i]], at[u[j]]) * m + std::max(at[u[i]], at[u[j]])];
+    for (size_t j = known; j < inside; j++)
+      for (size_t i = 0; i <= j; i++)
+        C[j * k + i] = C[i * k + j] = inverse[size_t(std::min(at[u[i]], at[u[j]])) * m + std::max(at[u[i]], at[u[j]])];
+    if (L->is_super) mark(u);
+    for (size_t j = std::max(known, inside); j < k; j += lanes) {
+      const size_t end = std::min(j + lanes, k);
+      columns(u, j, end);
+      for (size_t b = j; b < end; b++) for (size_t i = 0; i <= b; i++) C[b * k + i] = C[i * k + b] = ways[i * lanes + b - j];
+    }
   }
 
   // y = A x.
@@ -177,10 +204,12 @@ private:
   cholmod_sparse A = cholmod_sparse();
   cholmod_factor *L = nullptr;
   cholmod_dense *solution = nullptr, *work1 = nullptr, *work2 = nullptr;
-  std::vector<int> column, row, ordered, last;   // entries of A; CHOLMOD's order; w
+  std::vector<int> column, row, ordered, last, place;   // entries of A; CHOLMOD's order; w; unknown -> where in L
   std::vector<size_t> from;                // entry of A -> where in the blocks
   std::vector<double> value, tail, inverse;      // of A; L_ww (lower triangle by columns); S^-1 (likewise), empty until it is asked for
-  std::vector<double> y, z, right;
+  std::vector<double> y, z, right, ways;
+  std::vector<char> marked;                // blocks of L that lead from some unknowns to the last
+  static const size_t lanes = 8;
 
   void order(const std::vector<int> &w) {
     std::vector<char> isLast(n, 0);
@@ -215,41 +244,85 @@ private:
     }
   }
 
-  // L^-1, then L^-T.
-  template<class Number> void substitute() {
-    for (int s = 0; s < int(L->nsuper); s++) forward(block<Number>(s));
-    for (int s = int(L->nsuper) - 1; s >= 0; s--) backward(block<Number>(s));
+  // `ways`: A^-1 at the unknowns u, of the columns from u_from on, before u_to.
+  void columns(const std::vector<int> &u, size_t from, size_t to) {
+    ways.assign(u.size() * lanes, 0.);
+    if (!L->is_super) {
+      for (size_t b = from; b < to; b++) {
+        const double one = 1;
+        z.resize(n);
+        respond({u[b]}, &one, z.data());
+        for (size_t i = 0; i < u.size(); i++) ways[i * lanes + b - from] = z[u[i]];
+      }
+      return;
+    }
+    y.assign(n * lanes, 0.);
+    for (size_t b = from; b < to; b++) y[place[u[b]] * lanes + b - from] = 1;
+    if (single) substitute<float, Doubles>(y, &marked); else substitute<double, Doubles>(y, &marked);
+    for (size_t i = 0; i < u.size(); i++) std::copy_n(&y[place[u[i]] * lanes], lanes, &ways[i * lanes]);
   }
-  template<class Number> void forward(const Block<Number> &B) {
-    if (std::all_of(&y[B.first], &y[B.first] + B.width, [](double v) { return v == 0; })) return;
-    z.assign(B.height, 0.);
-    std::copy(&y[B.first], &y[B.first] + B.width, z.begin());
+
+  // `marked`, and `place`, where unknowns are in L.
+  void mark(const std::vector<int> &u) {
+    const int *permutation = (int *)L->Perm, *super = (int *)L->super;
+    std::vector<int> blockOf(n);
+    place.resize(n);
+    for (int k = 0; k < n; k++) place[permutation[k]] = k;
+    for (int s = 0; s < int(L->nsuper); s++) std::fill(&blockOf[super[s]], &blockOf[super[s]] + super[s + 1] - super[s], s);
+    marked.assign(L->nsuper, 0);
+    for (int j : u) for (int s = blockOf[place[j]]; s >= 0 && !marked[s]; ) {
+      const Block<float> B = block<float>(s);
+      marked[s] = 1;
+      s = B.height > B.width ? blockOf[B.rows[B.width]] : -1;
+    }
+  }
+
+  // L^-1, then L^-T, of one right side (Value: double) or eight; in marked blocks alone, where these are given.
+  template<class Number, class Value> void substitute(std::vector<double> &y, const std::vector<char> *marked = nullptr) {
+    const int blocks = int(L->nsuper);
+    for (int s = 0; s < blocks; s++) if (!marked || (*marked)[s]) forward(block<Number>(s), (Value *)y.data());
+    for (int s = blocks - 1; s >= 0; s--) if (!marked || (*marked)[s]) backward(block<Number>(s), (Value *)y.data());
+  }
+  template<class Value> Value *heights(int height) {
+    z.resize(height * sizeof(Value) / sizeof(double));
+    return (Value *)z.data();
+  }
+  static bool isZero(double v) { return v == 0; }
+  static bool isZero(const Doubles &v) {
+    for (size_t k = 0; k < lanes; k++) if (v[k] != 0) return false;
+    return true;
+  }
+  template<class Number, class Value> void forward(const Block<Number> &B, Value *y) {
+    Value *z = heights<Value>(B.height);
+    if (std::all_of(y + B.first, y + B.first + B.width, [](const Value &v) { return isZero(v); })) return;
+    std::copy(y + B.first, y + B.first + B.width, z);
+    std::fill(z + B.width, z + B.height, Value());
     for (int j = 0; j < B.width; j += 4) {
       const Four<Number> F(B.value, B.height, j, B.width);
-      double x[4] = {};
+      Value x[4] = {};
       for (int k = 0; k < F.count; k++) {
-        for (int l = 0; l < k; l++) z[j + k] -= F.c[l][j + k] * x[l];
-        x[k] = z[j + k] /= F.c[k][j + k];
+        for (int l = 0; l < k; l++) z[j + k] -= double(F.c[l][j + k]) * x[l];
+        x[k] = z[j + k] /= double(F.c[k][j + k]);
       }
-      F.subtract(x, j + F.count, B.height, z.data());
+      F.subtract(x, j + F.count, B.height, z);
     }
-    std::copy(z.begin(), z.begin() + B.width, &y[B.first]);
+    std::copy(z, z + B.width, y + B.first);
     for (int i = B.width; i < B.height; i++) y[B.rows[i]] += z[i];
   }
-  template<class Number> void backward(const Block<Number> &B) {
-    z.resize(B.height);
+  template<class Number, class Value> void backward(const Block<Number> &B, Value *y) {
+    Value *z = heights<Value>(B.height);
     for (int i = 0; i < B.height; i++) z[i] = y[B.rows[i]];
     for (int j = (B.width - 1) / 4 * 4; j >= 0; j -= 4) {
       const Four<Number> F(B.value, B.height, j, B.width);
-      double s[4];
-      F.dot(z.data(), j + F.count, B.height, s);
+      Value s[4];
+      F.dot(z, j + F.count, B.height, s);
       for (int k = F.count - 1; k >= 0; k--) {
         z[j + k] -= s[k];
-        for (int l = k + 1; l < F.count; l++) z[j + k] -= F.c[k][j + l] * z[j + l];
-        z[j + k] /= F.c[k][j + k];
+        for (int l = k + 1; l < F.count; l++) z[j + k] -= double(F.c[k][j + l]) * z[j + l];
+        z[j + k] /= double(F.c[k][j + k]);
       }
     }
-    std::copy(z.begin(), z.begin() + B.width, &y[B.first]);
+    std::copy(z, z + B.width, y + B.first);
   }
 
   // L_ww, out of blocks of columns that have their rows in common.

@@ -63,10 +63,10 @@ static void addFactor() {
   add("kernelRenewalCost", +[]() { return factor.renewalCost(); });
   add("kernelSolve", +[](Reals b, Reals x) { factor.solve(b, x); });
   add("kernelRespond", +[](Ints unknowns, Reals b, Reals x) { factor.respond(copied<int>(unknowns), b, x); });
-  add("kernelCompliance", +[](Ints unknowns, Table C) {       // C = (A^-1)_uu of the unknowns u, all of which are in w
+  add("kernelCompliance", +[](Ints unknowns, long known, Table C) {   // C = (A^-1)_uu of the unknowns u, of which it has the first
     const long n = unknowns.N();
     C.resize(n, n);
-    if (n > 0) factor.compliance(copied<int>(unknowns), &C(0, 0));
+    if (n > 0) factor.compliance(copied<int>(unknowns), known, &C(0, 0));
   });
 }
 
