@@ -108,7 +108,7 @@ def draw(rows: pd.DataFrame, axes: dict[str, tuple[float, ...]], path: Path) -> 
     columns = list(itertools.product(LAW, axes["angle"]))
     with plt.rc_context(STYLE):
         figure, grid = plt.subplots(len(axes["nu"]), len(columns), figsize=(4.1 * len(columns) + 0.4, 1.9 * len(axes["nu"]) + 1.2),
-                                    squeeze=False, sharex=True, sharey=True)
+                                    squeeze=False, sharex=True, sharey=True, layout="constrained")
         for panels, (law, angle) in zip(grid.T, columns):
             for panel, nu in zip(panels, axes["nu"]):
                 here = rows[(rows.law == law) & (rows.angle == angle) & (rows.nu == nu)].set_index(["penalty", "slip_velocity"])

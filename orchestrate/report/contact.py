@@ -55,11 +55,12 @@ def draw(table: np.recarray, names: list[str], half: bool, free: np.ndarray, bal
     rubs, solid = bool(table.shear.any()), "Z" in table.dtype.names
     shown = ["profiles", "pressure"] + ["slip"] * rubs + ["history"] * (history is not None and "contact_half_width" in history)
     maps = (1 + rubs) * (solid and not ball)
-    figure = plt.figure(figsize=(max(2.8 * len(shown), 7.0 if maps else 0), (2.5 + 1.7 * maps) * len(bodies) + 0.6))
-    for part, body in zip(figure.subfigures(len(bodies), 1, squeeze=False)[:, 0], bodies):
-        points = table[table.body == body]
-        upper, lower = part.subfigures(2, 1, height_ratios=[2.5, 1.7 * maps]) if maps else (part, None)
-        panels = dict(zip(shown, upper.subplots(1, len(shown))))
+    figure = plt.figure(figsize=(max(2.8 * len(shown), 7.0 if maps else 0), (2.5 + 1.7 * maps) * len(bodies) + 0.6),
+                        layout="constrained" if maps else None)
+    parts = figure.subfigures(2 * len(bodies), 1, height_ratios=[2.5, 1.7 * maps] * len(bodies)) if maps else []
+    rows = [part.subplots(1, len(shown)) for part in parts[::2]] or figure.subplots(len(bodies), len(shown), squeeze=False)
+    for k, body in enumerate(bodies):
+        points, panels = table[table.body == body], dict(zip(shown, rows[k]))
         own, words, states = _radial(points, ball) if ball or solid and len(names) > 1 else _section(points, half)
         if ball:
             _over_radius(panels["profiles"], points, ball)
@@ -68,7 +69,7 @@ def draw(table: np.recarray, names: list[str], half: bool, free: np.ndarray, bal
         times, places, pressure = _over_time(own, "pressure", instants)
         picture = panels["pressure"].pcolormesh(1e3 * times, 1e3 * places, 1e-6 * pressure.T, shading="nearest", cmap="viridis", vmin=0,
                                                 rasterized=True)
-        upper.colorbar(picture, ax=panels["pressure"], label=PRESSURE)
+        figure.colorbar(picture, cax=panels["pressure"].inset_axes((1.04, 0, 0.06, 1)), label=PRESSURE)
         if rubs:
             _slip(panels["slip"], own, instants, states)
         for axes in [panels[name] for name in ("pressure", "slip") if name in panels]:
@@ -78,7 +79,7 @@ def draw(table: np.recarray, names: list[str], half: bool, free: np.ndarray, bal
         if len(names) > 1:
             panels["pressure"].set_title(names[body - 1])
         if maps:
-            _maps(lower, points, rubs, symmetry, len(names) > 1)
+            _maps(parts[2 * k + 1], points, rubs, symmetry, len(names) > 1)
     return figure
 
 

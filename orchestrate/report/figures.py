@@ -18,7 +18,7 @@ artist.Artist._update_set_signature_and_docstring = classmethod(lambda cls: None
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import TriMesh
-from matplotlib.ticker import NullFormatter
+from matplotlib.ticker import AutoLocator, MaxNLocator, NullLocator
 from matplotlib.transforms import ScaledTranslation
 from matplotlib.tri import LinearTriInterpolator, Triangulation
 from PIL import Image
@@ -35,8 +35,9 @@ SMALL = 7.5   # text of legends, of numbers in cells and below figures; all othe
 # hinting, titley: quicker: outlines of letters as they are; titles stand where nothing is to be made way for
 STYLE = {"font.size": 9, "axes.titlesize": 9, "legend.fontsize": SMALL, "figure.titlesize": 9, "axes.spines.top": False,
          "axes.spines.right": False, "axes.linewidth": 0.8, "lines.linewidth": 1.4, "legend.frameon": False, "figure.dpi": 100,
-         "savefig.dpi": 150, "figure.constrained_layout.use": True, "figure.constrained_layout.w_pad": 0.08,
-         "text.hinting": "none", "axes.titley": 1.0}
+         "savefig.dpi": 150, "figure.constrained_layout.w_pad": 0.08, "text.hinting": "none", "axes.titley": 1.0}
+PAD = 0.08    # inches between what stands around panels
+NUMBERS = 6   # intervals at most between those along an axis
 BODY = {"ball-plane": "ball: ", "ball-axisymmetric": "ball as a body of revolution: "}
 STRESS = "von Mises stress [MPa]"
 SHAPES = 9   # small multiples at most
@@ -72,10 +73,49 @@ def on_a_plane(history: dict[str, np.ndarray], contact: dict[str, np.ndarray], s
 def save(figure: plt.Figure, path: Path) -> None:
     """Writes the figure, laid out and drawn once (savefig draws it twice), and closes it."""
     figure.set_dpi(plt.rcParams["savefig.dpi"])
+    if not figure.get_layout_engine():
+        arrange(figure)
     figure.canvas.draw()
     Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB").save(path, dpi=(figure.dpi, figure.dpi), compress_level=1,
                                                                                 compress_type=Z_RLE)
     plt.close(figure)
+
+
+def arrange(figure: plt.Figure) -> None:
+    """The panels of the grid as large as what stands around them leaves room, below titles and above footers. Each is measured once: to
+    measure takes as long as to draw, and constrained_layout, which a figure of several grids asks for, does it twice."""
+    renderer, pad = figure.canvas.get_renderer(), PAD * figure.dpi
+    grid = figure.axes[0].get_gridspec()
+    before, after = ([[pad / 2] * count for count in (grid.ncols, grid.nrows)] for _ in range(2))   # left and above, right and below [pixels]
+    places = [(axes, axes.get_subplotspec().colspan.start, axes.get_subplotspec().rowspan.start) for axes in figure.axes]
+    for axes in (one for panel in figure.axes for one in (panel, *panel.child_axes)):
+        for axis in (axes.xaxis, axes.yaxis):
+            if type(axis.get_major_locator()) is AutoLocator:   # as many numbers whatever the size: they stay as they are measured
+                axis.set_major_locator(MaxNLocator(NUMBERS, steps=(1, 2, 2.5, 5, 10)))
+    for axes, column, row in places:
+        around = [*axes.texts, *axes.child_axes, *filter(None, [axes.get_legend()])]
+        outer, inner = axes.get_tightbbox(renderer, bbox_extra_artists=around, for_layout_only=True), axes.get_window_extent(renderer)
+        for side, k, room in ((before[0], column, inner.x0 - outer.x0), (after[0], column, outer.x1 - inner.x1),
+                              (before[1], row, outer.y1 - inner.y1), (after[1], row, inner.y0 - outer.y0)):
+            side[k] = max(side[k], room + pad / 2)
+    ends = [pad / 2, pad / 2]                                                                        # of the figure, above and below
+    for text in figure.texts:
+        above = text.get_verticalalignment() == "top"
+        text.set_y(1 - pad / figure.bbox.height if above else pad / figure.bbox.height)
+        ends[not above] += text.get_window_extent(renderer).height + pad
+    (left, right), (top, bottom) = (
+        _cut(size, *edges, *sides) for size, edges, *sides in
+        ((figure.bbox.width, (pad / 2, pad / 2), before[0], after[0], grid.get_width_ratios()),
+         (figure.bbox.height, ends, before[1], after[1], grid.get_height_ratios())))
+    for axes, column, row in places:
+        axes.set_position((left[column], 1 - bottom[row], right[column] - left[column], bottom[row] - top[row]))
+
+
+def _cut(size: float, start: float, end: float, before: list[float], after: list[float], ratios: list[float]) -> np.ndarray:
+    """Where panels in a line begin and end, as shares of its size, which the spaces before and after each and at its ends leave to them."""
+    room = (size - start - end - sum(before) - sum(after)) * np.array(ratios) / sum(ratios)
+    ends = start + np.cumsum(before + room + after) - after
+    return np.array([ends - room, ends]) / size
 
 
 def footer(figure: plt.Figure, warnings: list[str]) -> None:
@@ -190,7 +230,7 @@ def balance_error(axes: plt.Axes, history: dict[str, np.ndarray], energy: float)
     error = np.abs(history["balance"]) / energy
     axes.semilogy(1e3 * history["t"], np.where(error > 0, error, np.nan), color=BLACK, linewidth=0.9)
     axes.yaxis.set_major_formatter(lambda value, _: "10" + f"{np.log10(value):.0f}".translate(RAISED))
-    axes.yaxis.set_minor_formatter(NullFormatter())
+    axes.yaxis.set_minor_locator(NullLocator())
 
 
 def least(values: np.ndarray, largest: float) -> str:
@@ -493,7 +533,7 @@ def side_by_side(found: list["Body"], times: list[float], view: tuple[float, flo
         picture = draw_body(axes, body, largest, place)
         axes.text(*place + ((left + right) / 2, high), f"{1e3 * t:.2f} ms", ha="center", va="bottom")
     scale_bar(axes, 0.25 / columns)
-    figure.colorbar(picture, ax=axes, label=STRESS, shrink=0.7, aspect=30, extend="max")
+    figure.colorbar(picture, cax=axes.inset_axes((1.03, 0.15, 0.025, 0.7)), label=STRESS, extend="max")
     return figure
 
 

@@ -227,7 +227,7 @@ def draw(series: list[tuple[float, Path]], table: np.recarray, scene: dict[str, 
     views = Views(series, table, scene)
     picked = [views.loaded[k]
               for k in np.unique(np.linspace(0, len(views.loaded) - 1, INSTANTS).round().astype(int))] if views.loaded else [0]
-    figure, grid = plt.subplots(2, len(picked), figsize=(2.5 * len(picked) + 0.9, 4.6), squeeze=False)
+    figure, grid = plt.subplots(2, len(picked), figsize=(2.5 * len(picked) + 0.9, 4.6), squeeze=False, layout="constrained")
     for column, k in zip(grid.T, picked):
         for axes, image in zip(column, views.render(views.sights[k])):
             axes.imshow(image)

@@ -301,7 +301,7 @@ def _map(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
     x, y, colour = (wanted[key] for key in ("x", "y", "colour"))
     parts = [(panel, list(_groups(sweep, part, "by"))) for panel, part in _groups(sweep, rows, "panel")]
     figure, grid = plt.subplots(len(parts), len(parts[0][1]), figsize=(1.2 + 3.4 * len(parts[0][1]), 0.8 + 2.8 * len(parts)), sharex=True,
-                                sharey=True, squeeze=False)
+                                sharey=True, squeeze=False, layout="constrained")
     values = _factor(colour) * rows[colour]
     low, high = values.min(), values.max()
     for axes, (words, group) in zip(grid.flat, [(", ".join(filter(None, (panel, words))), group) for panel, groups in parts
