@@ -300,7 +300,7 @@ def _map(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
     wanted = sweep.figure
     x, y, colour = (wanted[key] for key in ("x", "y", "colour"))
     parts = [(panel, list(_groups(sweep, part, "by"))) for panel, part in _groups(sweep, rows, "panel")]
-    widths = [max(1.5, group[x].nunique()) for _, group in parts[0][1]]        # a panel has the values of x that its runs have
+    widths = [max(2.5, group[x].nunique()) for _, group in parts[0][1]]        # a panel has the values of x that its runs have
     figure, grid = plt.subplots(len(parts), len(widths), figsize=(1.2 + 3.4 * sum(widths) / max(widths), 0.8 + 2.8 * len(parts)),
                                 sharex="col", sharey=True, squeeze=False, width_ratios=widths)
     values = _factor(colour) * rows[colour]
@@ -323,7 +323,7 @@ def _map(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
             axes.contour(*drawn, levels=[level], colors=[ORANGE], linewidths=2)
             if band:
                 axes.contour(*drawn, levels=[level - band, level + band], colors=[ORANGE], linewidths=1, linestyles="--")
-        axes.set_xticks(range(len(table.columns)), [f"{value:g}" for value in table.columns])
+        axes.set_xticks(range(len(table.columns)), [f"{value:g}" for value in table.columns], fontsize=SMALL)
         axes.set_yticks(range(len(table.index)), [_tick(value) for value in table.index])
         axes.set_title(words)
         axes.spines[:].set_visible(False)
