@@ -37,9 +37,10 @@ def test_drawn_scenes_cover_what_is_promised():
 def test_hard_scenes_are_hard_and_accepted():
     """Every further parameter in a part of them only."""
     points = draws.draw(promise.SEED, 200, hard=True)
-    for name in ("integrator", "degree", "penalty", "gravity", "regularization", "symmetry"):
+    for name in ("integrator", "degree", "penalty", "gravity", "regularization", "symmetry", "loss"):
         assert 5 < sum(name in point for point in points) < 100, name
-    assert len({point["accuracy"] for point in points}) > 2
+    assert len({point["accuracy"] for point in points}) > 2 and {"incompressible"} < {point["law"] for point in points}
+    assert 5 < sum(point["nu"] > 0.48 for point in points) < 100
     assert all(scene.load("disc-normal").override({"fields": 0, "penalty": "auto"} | point) for point in points)
     on_block = draws.draw(promise.SEED, 50, hard=True, scene="disc-block")
     assert all(scene.load("disc-block").override({"fields": 0, "penalty": "auto"} | point) for point in on_block) and not any("gravity" in point for point in on_block)

@@ -1,13 +1,15 @@
 """`until = rest`: bodies bounce under gravity, each time lower, until all rests (edp/core/run/rest.idp)."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from orchestrate import run, scene
 from orchestrate.failure import BadInput, Failure
-from orchestrate.report import drawing
+from orchestrate.output.results import Contents
+from orchestrate.report import drawing, impacts
 from verification.measure import bodies, disc
 
 RADIUS, YOUNG, NU, DENSITY, GRAVITY, ACCURACY = 0.05, 7e6, 0.4, 1722, 9.81, 0.1
@@ -50,6 +52,20 @@ def test_flights_are_gone_at_once(fallen):
     found, _ = fallen
     longest = np.sort(found.history["dt"])[::-1]
     assert (longest[:4] > 0.05).all() and found.summary["steps"] < 60 * found.summary["bounces"]
+
+
+def test_figures_know_the_flights(fallen):
+    """Between the two rows of a flight they have its parabolas: as high as (vy_0 - vy_1)^2/(8 g), hardly any kinetic energy at the top, the balance of energy
+    closed all the way; the rows of the run are there as they are."""
+    h = Contents(fallen[0].history, Path("history.csv"))
+    drawn = impacts.with_flights(h)
+    flight = int(np.argmax(h["dt"][2:])) + 2
+    inside = (drawn["t"] >= h["t"][flight - 1]) & (drawn["t"] <= h["t"][flight])
+    assert inside.sum() > 20 and np.isin(h["t"], drawn["t"]).all() and all(np.isin(h[name], drawn[name]).all() for name in ("y", "kinetic"))
+    assert drawn["y"][inside].max() - h["y"][flight] == pytest.approx(np.diff(h["vy"])[flight - 1]**2 / (8 * GRAVITY), rel=0.01)
+    assert drawn["kinetic"][inside].min() < 0.002 * h["kinetic"][flight]
+    balance = sum(drawn[name] for name in ("kinetic", "elastic", "contact", "friction_work", "viscous_work")) - drawn["external_work"]
+    assert balance == pytest.approx(balance[0], abs=1e-9 * fallen[0].summary["viscous_work"])
 
 
 def test_at_rest_the_contact_is_hertz(fallen):

@@ -1,10 +1,13 @@
 """nu -> 0.5 (edp/core/law/volume.idp): volume in the mean of an element, without locking, in scripts and kernels."""
 
+import numpy as np
 import pytest
 
+from orchestrate import run, scene
 from orchestrate.failure import BadInput
 from orchestrate.freefem.describe import describe
 from orchestrate.output import vtu
+from orchestrate.report import drawing
 from verification.measure import bodies, disc, measure
 
 PLACES = {"plane": ("tangent-disc", {"accuracy": 0.1}), "axisymmetric": ("tangent-ball", {"accuracy": 0.1}),
@@ -111,6 +114,23 @@ def test_snapshots_have_their_own_pressures(tmp_path):
     assert all(shot["pressure"] == pytest.approx(-shot["cauchy_stress"][:, :3].sum(axis=1) / 3, rel=1e-6, abs=1e-3) for shot in shots)
     largest = [abs(shot["pressure"]).max() for shot in shots]
     assert largest[0] < 1e-6 * max(largest) and max(shot["pressure"].max() for shot in shots[1:]) > 1e5
+
+
+def test_the_history_has_their_pressure(tmp_path):
+    """Its last row: the mean pressure is that of the last snapshot's field, over its deformed area, to 2 %; the largest is above all there, which are means around
+    corners, by less than a half. The picture is drawn. A plain body has no such columns, and the scene knows which has."""
+    found = run.run(scene.load("disc-normal-incompressible"), {"accuracy": 0.02, "end_time": 2e-3, "fields": 2}, tmp_path / "held", estimate=False)
+    shot = vtu.read(found.folder / "fields/0001.vtu")
+    field, moved = shot.fields["pressure"], shot.points + shot.fields["displacement"][:, :2]
+    a, b, c = (moved[shot.triangles[:, k]] for k in range(3))
+    area = abs(np.linalg.det(np.stack([b - a, c - a], axis=1)))
+    assert found.history["hydrostatic_pressure"][-1] == pytest.approx(np.average(field[shot.triangles].mean(axis=1), weights=area), rel=0.02)
+    assert field.max() < found.history["max_hydrostatic_pressure"][-1] < 1.5 * field.max()
+    drawing.draw(found.folder, [])
+    assert (found.folder / "figures/pressure.png").stat().st_size > 5000
+    plain = run.run(scene.load("disc-normal"), {"accuracy": 0.2, "fields": 0}, tmp_path / "plain", estimate=False)
+    assert list(found.history) == scene.load("disc-normal-incompressible").columns
+    assert list(plain.history) == scene.load("disc-normal").columns == [name for name in found.history if "hydrostatic" not in name]
 
 
 def test_it_is_the_limit_of_nu(tmp_path):

@@ -18,6 +18,7 @@ from .measure import disc
 from .oblique_ball import REBOUNDS, curve
 from .rigid_disc import oblique
 from .rod import rods
+from .rubber import decays, membranes
 from .sliding_block import block
 
 
@@ -59,6 +60,8 @@ CASES = (
     Case("V10", "stiff oblique disc: sliding throughout, rolling", "penalty × radius / E", 0.03, oblique,
          note="With the measured restitution. A stiff penalty leaves the disc's own compliance, which springs back along the "
               "plane; a soft one lets it sink in (0.8 % of its radius at the softest), which shortens the lever of friction."),
+    Case("V11", "Cook's membrane at ν = 0.4999, plane strain: its tip, in the mean volume of elements", "element size / side", 0.01, membranes,
+         note="Neo-Hookean, under the published load, and a small one; expected by Taylor–Hood elements of high order on the same equations."),
     Case("V12", "normal impact against NGSolve and GetFEM", "accuracy", 0.005, independent,
          note="Disc SVK, ball neo-Hookean (NGSolve alone). Their converged values, written independently on the same equations. The contact time scatters with mesh and step, by up "
               "to 1.5 % on the coarser ones."),
@@ -77,6 +80,8 @@ CASES = (
               "the speed U of the law's plane shock, 4 % above c_L at 8 m/s; on the finest mesh also that with c_L."),
     Case("V19", "bar with a Maxwell branch on a wall: contact 2L/c, restitution of the standard linear solid", "element size / length", 0.01, relaxing,
          note="v/c = 10⁻⁴, branch of half the bar's modulus, penalty 1000 E/L; expected by the inverse Laplace transform of the force on the wall."),
+    Case("V24", "first mode of a viscous body: its decay over exp(−ηω²t/(2μ))", "time step / period", 0.01, decays,
+         note="Kelvin–Voigt, ζ/λ = η/μ: the mode stays that of the elastic body. Disc, and ball in three dimensions."),
     Case("annulus", "cylinder pressed on a plane, then sheared: stick and slip of Cattaneo and Mindlin", "element size / b", 0.02, annuli, beside=shear,
          note="b/R = 0.02, neo-Hookean, ν = 0.45, μ = 0.1, Q some μP/2, pressed without friction; linear regularisation, ε = 0.003 of the plane's speed: what sticks creeps by "
               "less than 0.3 % of its way. c and q are those of the P and Q that are measured; tractions are means over edges."),

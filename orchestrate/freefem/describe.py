@@ -21,8 +21,9 @@ def describe(values: dict | None = None, script: str = "disc-plane") -> dict:
 
 def describe_results(values: dict | None = None, script: str = "disc-plane") -> dict:
     """The answer of edp/describe-results.edp for the same: bodies, columns (of history.csv), summary (the numbers of summary.json),
-    body_columns and body_summary (of each of several bodies), damped (what all four have beside, where bodies are damped), contact_columns
-    (of contacts.csv), and by file and name `meanings`: unit, words. Raises as describe()."""
+    body_columns and body_summary (of each of several bodies), damped (what all four have beside, where bodies are damped), projected (what
+    both columns have where volume is projected, of nu above plain_nu), contact_columns (of contacts.csv), and by file and name `meanings`:
+    unit, words. Raises as describe()."""
     return json.loads(_ask("edp/describe-results.edp", _flags(values, script)))
 
 

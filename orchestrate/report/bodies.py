@@ -12,8 +12,8 @@ from ..scenes import obstacles
 from ..scenes.obstacles import Obstacle
 from ..input.parameters import Value
 from ..output.results import body_names, mechanical_energy, suffixes
-from .figures import (BLACK, BLUE, GREEN, GREY, ORANGE, ORIGIN, PURPLE, VISCOUS, Body, as_written, balance_error, deformed, instants,
-                      is_half, least, material, over_time, per_metre, plt, side_by_side)
+from .figures import (BLACK, BLUE, COLOURED, GREEN, GREY, ORANGE, ORIGIN, PURPLE, VISCOUS, Body, as_written, balance_error, coloured,
+                      deformed, instants, is_half, least, material, over_time, per_metre, plt, side_by_side)
 
 ALONE = ("disc-plane", "ball-axisymmetric", "ball-plane")     # scripts of one body on the plane
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, "#56b4e9", "#e69f00")    # of bodies
@@ -57,7 +57,7 @@ def draw(history: dict[str, np.ndarray], scene: dict[str, Value], snapshots: lis
     """The figures by name; `history` from the first touch on."""
     drawn = {"energies": energies(history, scene), "velocity": velocities(history, scene), "force": forces(history, scene)}
     if snapshots and len(vtu.read(snapshots[0][1]).triangles):       # none where no body crosses the plane z = 0
-        drawn["shapes"] = shapes(snapshots, scene)
+        drawn |= {name: shapes(snapshots, scene, *COLOURED[name]) for name in coloured(history)}
     return drawn
 
 
@@ -169,14 +169,14 @@ def forces(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figur
 
 # ---- shapes
 
-def shapes(series: list[tuple[float, Path]], scene: dict[str, Value]) -> plt.Figure:
-    """All bodies at up to SHAPES instants among the obstacles, coloured by the von Mises stress [MPa]."""
+def shapes(series: list[tuple[float, Path]], scene: dict[str, Value], field: str, label: str) -> plt.Figure:
+    """All bodies at up to SHAPES instants among the obstacles, coloured by a field [MPa]."""
     picked = instants(series)
-    found = [deformed(vtu.read(path), is_half(scene)) for _, path in picked]
+    found = [deformed(vtu.read(path), is_half(scene), field) for _, path in picked]
     left, right, low, high = view = limits(found)
     rigid, columns = obstacles_of(scene), 3 if right - left < 3 * (high - low) else 2
     return side_by_side(found, [t for t, _ in picked], view, min(columns, len(found)),
-                        lambda axes, t, place: draw_obstacles(axes, rigid, view, t, place))
+                        lambda axes, t, place: draw_obstacles(axes, rigid, view, t, place), label)
 
 
 def obstacles_of(scene: dict[str, Value]) -> list[Obstacle]:

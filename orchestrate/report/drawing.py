@@ -18,7 +18,7 @@ def draw(folder: Path, warnings: list[str]) -> list[Path]:
     """Draws all figures of the run in `folder` into folder/figures, with its warnings below; the files. Unreadable where the
     folder is broken. energies.png is the last: where it is, all are."""
     check_files(folder)
-    history, scene = read_history(folder), read_scene(folder)
+    history, scene = impacts.with_flights(read_history(folder)), read_scene(folder)
     scene["touched"] = touched(read_json(folder / "summary.json"))
     if scene["script"] in dimension.SCRIPTS and "body" not in scene:
         raise Unreadable(f"{folder}: of a run without Python, which keeps neither names of bodies nor obstacles (accepted: a folder of "
@@ -64,7 +64,8 @@ def title(scene: dict[str, Value]) -> str:
         return bodies.title(scene)
     angle = "" if scene.get("angle", 90) == 90 else f" at {scene['angle']:g}°"
     body = BODY.get(scene.get("script"), "")
-    text = f"{body}{material(scene)}, {scene['speed']:g} m/s{angle}"
+    above = f" from a height of {scene['height']:g} m" if scene.get("height", 0) > 0 else ""
+    text = f"{body}{material(scene)}, {scene['speed']:g} m/s{angle}{above}"
     if scene.get("degree") == 1:
         text += ", linear elements"
     if scene.get("friction_static", 0) > 0:

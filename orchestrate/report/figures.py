@@ -29,7 +29,8 @@ from ..output import vtu
 from ..output.results import mechanical_energy
 from . import literature
 
-LAWS = {"svk": "St. Venant–Kirchhoff", "neohookean": "neo-Hookean", "mooney-rivlin": "Mooney–Rivlin", "ogden": "Ogden"}
+LAWS = {"svk": "St. Venant–Kirchhoff", "neohookean": "neo-Hookean", "mooney-rivlin": "Mooney–Rivlin", "ogden": "Ogden",
+        "incompressible": "neo-Hookean with J = 1"}
 BLUE, ORANGE, GREEN, PURPLE, BLACK, GREY = "#0072b2", "#d55e00", "#009e73", "#aa4499", "#222222", "#999999"
 SMALL = 7.5   # text of legends, of numbers in cells and below figures; all other text has the style's size
 # hinting, titley: quicker: outlines of letters as they are; titles stand where nothing is to be made way for
@@ -40,6 +41,8 @@ PAD = 0.08    # inches between what stands around panels
 NUMBERS = 6   # intervals at most between those along an axis
 BODY = {"ball-plane": "ball: ", "ball-axisymmetric": "ball as a body of revolution: "}
 STRESS = "von Mises stress [MPa]"
+# pictures of shapes by name: the field that colours them, and its label
+COLOURED = {"shapes": ("von_mises", STRESS), "pressure": ("pressure", "pressure −tr(σ)/3 [MPa]")}
 SHAPES = 9   # small multiples at most
 ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 1), "handlelength": 1.6, "columnspacing": 1.4}   # a legend above its panel
 # one below it, under the numbers and the name of its axis
@@ -64,7 +67,7 @@ def on_a_plane(history: dict[str, np.ndarray], contact: dict[str, np.ndarray], s
         drawn["force"] = _force(contact, scene)
     if snapshots:
         half = is_half(scene)
-        drawn["shapes"] = _shapes(snapshots, half)
+        drawn |= {name: _shapes(snapshots, half, *COLOURED[name]) for name in coloured(history)}
         if len(snapshots) > 2 and not half and _goes_along(history, scene):
             drawn["flight"] = _flight(history, scene, snapshots)
     return drawn
@@ -503,12 +506,17 @@ def _draw_pose(axes: plt.Axes, pose: Pose, colour, line, label: str | None) -> N
     axes.plot(*pose.diameter[0], color=colour, marker="o", markersize=4)
 
 
-def _shapes(series: list[tuple[float, Path]], half: bool) -> plt.Figure:
-    """The body at up to SHAPES instants above the plane y = 0, coloured by the von Mises stress [MPa]."""
+def coloured(history: dict[str, np.ndarray]) -> list[str]:
+    """The pictures of shapes of a run: of the pressure where the elements of a body hold it."""
+    return ["shapes", *["pressure"] * ("hydrostatic_pressure" in history)]
+
+
+def _shapes(series: list[tuple[float, Path]], half: bool, field: str, label: str) -> plt.Figure:
+    """The body at up to SHAPES instants above the plane y = 0, coloured by a field [MPa]."""
     picked = instants(series)
-    found = [deformed(vtu.read(path), half) for _, path in picked]
+    found = [deformed(vtu.read(path), half, field) for _, path in picked]
     view = limits(found)
-    return side_by_side(found, [t for t, _ in picked], view, min(3, len(found)), lambda axes, _, at: draw_ground(axes, view, at))
+    return side_by_side(found, [t for t, _ in picked], view, min(3, len(found)), lambda axes, _, at: draw_ground(axes, view, at), label)
 
 
 def instants(series: list[tuple[float, Path]]) -> list[tuple[float, Path]]:
@@ -517,29 +525,31 @@ def instants(series: list[tuple[float, Path]]) -> list[tuple[float, Path]]:
 
 
 def side_by_side(found: list["Body"], times: list[float], view: tuple[float, float, float, float], columns: int,
-                 behind: Callable) -> plt.Figure:
+                 behind: Callable, label: str) -> plt.Figure:
     """The bodies in rows, each at its time [s] within the limits `view` [m] with what behind(axes, time, place) draws there, coloured by
-    the von Mises stress [MPa]: in one panel, as each of its own would take as long as its body."""
+    their stress, of which `label` says what it is: in one panel, as each of its own would take as long as its body."""
     left, right, low, high = view
     rows, inch = -(-len(found) // columns), (right - left) * columns / 6.5             # [m]
     step = np.array([right - left + 0.1 * inch, high - low + 0.3 * inch])
     figure, axes = plt.subplots(figsize=(7.5, rows * step[1] / inch + 0.4), subplot_kw=BARE)
     axes.set_axis_off()
     axes.set(xlim=(left, right + (columns - 1) * step[0]), ylim=(low - (rows - 1) * step[1], low + step[1]), aspect="equal")
-    largest = most_stress(found)
+    ends = ends_of_stress(found)
     for k, (body, t) in enumerate(zip(found, times)):
         place = step * (k % columns, -(k // columns))
         behind(axes, t, place)
-        picture = draw_body(axes, body, largest, place)
+        picture = draw_body(axes, body, ends, place)
         axes.text(*place + ((left + right) / 2, high), f"{1e3 * t:.2f} ms", ha="center", va="bottom")
     scale_bar(axes, 0.25 / columns)
-    figure.colorbar(picture, cax=axes.inset_axes((1.03, 0.15, 0.025, 0.7)), label=STRESS, extend="max")
+    figure.colorbar(picture, cax=axes.inset_axes((1.03, 0.15, 0.025, 0.7)), label=label, extend="both" if ends[0] < 0 else "max")
     return figure
 
 
-def most_stress(bodies: list["Body"]) -> float:
-    """The upper end [MPa] of the colours: five in a thousand of all nodes are above it, so that one spot does not darken all the rest."""
-    return float(np.quantile(np.concatenate([body.stress for body in bodies]), 0.995)) or 1.0
+def ends_of_stress(bodies: list["Body"]) -> tuple[float, float]:
+    """The ends [MPa] of the colours, 0 or less and more: five in a thousand of all nodes are beyond each, so that one spot does not darken
+    all the rest."""
+    low, high = np.quantile(np.concatenate([body.stress for body in bodies]), [0.005, 0.995])
+    return min(0.0, low), high or 1.0
 
 
 def scale_bar(axes: plt.Axes, share: float = 0.25) -> None:
@@ -557,7 +567,7 @@ def scale_bar(axes: plt.Axes, share: float = 0.25) -> None:
 
 @dataclass(frozen=True)
 class Body:
-    """The whole deformed body: points (n, 2) in m, triangles (t, 3), von Mises stress (n,) in MPa."""
+    """The whole deformed body: points (n, 2) in m, triangles (t, 3), von Mises stress or another field of stress (n,) in MPa."""
 
     points: np.ndarray
     triangles: np.ndarray
@@ -571,10 +581,10 @@ def is_half(scene: dict[str, Value]) -> bool:
     return scene.get("symmetry") == ("quarter" if script in ("ball-plane", "bodies-3d") else "half") or script.endswith("axisymmetric")
 
 
-def deformed(snapshot: vtu.Snapshot, half: bool) -> Body:
+def deformed(snapshot: vtu.Snapshot, half: bool, field: str = "von_mises") -> Body:
     """The body of a snapshot; where half of it was computed, the other half is the mirror image in its left end, the axis."""
     points = snapshot.points + snapshot.fields["displacement"][:, :2]
-    triangles, stress = snapshot.triangles, 1e-6 * snapshot.fields["von_mises"]
+    triangles, stress = snapshot.triangles, 1e-6 * snapshot.fields[field]
     if half:
         triangles = np.vstack([triangles, triangles + len(points)])
         points, stress = np.vstack([points, points * (-1, 1) + (2 * snapshot.points[:, 0].min(), 0)]), np.concatenate([stress, stress])
@@ -597,8 +607,8 @@ def draw_ground(axes: plt.Axes, view: tuple[float, float, float, float], place: 
     axes.plot([left + x, right + x], [y, y], color=BLACK, linewidth=0.8)
 
 
-def draw_body(axes: plt.Axes, body: Body, largest: float, place: np.ndarray = ORIGIN) -> TriMesh:
-    """The body coloured by its stress, on a scale from 0 to `largest` MPa, drawn at a place [m]."""
-    picture = axes.tripcolor(*(body.points + place).T, body.triangles, body.stress, shading="gouraud", cmap="viridis", vmin=0, vmax=largest)
+def draw_body(axes: plt.Axes, body: Body, ends: tuple[float, float], place: np.ndarray = ORIGIN) -> TriMesh:
+    """The body coloured by its stress, on a scale with these ends [MPa], drawn at a place [m]."""
+    picture = axes.tripcolor(*(body.points + place).T, body.triangles, body.stress, shading="gouraud", cmap="viridis", clim=ends)
     picture.set_in_layout(False)
     return picture

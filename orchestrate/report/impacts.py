@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..output.results import read_table
+from ..output.results import Contents, read_table
 from .figures import BLUE, GREEN, GREY, ORANGE, plt
 
 LIGHTEST = 0.01                  # of the largest impulse of a meeting: what is less is the grazing end of an impact
@@ -14,6 +14,7 @@ LEAST_APPROACH = 0.01            # of the largest of a meeting: of less, as of a
 HIGHEST = 1.5                    # restitution that is drawn to scale: above it a body that vibrates was pushed off as it hardly approached
 COLOURS = [BLUE, ORANGE, GREEN, "#cc79a7", "#e69f00", "#56b4e9"]
 TOLD = 5                         # restitutions written beside the first impacts
+INSIDE = 40                      # rows inside a flight
 NEEDED = ["body", "partner", "start", "end", "impulse", "approach", "separation", "restitution", "restitution_tangential"]
 
 
@@ -64,26 +65,43 @@ def draw(table: np.recarray, names: list[str], rigid: list[str]) -> plt.Figure |
     return figure
 
 
+def with_flights(history: dict[str, np.ndarray]) -> Contents:
+    """The history with rows inside its flights, of which a run has one each. With s from 0 to 1 in a flight of duration T, in which every
+    velocity changes by dv = g T, all is linear in s but places, less by s (1 - s) dv T/2, and kinetic energy and work of gravity, less by
+    s (1 - s) m dv^2/2."""
+    t = history["t"]
+    flies = (history["newton_iterations"][1:] == 0) & (history["normal_force"][1:] == 0)
+    inside = np.linspace(t[:-1][flies], t[1:][flies], INSIDE + 2)[1:-1].ravel()
+    times = np.sort(np.concatenate([t, inside]))
+    step = np.clip(np.searchsorted(t, times, side="right") - 1, 0, len(t) - 2)
+    share = (times - t[step]) / np.diff(t)[step]
+    bend = np.where(flies[step], share * (1 - share) / 2, 0)
+    filled = {name: np.interp(times, t, column) for name, column in history.items()}
+    for of in ("", *(name.removeprefix("kinetic") for name in history if name.startswith("kinetic_"))):
+        gained = np.zeros(len(t) - 1)
+        for axis in (axis for axis in "xyz" if axis + of in history):
+            change = np.diff(history[f"v{axis}{of}"])
+            filled[axis + of] -= bend * (change * np.diff(t))[step]
+            gained += change * np.diff(history[f"momentum_{axis}{of}"])
+        for name in ("kinetic", "external_work") if of == "" else (f"kinetic{of}",):
+            filled[name] -= bend * gained[step]
+    return Contents(filled, history.path)
+
+
 def heights(history: dict[str, np.ndarray], table: np.recarray, names: list[str]) -> plt.Figure:
     """The height of each body's centre above its last one [mm] over time [s], with the instants of its impacts and the first restitutions:
-    of a run until rest. Between two rows its acceleration is constant: of a flight two are enough."""
+    of a run until rest, with_flights()."""
     figure, axes = plt.subplots(figsize=(6.4, 3.4))
     t = history["t"]
-    dense = np.linspace(t[0], t[-1], 2000)
-
-    def above(when: np.ndarray, of: str) -> np.ndarray:
-        y, v, row = history[f"y{of}"], history[f"vy{of}"], np.clip(np.searchsorted(t, when, side="right") - 1, 0, len(t) - 2)
-        past, step = when - t[row], np.maximum(t[row + 1] - t[row], 1e-300)
-        return 1e3 * (y[row] + v[row] * past + (v[row + 1] - v[row]) * past**2 / (2 * step) - y[-1])
-
     for colour, (body, name) in zip(COLOURS, enumerate(names, 1)):
-        of = f"_{body}" if len(names) > 1 else ""
-        axes.plot(dense, above(dense, of), color=colour, label=f"{name}: at rest y = {history[f'y{of}'][-1]:.4g} m")
+        y = history["y" if len(names) == 1 else f"y_{body}"]
+        above = 1e3 * (y - y[-1])
+        axes.plot(t, above, color=colour, label=f"{name}: at rest y = {y[-1]:.4g} m")
         impacts = table[(table.body == body) & np.isfinite(table.restitution)]
-        axes.plot(impacts.start, above(impacts.start, of), "o", color=colour, markersize=3)
+        axes.plot(impacts.start, np.interp(impacts.start, t, above), "o", color=colour, markersize=3)
         for one in impacts[:TOLD]:
-            axes.annotate(f"{one.restitution:.2f}", (one.start, above(one.start, of)), (0, -4), textcoords="offset points", ha="center",
-                          va="top", fontsize=7.5)
+            axes.annotate(f"{one.restitution:.2f}", (one.start, np.interp(one.start, t, above)), (0, -4), textcoords="offset points",
+                          ha="center", va="top", fontsize=7.5)
     axes.set(xlabel="time [s]", ylabel="centre above its place at rest [mm]", xlim=(t[0], t[-1]))
     axes.margins(y=0.12)
     axes.legend(ncols=2, loc="lower center", bbox_to_anchor=(0.5, 1), title="dots: impacts, with their restitutions", title_fontsize=7.5)

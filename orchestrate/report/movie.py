@@ -196,7 +196,7 @@ class PlaneStage(Stage):
             draw_ground(self.above, view)
         self.above.set(xlim=(left, right), ylim=(floor, top), aspect="equal", xlabel="x [m]", ylabel="y [m]")
         self.largest = np.quantile([body.stress for body in motion.bodies], 0.999) or 1.0   # one spot does not darken all the rest
-        self.picture = draw_body(self.above, motion.bodies[0], self.largest)
+        self.picture = draw_body(self.above, motion.bodies[0], (0, self.largest))
         self.figure.colorbar(self.picture, cax=bar, label=STRESS, extend="max")
         self.marks = []
         if motion.diameters is not None:   # shows how the body turns
@@ -211,7 +211,7 @@ class PlaneStage(Stage):
                 each.remove()
             self.drawn = bodies.draw_obstacles(self.above, self.rigid, self.view, t)
         self.picture.remove()
-        self.picture = draw_body(self.above, body, self.largest)
+        self.picture = draw_body(self.above, body, (0, self.largest))
         if self.marks:
             self.marks[0].set_data(*line.T)
             self.marks[1].set_data(*line[:1].T)

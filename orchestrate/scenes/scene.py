@@ -117,13 +117,18 @@ class Scene:
         """Columns or numbers; those of each of several bodies have the suffixes _1, _2 ..."""
         said = describe_results(script=self.script)
         bodies = len(self.bodies) or said["bodies"]
-        more = said["damped"] if self.damped else []
+        more = said["damped"] * self.damped + said["projected"] * (what == "columns" and self._projected(said["plain_nu"]))
         return said[what] + more + [f"{name}_{b}" for b in range(1, bodies + 1) for name in said[f"body_{what}"] + more if bodies > 1]
 
     @property
     def damped(self) -> bool:
         """Whether a body is."""
         return any(body.damped for body in self.bodies) or any(self.values.get(name) for name in bodies.DAMPED)
+
+    def _projected(self, plain_nu: float) -> bool:
+        """Whether nu of a body is above what is as stiff at points: the volume of its elements is projected then."""
+        stiffest = max([body.nu for body in self.bodies] or [self.values["nu"]])
+        return self.values.get("volume") != "plain" and self.values["degree"] == 2 and stiffest > plain_nu
 
     @property
     def of_files(self) -> bool:

@@ -300,8 +300,9 @@ def _map(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
     wanted = sweep.figure
     x, y, colour = (wanted[key] for key in ("x", "y", "colour"))
     parts = [(panel, list(_groups(sweep, part, "by"))) for panel, part in _groups(sweep, rows, "panel")]
-    figure, grid = plt.subplots(len(parts), len(parts[0][1]), figsize=(1.2 + 3.4 * len(parts[0][1]), 0.8 + 2.8 * len(parts)), sharex=True,
-                                sharey=True, squeeze=False, layout="constrained")
+    widths = [max(2.5, group[x].nunique()) for _, group in parts[0][1]]        # a panel has the values of x that its runs have
+    figure, grid = plt.subplots(len(parts), len(widths), figsize=(1.2 + 3.4 * sum(widths) / max(widths), 0.8 + 2.8 * len(parts)),
+                                sharex="col", sharey=True, squeeze=False, width_ratios=widths, layout="constrained")
     values = _factor(colour) * rows[colour]
     low, high = values.min(), values.max()
     for axes, (words, group) in zip(grid.flat, [(", ".join(filter(None, (panel, words))), group) for panel, groups in parts
@@ -316,10 +317,13 @@ def _map(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
                       bbox=dict(facecolor="white" if np.isnan(value) else plt.get_cmap("viridis")(share), edgecolor="none", pad=1.2))
         if wanted["level"] is not None:
             level, band = (_factor(colour) * wanted[key] for key in ("level", "band"))
-            axes.contour(cells, levels=[level], colors=[ORANGE], linewidths=2)
+            alone = cells.shape[1] == 1                                          # its level runs across all of the column
+            across = [-0.5, 0.5] if alone else np.arange(cells.shape[1])
+            drawn = across, np.arange(len(cells)), cells.repeat(2, axis=1) if alone else cells
+            axes.contour(*drawn, levels=[level], colors=[ORANGE], linewidths=2)
             if band:
-                axes.contour(cells, levels=[level - band, level + band], colors=[ORANGE], linewidths=1, linestyles="--")
-        axes.set_xticks(range(len(table.columns)), [f"{value:g}" for value in table.columns])
+                axes.contour(*drawn, levels=[level - band, level + band], colors=[ORANGE], linewidths=1, linestyles="--")
+        axes.set_xticks(range(len(table.columns)), [f"{value:g}" for value in table.columns], fontsize=SMALL)
         axes.set_yticks(range(len(table.index)), [_tick(value) for value in table.index])
         axes.set_title(words)
         axes.spines[:].set_visible(False)

@@ -75,6 +75,8 @@ BALL = {"law": "neohookean", "nu": 0.45, "speed": 8.0, "penalty": 1.5e10}
 CASES = {
     "normal-svk": Case("disc-normal", {"law": "svk"}, ("impulse", "rebound_vy", "contact_time")),
     "normal-neohookean": Case("disc-normal", {"law": "neohookean"}, ("impulse", "rebound_vy", "contact_time")),
+    "normal-incompressible": Case("disc-normal-incompressible", {"law": "incompressible"}, ("impulse", "rebound_vy", "contact_time"),
+                                  families=("adaptive, P2", "fixed step, P2")),
     "oblique-neohookean": Case("disc-oblique", {"law": "neohookean"},
                                ("impulse", "rebound_vx", "rebound_vy", "rebound_spin", "friction_work", "contact_time"), 0.000625),
     "disc-block-svk": Case("disc-block", {"law": "svk", "penalty": 1e9}, tuple(NGSOLVE), 0.005, 20),

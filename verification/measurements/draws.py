@@ -90,8 +90,9 @@ SCENES = {"disc-normal": _on_plane, "disc-block": _on_block, "ball-axisymmetric"
 def words(point: Point) -> str:
     """A scene as a line of a table reads it best: law, material, speed over c, what is special."""
     named = {value[:2]: name for name, value in MATERIALS.items()}
-    told = {"law", "young", "density", "nu", "speed", "friction_static", "friction_dynamic", "body.1.position", "body.1.velocity",
-            "body.2.velocity"}
+    known = point["nu"] == MATERIALS[named[point["young"], point["density"]]][2]
+    told = {"law", "young", "density", "nu" if known else "", "speed", "friction_static", "friction_dynamic", "body.1.position",
+            "body.1.velocity", "body.2.velocity"}
     point = {name.removeprefix("contact."): value for name, value in point.items()}
     speed = point["speed"] if "speed" in point else point["body.1.velocity"][0] - point["body.2.velocity"][0]
     parts = [point["law"], named[point["young"], point["density"]], f"v/c {speed / bar_speed(point['young'], point['density']):.2g}"]
@@ -121,7 +122,7 @@ def _scene(chance: random.Random, hard: bool) -> Point:
 
 
 def _harder(chance: random.Random, point: Point, c: float) -> Point:
-    """What a user may ask for besides; each in a small part of the scenes."""
+    """What a user may ask for besides, rubber and damping, too; each in a small part of the scenes."""
     more: Point = {"accuracy": chance.choice([0.002, 0.005, 0.01, 0.03])}
     if chance.random() < 0.15:
         more["integrator"] = chance.choice(["midpoint", "newmark", "bdf2", "backward-euler"])
@@ -135,6 +136,13 @@ def _harder(chance: random.Random, point: Point, c: float) -> Point:
         more["regularization"] = chance.choice(["sqrt", "tanh"])
     if chance.random() < 0.1:
         more["symmetry"] = "full"
+    beside = random.Random(repr(point | more))           # of its own: what is drawn above stays as it is
+    if beside.random() < 0.2:
+        more["nu"] = beside.choice([0.49, 0.499, 0.4999])
+        if point["law"] == "neohookean" and not more.keys() & {"integrator", "degree"} and beside.random() < 0.5:
+            more |= {"law": "incompressible", "nu": 0.5}
+    if more.get("integrator", "midpoint") == "midpoint" and beside.random() < 0.15:
+        more["loss"] = beside.choice([0.01, 0.1, 0.5])
     return more
 
 

@@ -5,8 +5,9 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
+from matplotlib.ticker import LogLocator, NullFormatter
 
-from orchestrate.report.figures import BLUE, DASHED, ORANGE, STYLE, save
+from orchestrate.report.figures import BLUE, DASHED, GREY, ORANGE, STYLE, save
 from orchestrate.sweeps import study
 
 from .. import commands
@@ -92,7 +93,7 @@ def _dearer(one: pd.DataFrame) -> float:
 
 
 def draw(table: pd.DataFrame, path: Path) -> None:
-    """Answers and processor time over 0.5 - nu."""
+    """Answers and processor time over 0.5 - nu; of J = 1 a line, with the accuracy that was asked for as a band about it."""
     names = [*ANSWERS, "CPU [s]"]
     with plt.rc_context(STYLE):
         figure, grid = plt.subplots(len(BODIES), len(names), figsize=(12, 2.9 * len(BODIES)), squeeze=False)
@@ -103,10 +104,17 @@ def draw(table: pd.DataFrame, path: Path) -> None:
                     axis.plot(0.5 - its.nu, its[name], color=colour, linestyle=line, marker="o", markersize=3, label=volume)
                 for value in held[name]:
                     axis.axhline(value, color=BLUE, linewidth=0.6, label="J = 1")
+                    if name in ANSWERS:
+                        asked = BASE["accuracy"]
+                        axis.axhspan((1 - asked) * value, (1 + asked) * value, color=GREY, alpha=0.25, linewidth=0,
+                                     label=f"± {100 * asked:g} %")
                 unit = {"impulse": " [N s/m]" if body == "disc" else " [N s]"}.get(name, "")
                 axis.set(xscale="log", xlabel="0.5 − ν", ylabel=f"{body}: {name}{unit}")
                 axis.invert_xaxis()
             axes[-1].set_yscale("log")
+            axes[-1].yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+            axes[-1].yaxis.set_major_formatter("{x:g}")
+            axes[-1].yaxis.set_minor_formatter(NullFormatter())
         grid[0][0].legend()
         save(figure, path)
 

@@ -21,7 +21,7 @@ import numpy as np
 import pandas as pd
 
 from orchestrate.progress import in_turn
-from orchestrate.report.figures import BLACK, BLUE, GREEN, ORANGE, STYLE, save
+from orchestrate.report.figures import BLUE, GREEN, GREY, ORANGE, STYLE, save
 from orchestrate.sweeps import study
 
 from .. import commands
@@ -202,34 +202,39 @@ def report(ball: pd.DataFrame, disc: pd.DataFrame) -> str:
 
 
 def draw(ball: pd.DataFrame, disc: pd.DataFrame, path: Path) -> None:
-    """1 - e of the ball over v^(1/5); restitution and contact time of the disc over the loss factor and over the relaxation time."""
+    """1 - e of the ball over v^(1/5), and with the branch over v; restitution and contact time of the disc over loss factor and relaxation
+    time."""
     with plt.rc_context(STYLE):
-        figure, panels = plt.subplots(1, 4, figsize=(14, 3.4))
+        figure, ((viscous, branch), discs) = plt.subplots(2, 2, figsize=(9, 6.8))
         speeds = np.geomspace(min(SPEEDS), max(SPEEDS), 40)
         for kind, colour in COLOURS.items():
             rows, a = ball[ball.viscous == kind], coefficient(*KINDS[kind])
-            panels[0].plot(speeds**0.2, [first_order(a, v) for v in speeds], color=colour, linewidth=1, linestyle=":")
-            panels[0].plot(speeds**0.2, [1 - impact(a, v, 400)[0] for v in speeds], color=colour, linewidth=1)
-            panels[0].plot(rows.speed**0.2, rows["1 - e"], "o", color=colour, markersize=4, label=WORDS[kind])
-        elastic = ball[ball.viscous == "elastic"]
-        panels[0].plot(elastic.speed**0.2, elastic["1 - e"], "s", color=GREEN, markersize=3, label="elastic")
-        panels[0].set(xlabel="$v^{1/5}$ [(m/s)$^{1/5}$]", ylabel="$1 - e$", title="ball; lines: theory, dotted: first order")
-        panels[0].legend()
-        rows = ball[ball.viscous == "branch"]
-        panels[3].semilogx(speeds, [theory("branch", v)[0] for v in speeds], color=BLUE, linewidth=1, label="first order in G")
-        panels[3].semilogx(rows.speed, rows["1 - e"], "o", color=BLUE, markersize=4)
-        panels[3].set(xlabel="$v$ [m/s]", ylabel="$1 - e$", ylim=(0, None),
-                      title=f"ball, branch of {RELAXES[0] / MU:g} μ, {1e3 * RELAXES[1]:g} ms")
-        panels[3].legend()
-        for panel, x, words in ((panels[1], "loss", "loss factor tan δ"), (panels[2], "tau/T", "relaxation time / contact time")):
+            viscous.plot(speeds**0.2, [first_order(a, v) for v in speeds], color=colour, linewidth=1, linestyle=":")
+            viscous.plot(speeds**0.2, [1 - impact(a, v, 400)[0] for v in speeds], color=colour, linewidth=1)
+            viscous.plot(rows.speed**0.2, rows["1 - e"], "o", color=colour, markersize=4, label=WORDS[kind])
+        elastic, rows = (ball[ball.viscous == kind] for kind in ("elastic", "branch"))
+        viscous.plot(elastic.speed**0.2, elastic["1 - e"], "s", color=GREEN, markersize=3, label="elastic")
+        viscous.set(xlabel="$v^{1/5}$ [(m/s)$^{1/5}$]", title="ball; lines: quasi-static theory, dotted: first order")
+        branch.semilogx(speeds, [theory("branch", v)[0] for v in speeds], color=BLUE, linewidth=1, label="theory, first order in G")
+        branch.semilogx(rows.speed, rows["1 - e"], "o", color=BLUE, markersize=4, label="runs")
+        branch.set(xlabel="$v$ [m/s]", ylim=(0, None), title=f"ball, Maxwell branch of {RELAXES[0] / MU:g} μ, {1e3 * RELAXES[1]:g} ms")
+        for panel in (viscous, branch):
+            panel.set_ylabel("$1 - e$")
+            left, right = panel.get_xlim()
+            panel.axvspan(SLOW**(0.2 if panel is viscous else 1), right, color=GREY, alpha=0.15, linewidth=0, label="contact no longer small")
+            panel.set_xlim(left, right)
+            panel.legend()
+        for panel, x, words in zip(discs, ("loss", "tau/T"), ("loss factor tan δ", "relaxation time / contact time")):
             rows, beside = disc[disc[x].notna()], panel.twinx()
             panel.plot(rows[x], rows.e, "o-", color=BLUE, markersize=4)
-            beside.plot(rows[x], rows["contact [ms]"], "s-", color=ORANGE, markersize=3)
+            beside.plot(rows[x], rows["contact [ms]"], "s--", color=ORANGE, markersize=3)
             panel.set_xscale("symlog", linthresh=0.01) if x == "loss" else panel.set_xscale("log")
-            panel.set(xlabel=words, title="disc")
+            panel.set(xlabel=words, title="disc, Kelvin–Voigt" if x == "loss" else f"disc, Maxwell branch of {BRANCH:g} μ")
             panel.set_ylabel("restitution $e$", color=BLUE)
             beside.set_ylabel("contact time [ms]", color=ORANGE)
-            panel.axhline(disc.e.iloc[0], color=BLACK, linewidth=0.5)
-        for panel in panels:
+            beside.spines["right"].set_visible(True)
+            panel.axhline(disc.e.iloc[0], color=BLUE, linewidth=0.6, linestyle=":", label="$e$ without damping")
+            panel.legend(loc="center", bbox_to_anchor=(0.3, 0.06) if x == "loss" else (0.5, 0.8))
+        for panel in figure.axes[:4]:
             panel.grid(alpha=0.3)
         save(figure, path)
