@@ -73,14 +73,17 @@ def test_up_to_nu_045_nothing_changes(tmp_path):
 
 
 def test_bodies_of_a_scene_each_have_theirs(tmp_path):
-    """Of two discs one is nearly incompressible: energy and momenta stay, and the iterations are as many as at nu = 0.45."""
-    def scene(nu):
+    """Of two discs one is nearly incompressible, or has J = 1: energy and momenta stay, and the iterations of the first are as many as at nu = 0.45."""
+    def scene(nu, law="neohookean"):
         body = {"shape": "disc", "radius": 0.05, "law": "neohookean", "young": 7e6, "density": 1722.0}
-        return {"accuracy": 0.2, "body": [body | {"name": "a", "position": [0, 0.051], "velocity": [0, -3], "nu": nu},
+        return {"accuracy": 0.2, "body": [body | {"name": "a", "position": [0, 0.051], "velocity": [0, -3], "nu": nu, "law": law},
                                           body | {"name": "b", "position": [0.02, -0.051], "velocity": [0, 0], "nu": 0.3}]}
-    runs = [bodies(tmp_path / str(nu), scene(nu)).summary for nu in (0.45, 0.4999)]
-    assert [run["volume"] for run in runs] == ["plain", "projected"]
-    assert runs[1]["energy_drift"] < 1e-9 and runs[1]["newton_iterations"] < 1.3 * runs[0]["newton_iterations"]
+    runs = [bodies(tmp_path / str(given[0]), scene(*given)).summary for given in ((0.45,), (0.4999,), (0.5, "incompressible"))]
+    assert [run["volume"] for run in runs] == ["plain", "projected", "projected"]
+    assert max(run["energy_drift"] for run in runs) < 1e-9 and runs[1]["newton_iterations"] < 1.3 * runs[0]["newton_iterations"]
+    assert runs[2]["impulse"] == pytest.approx(runs[1]["impulse"], rel=2e-3)
+    with pytest.raises(Exception, match="nu: 0.5 is out of range .accepted: 0 to 0.4999; 0.5 of law=incompressible"):
+        bodies(tmp_path / "refused", scene(0.5))
 
 
 def test_linear_elements_are_refused(tmp_path):
