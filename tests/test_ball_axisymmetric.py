@@ -7,6 +7,7 @@ import pandas as pd
 import pytest
 
 from orchestrate import run, scene
+from orchestrate.freefem import freefem
 from orchestrate.input import parameters
 from orchestrate.mesh import mesh
 from orchestrate.output import estimate, results, vtu
@@ -113,8 +114,7 @@ def test_a_mesh_is_half_a_meridian_plane(tmp_path, shift, labels, said):
 def test_both_ways_in_run_the_same_flags(tmp_path):
     """The script on Python's mesh, with Python's flags, leaves the very history."""
     found = run.run(scene.load("ball-axisymmetric"), {"accuracy": 0.1, "end_time": 1e-3}, tmp_path / "ball", estimate=False)
-    values = {name: value for name, value in found.scene.items() if name != "script"}
-    flags = [text for name, value in values.items() for text in (f"-{name}", str(value))]
+    flags = freefem.words_of({name: value for name, value in found.scene.items() if name != "script"})
     code, _, _ = call(*flags, "-mesh", str(found.folder / "mesh.msh"), "-out", str(tmp_path / "direct"), cwd=tmp_path, script=SCRIPT)
     assert code == 0
     assert (tmp_path / "direct/history.csv").read_text() == (found.folder / "history.csv").read_text()

@@ -4,7 +4,6 @@ import copy
 import itertools
 import math
 import os
-import subprocess
 import tomllib
 
 import numpy as np
@@ -291,9 +290,7 @@ for (int k = 0; k < n; k++) {{ int m; file >> name >> word >> m; cout << name <<
 file >> word >> n; cout << word << " " << n << endl;
 for (int k = 0; k < n; k++) {{ int a, b; real[int] v(3); file >> a >> b; for (int i = 0; i < 3; i++) file >> v[i]; cout << a << " " << b << " " << v[1] << " " << v[2] << endl; }}
 ''')
-    program = freefem.find()
-    answer = subprocess.run([program.command, "-nw", "-ne", "-v", "0", tmp_path / "read.edp"], env=program.environment, capture_output=True, text=True).stdout
-    lines = answer.splitlines()
+    lines = freefem.find().call(tmp_path / "read.edp").stdout.splitlines()
     outline = np.linalg.norm(built.mesh.points[built.mesh.edges[:, 1]] - built.mesh.points[built.mesh.edges[:, 0]], axis=1).sum()
     regions = [areas(built.mesh)[built.regions == k].sum() for k in range(2)]
     assert list(map(float, lines[0].split())) == pytest.approx([*regions, outline], rel=1e-12)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from orchestrate import run
+from orchestrate.freefem import freefem
 from orchestrate.geometry import tumbling
 from orchestrate.input import parameters
 from orchestrate.mesh import curved, mesh, solid_file, solid_mesh, solids
@@ -464,7 +465,7 @@ def test_the_scene_as_used_makes_the_same_run(falls, tmp_path):
     assert again.script == SCRIPT and set(again.values) <= set(parameters.names(SCRIPT)) and again.given["symmetry"] == "quarter"
     made = assembly.assemble(again)
     assert made.data == (found.folder / "scene.dat").read_text() and to_toml(made.used) == (found.folder / "scene.toml").read_text()
-    flags = [text for name, value in made.values.items() for text in (f"-{name}", str(value))]
+    flags = freefem.words_of(made.values)
     code, _, _ = call(*flags, "-mesh", str(found.folder / "mesh.mesh"), "-bodies", str(found.folder / "scene.dat"), "-out", str(tmp_path / "direct"),
                       cwd=tmp_path, script=SCRIPT)
     assert code == 0 and (tmp_path / "direct/history.csv").read_text() == (found.folder / "history.csv").read_text()

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from orchestrate import run
+from orchestrate.freefem import freefem
 from orchestrate.input import parameters
 from orchestrate.mesh import mesh
 from orchestrate.scenes import assembly
@@ -210,7 +211,7 @@ def test_the_scene_as_used_makes_the_same_run(slow, tmp_path):
     assert again.script == SCRIPT and set(again.values) <= set(parameters.names(SCRIPT))
     made = assembly.assemble(again)
     assert made.data == (slow.folder / "scene.dat").read_text() and to_toml(made.used) == (slow.folder / "scene.toml").read_text()
-    flags = [text for name, value in (again.values | made.values).items() if name != "pair" for text in (f"-{name}", str(value))]
+    flags = freefem.words_of({name: value for name, value in (again.values | made.values).items() if name != "pair"})
     code, _, _ = call(*flags, "-mesh", str(slow.folder / "mesh.msh"), "-bodies", str(slow.folder / "scene.dat"), "-out", str(tmp_path / "direct"),
                       cwd=tmp_path, script=SCRIPT)
     assert code == 0 and (tmp_path / "direct/history.csv").read_text() == (slow.folder / "history.csv").read_text()

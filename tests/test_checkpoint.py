@@ -39,10 +39,8 @@ EFFORT = ("start_seconds", "wall_seconds", "total_seconds", "cpu_seconds", "esti
 def direct(flags: dict, out: Path) -> subprocess.Popen:
     """FreeFem++ without Python."""
     program = freefem.find()
-    words = [word for name, value in (flags | {"out": out}).items() for word in (f"-{name}", str(value))]
-    return subprocess.Popen([program.command, "-nw", "-v", "0", "edp/disc-plane.edp", *words], cwd=parameters.ROOT,
-                            env=program.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                            text=True)
+    return subprocess.Popen(program.words("edp/disc-plane.edp", *freefem.words_of(flags | {"out": out})), cwd=parameters.ROOT, text=True,
+                            env=program.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
 
 def rows_known(checkpoint: Path) -> int:

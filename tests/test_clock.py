@@ -2,12 +2,10 @@
 
 import json
 import os
-import subprocess
 
 import pytest
 
 from orchestrate.freefem import freefem
-from orchestrate.input import parameters
 
 
 @pytest.fixture
@@ -30,8 +28,7 @@ def test_histories_are_equal_to_the_byte_with_and_without_it(tmp_path):
         pytest.skip("no compiler here")
     for name, environment in (("quick", given), ("plain", {key: value for key, value in given.items() if key != "LD_PRELOAD"})):
         before = os.times()
-        subprocess.run([freefem.find().command, "-nw", "-ne", "-v", "0", "edp/disc-plane.edp", "-accuracy", "0.05", "-out", tmp_path / name],
-                       cwd=parameters.ROOT, env=environment, check=True, stdout=subprocess.DEVNULL)
+        freefem.find().call("edp/disc-plane.edp", "-accuracy", "0.05", "-out", str(tmp_path / name), env=environment, check=True)
         after = os.times()
         summary = json.loads((tmp_path / name / "summary.json").read_text())
         used = after.children_user + after.children_system - before.children_user - before.children_system

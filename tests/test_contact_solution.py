@@ -1,7 +1,6 @@
 """Contact on a frozen factorisation: by what its systems are solved, and how far, does not change the answer."""
 
 import shutil
-import subprocess
 
 import numpy as np
 import pytest
@@ -23,10 +22,7 @@ def history(folder, flags: dict, *changes) -> dict:
         there = (tree / name).read_text()
         assert there.count(text) == 1, f"{name} no longer has: {text}"
         (tree / name).write_text(there.replace(text, other))
-    program = freefem.find()
-    words = [word for name, value in (flags | {"out": folder / "out"}).items() for word in (f"-{name}", str(value))]
-    done = subprocess.run([program.command, "-nw", "-v", "0", "ball-plane.edp", *words], cwd=tree, env=program.environment,
-                          stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=300)
+    done = freefem.find().call("ball-plane.edp", *freefem.words_of(flags | {"out": folder / "out"}), cwd=tree, timeout=300)
     assert done.returncode == 0, done.stderr
     return results.read_history(folder / "out")
 

@@ -23,7 +23,7 @@ ODD = "it's; touch pwned #$(touch pwned)`touch pwned`\"\\ *"     # a name that a
 
 def start(*flags: str, cwd: Path, script: str = "disc-plane", **options) -> subprocess.Popen:
     program = freefem.find()
-    return subprocess.Popen([program.command, "-nw", "-ne", "-v", "0", parameters.ROOT / f"edp/{script}.edp", *flags], cwd=cwd, text=True,
+    return subprocess.Popen(program.words(parameters.ROOT / f"edp/{script}.edp", *flags), cwd=cwd, text=True,
                             env=program.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)
 
 
@@ -143,7 +143,7 @@ def test_full_disk_of_its_own(tmp_path, files):
     with more room the run goes on from its last checkpoint, or from the start."""
     program, disk = freefem.find(), tmp_path / "disk"
     disk.mkdir()
-    words = [program.command, "-nw", "-ne", "-v", "0", str(parameters.ROOT / "edp/disc-plane.edp"), *COARSE, "-fields", "4", "-checkpoint_every", "10", "-out", "disk/out"]
+    words = program.words(parameters.ROOT / "edp/disc-plane.edp", *COARSE, "-fields", "4", "-checkpoint_every", "10", "-out", "disk/out")
     script = (f"mount -t tmpfs -o nr_inodes={files} none disk || exit 77; \"$@\" > said 2> error; echo $? > code; ls -R disk > left\n"
               "mount -o remount,nr_inodes=100 disk && rm -f said\n"
               "if [ -e disk/out/checkpoint ]; then \"$@\" -restart disk/out/checkpoint; else \"$@\"; fi > said || exit 1; ls disk/out > finished")

@@ -96,14 +96,12 @@ def test_stress_of_the_snapshots_agrees_with_its_von_mises_stress(tmp_path):
 
 
 def direct(*flags: str) -> subprocess.CompletedProcess:
-    program = freefem.find()
-    return subprocess.run([program.command, "-nw", "-ne", "-v", "0", "edp/disc-plane.edp", *flags], cwd=parameters.ROOT,
-                          env=program.environment, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=120)
+    return freefem.find().call("edp/disc-plane.edp", *flags, timeout=120)
 
 
 def test_freefem_alone_gives_the_same(result, tmp_path):
     """FreeFem++ without Python, on the same mesh, writes the same history to the last digit."""
-    used = [word for name, value in result.scene.items() if name in parameters.names() for word in (f"-{name}", str(value))]
+    used = freefem.words_of({name: value for name, value in result.scene.items() if name in parameters.names()})
     process = direct(*used, "-mesh", str(result.folder / "mesh.msh"), "-out", str(tmp_path / "alone"))
     assert process.returncode == 0, process.stdout + process.stderr
     assert (tmp_path / "alone/history.csv").read_text() == (result.folder / "history.csv").read_text()
@@ -224,7 +222,7 @@ def test_both_ways_choose_the_same_scene(tmp_path, given):
     """Every parameter of a direct run, those that were left to the program too, is what the scripts describe to Python; a run of the
     recorded scene is that scene."""
     given = given | {"accuracy": 0.1, "end_time": 1e-6}
-    assert direct(*(word for name, value in given.items() for word in (f"-{name}", str(value))), "-out", str(tmp_path)).returncode == 0
+    assert direct(*freefem.words_of(given | {"out": tmp_path})).returncode == 0
     found, told = results.read_scene(tmp_path), describe(given)
     assert found == {"script": "disc-plane"} | told["used"] and 0 not in (found["mesh_size"], found["contact_mesh_size"])
     assert "auto" not in found.values() and told["half"] == (found["symmetry"] == "half")
@@ -258,8 +256,7 @@ def test_own_mesh_of_a_slow_impact_gives_what_gmsh_gives(tmp_path, symmetry):
     it agrees with Python's on gmsh's to the accuracy asked."""
     given = {"law": "neohookean", "nu": 0.4, "speed": 6.38e-4, "penalty": "auto", "accuracy": 0.005, "fields": 0}
     theirs = run.run(scene.load("disc-normal"), given, tmp_path / "python", estimate=False).summary
-    flags = [str(word) for name, value in (given | {"symmetry": symmetry}).items() for word in (f"-{name}", value)]
-    process = direct(*flags, "-out", str(tmp_path / "direct"))
+    process = direct(*freefem.words_of(given | {"symmetry": symmetry, "out": tmp_path / "direct"}))
     assert process.returncode == 0, process.stdout + process.stderr
     ours = results.read_summary(tmp_path / "direct")
     for key in ("thresholded_contact_time", "impulse"):
@@ -292,7 +289,7 @@ def test_chatter_is_11_or_a_warning(tmp_path, how):
     chatter=continue a finished run that warns in its summary and in print, in both ways to start it."""
     given = COARSE | {"penalty": "8.39e12", "dt": "4e-6", "chatter": how}
     process = call(*(f"{name}={value}" for name, value in given.items()), out=tmp_path / "out")
-    plain = direct(*(word for name, value in given.items() for word in (f"-{name}", value)), "-fields", "0", "-out", str(tmp_path / "direct"))
+    plain = direct(*freefem.words_of(given | {"fields": 0, "out": tmp_path / "direct"}))
     told = r"chatter: by t = \S+ s the body had left the plane and was back within a wave's transit \d+ times in a row: .*a smaller penalty, or a finer mesh"
     if how == "stop":
         check_failure(process, 11, told + r" \(chatter=continue runs on\)")

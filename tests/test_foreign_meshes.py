@@ -2,7 +2,6 @@
 
 import math
 import re
-import subprocess
 import resource
 import time
 from dataclasses import replace
@@ -17,7 +16,6 @@ from orchestrate.mesh import gmsh_file, mesh
 from orchestrate.output import results
 from orchestrate.freefem.describe import describe
 from orchestrate.failure import BadInput
-from orchestrate.input.parameters import ROOT
 
 RADIUS, DENSITY = 0.05, 1722.0
 
@@ -119,11 +117,7 @@ BAD = {
 def direct():
     """direct(flag, value, ...): edp/disc-plane.edp without Python."""
     program = freefem.find()   # the real one, also where a test puts another in its place
-
-    def go(*flags: str) -> subprocess.CompletedProcess:
-        return subprocess.run([program.command, "-nw", "-ne", "-v", "0", "edp/disc-plane.edp", *flags], cwd=ROOT, env=program.environment,
-                              capture_output=True, text=True, errors="replace", stdin=subprocess.DEVNULL, timeout=120)
-    return go
+    return lambda *flags: program.call("edp/disc-plane.edp", *flags, timeout=120)
 
 
 @pytest.fixture(scope="module")
@@ -313,7 +307,7 @@ def test_half_an_ellipse_is_the_ellipse(tmp_path):
 def test_mesh_and_symmetry_have_to_agree(refused, fake, tmp_path, half, values, words):
     """Half a mesh for a body that has no mirror image, and a mesh that is not what `symmetry` says, are refused on both ways in."""
     mesh.write(mesh.disc(RADIUS, 0.015, 0.006, half), tmp_path / "m.msh")
-    said = refused(tmp_path / "m.msh", tmp_path / "out", *(word for name, value in values.items() for word in (f"-{name}", str(value))))
+    said = refused(tmp_path / "m.msh", tmp_path / "out", *freefem.words_of(values))
     assert words in said
     with pytest.raises(BadInput) as error:
         run.run(scene.load("disc-normal"), values, tmp_path / "out", mesh_file=tmp_path / "m.msh")
@@ -392,8 +386,7 @@ def test_body_that_is_not_round_turns_on_its_way_down(tmp_path, spin):
 @pytest.mark.parametrize("values", [{"speed": 0}, {"speed": 1, "angle": 0}], ids=["at rest", "sliding"])
 def test_body_that_is_set_down_needs_an_end(direct, tmp_path, accuracy, values):
     """Without a velocity towards the plane and a height the run would have no end: refused, at every accuracy."""
-    flags = [word for name, value in values.items() for word in (f"-{name}", str(value))]
-    process = direct("-gravity", "9.81", "-accuracy", str(accuracy), *flags, "-out", str(tmp_path / "out"))
+    process = direct(*freefem.words_of({"gravity": 9.81, "accuracy": accuracy} | values | {"out": tmp_path / "out"}))
     assert process.returncode == 10 and not (tmp_path / "out").exists()
     assert process.stderr == "ffimpact: end_time: a body that is set down on the plane does not leave it; give an end_time > 0\n"
 

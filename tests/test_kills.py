@@ -45,8 +45,7 @@ def command(route: str, out: Path, speed: str = "8") -> list[str]:
         file.write_text(SWEEP if speed == "8" else SWEEP.replace("0.4", "0.3"))
         return [sys.executable, "-m", "orchestrate", "sweep", str(file), "--out", str(out)]
     if route.startswith("direct"):
-        flags = [word for name, value in given.items() for word in (f"-{name}", value)]
-        return [freefem.find().command, "-nw", "-ne", "-v", "0", "edp/disc-plane.edp", *flags, "-out", str(out)]
+        return freefem.find().words("edp/disc-plane.edp", *freefem.words_of(given | {"out": out}))
     return [sys.executable, "-m", "orchestrate", "run", "disc-normal", "--quiet", "--set", *(f"{name}={value}" for name, value in given.items()), "--out", str(out)]
 
 

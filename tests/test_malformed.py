@@ -76,10 +76,9 @@ def by_process(words: str, *arguments: str | bytes, code: int = 10) -> None:
 
 def directly(words: str, *flags: str, code: int = 10) -> None:
     """FreeFem++ without Python."""
-    before, program = tree(Path.cwd()), freefem.find()
-    process = subprocess.run([program.command, "-nw", "-ne", "-v", "0", parameters.ROOT / "edp/disc-plane.edp", *flags], env=program.environment,
-                             stdin=subprocess.DEVNULL, capture_output=True, timeout=20)
-    check(process.returncode, process.stderr.decode(errors="replace"), words, code, before)
+    before = tree(Path.cwd())
+    process = freefem.find().call(parameters.ROOT / "edp/disc-plane.edp", *flags, cwd=None, timeout=20)
+    check(process.returncode, process.stderr, words, code, before)
 
 
 def in_a_scene(capsys, words: str, text: str | bytes, code: int = 10) -> None:
@@ -130,7 +129,7 @@ def test_values_that_do_not_go_together(capsys, words):
     """What contradicts itself, or asks for more than can be, over all three routes; the folders made for it are gone again."""
     given = SENSELESS[words]
     by_python(capsys, words, "run", "disc-normal", "--set", *(f"{name}={value}" for name, value in given.items()), "--out", "a/b/out")
-    directly(words, *(word for name, value in given.items() for word in (f"-{name}", value)), "-out", "a/b/out")
+    directly(words, *freefem.words_of(given), "-out", "a/b/out")
     in_a_scene(capsys, words, "".join(f"{name} = {toml(value)}\n" for name, value in given.items()))
 
 

@@ -1,6 +1,5 @@
 """The meshes that the scenes run on."""
 
-import subprocess
 
 import numpy as np
 import pytest
@@ -97,9 +96,7 @@ def test_freefem_reads_it(tmp_path):
     (tmp_path / "read.edp").write_text(
         f'mesh Th = readmesh("{tmp_path}/m.msh"); cout.precision(15);\n'
         'cout << Th.area << " " << int1d(Th, 1)(1.) << " " << int1d(Th, 2)(1.) << " " << Th.nv << endl;\n')
-    program = freefem.find()
-    answer = subprocess.run([program.command, "-nw", "-ne", "-v", "0", tmp_path / "read.edp"], env=program.environment,
-                            capture_output=True, text=True, check=True).stdout
+    answer = freefem.find().call(tmp_path / "read.edp", check=True).stdout
     length = np.linalg.norm(m.points[m.edges[:, 1]] - m.points[m.edges[:, 0]], axis=1)
     expected = [twice_areas(m).sum() / 2, length[m.labels == 1].sum(), length[m.labels == 2].sum(), len(m.points)]
     assert list(map(float, answer.split())) == pytest.approx(expected, rel=1e-12)
@@ -131,8 +128,7 @@ def own(request, tmp_path_factory):
         'for (int t = 0; t < Th.nt; t++) out << Th[t][0] + 1 << " " << Th[t][1] + 1 << " " << Th[t][2] + 1 << " 0" << endl;\n'
         'for (int e = 0; e < Th.nbe; e++) out << Th.be(e)[0] + 1 << " " << Th.be(e)[1] + 1 << " " << Th.be(e).label << endl;\n')
     flags = dict(radius=radius, mesh_size=radius * bulk, contact_mesh_size=radius * contact, symmetry=symmetry)
-    words, program = (str(word) for name, value in flags.items() for word in (f"-{name}", value)), freefem.find()
-    done = subprocess.run([program.command, "-nw", "-ne", "-v", "0", folder / "own.edp", *words], env=program.environment, capture_output=True, text=True)
+    done = freefem.find().call(folder / "own.edp", *freefem.words_of(flags))
     assert done.returncode == 0, done.stdout
     return mesh.read(folder / "own.msh"), bulk, contact, arc, symmetry == "half"
 

@@ -106,11 +106,11 @@ def test_a_long_run_says_so_and_why(monkeypatch, name, given, at, words):
     assert not told_of(name, monkeypatch, 2.5, at, given)
 
 
-@pytest.mark.parametrize("script, flags, apart", [("disc-plane", ["-accuracy", "0.001", "-without", "kernels"], 1), ("disc-block", ["-accuracy", "0.01", "-end_time", "3e-3", "-without", "kernels"], 2)])
+@pytest.mark.parametrize("script, flags, apart", [("disc-plane", {"accuracy": 0.001}, 1), ("disc-block", {"accuracy": 0.01, "end_time": 3e-3}, 2)])
 def test_scripts_report_the_share_of_their_steps(tmp_path, script, flags, apart):
     """Near half of its steps a script says so, to a fifth; with them it reports unknowns, and how far the waves of its bodies are apart."""
     seen = []
-    assert freefem.run(freefem.find(), script, [*flags, "-out", str(tmp_path / "out")], tmp_path / "log.txt", seen.append)[0] == 0
+    assert freefem.run(freefem.find(), script, flags | {"without": "kernels", "out": tmp_path / "out"}, tmp_path / "log.txt", seen.append)[0] == 0
     taken = (tmp_path / "out/history.csv").read_text().count("\n") - 2
     middle = min(seen, key=lambda at: abs(at.steps / taken - 0.5))
     assert middle.share == pytest.approx(middle.steps / taken, abs=0.2) and middle.steps / taken > 0.2

@@ -124,8 +124,7 @@ def test_entries_are_set_on_the_command_line(mine):
     assert done.returncode == 0, done.stderr
     other = json.loads((out / "summary.json").read_text())
     assert other["impulse"] > found.summary["impulse"] and run.read_scene(out)["body"][1]["young"] == 8e6
-    flags = [word for name, value in values(out).items() for word in (f"-{name}", str(value))]
-    direct = freefem_run("-mesh", str(out / "mesh.msh"), "-bodies", str(out / "scene.dat"), *flags, "-out", str(path.parent / "direct"))
+    direct = freefem_run("-mesh", str(out / "mesh.msh"), "-bodies", str(out / "scene.dat"), *freefem.words_of(values(out)), "-out", str(path.parent / "direct"))
     assert direct.returncode == 0, direct.stderr
     assert json.loads((path.parent / "direct/summary.json").read_text())["impulse"] == pytest.approx(other["impulse"], rel=1e-9)
 
@@ -210,8 +209,7 @@ def call(*words: str) -> subprocess.CompletedProcess:
 
 
 def freefem_run(*flags: str, script: str = "bodies") -> subprocess.CompletedProcess:
-    program = freefem.find()
-    return subprocess.run([program.command, "-nw", "-ne", "-v", "0", f"edp/{script}.edp", *flags], cwd=parameters.ROOT, env=program.environment, capture_output=True, text=True)
+    return freefem.find().call(f"edp/{script}.edp", *flags)
 
 
 def values(folder) -> dict:

@@ -1,12 +1,10 @@
 """Meshes and scene files of edp/bodies-3d.edp: whatever is wrong in them is named in one line, with exit code 10, and nothing is left behind."""
 
 import re
-import subprocess
 
 import pytest
 
 from orchestrate.freefem import freefem
-from orchestrate.input import parameters
 from verification.solids import Scene, ball, brick, write
 
 TWO = Scene([ball((0, 0, 0), 0.05, 1, shift=(0, 0.06, 0), velocity=(0, -2, 0)), brick((-0.1, -0.3, -0.1), (0.1, -0.2, 0.1), (2, 1, 2), shift=(0, 0.2, 0))],
@@ -50,9 +48,8 @@ SCENES = {
 
 
 def refused(folder, words: str) -> None:
-    program = freefem.find()
-    done = subprocess.run([program.command, "-nw", "-ne", "-v", "0", "edp/bodies-3d.edp", "-mesh", folder / "mesh.mesh", "-bodies", folder / "scene.dat",
-                           "-end_time", "1e-5", "-out", folder / "out"], cwd=parameters.ROOT, env=program.environment, capture_output=True, text=True)
+    flags = {"mesh": folder / "mesh.mesh", "bodies": folder / "scene.dat", "end_time": 1e-5, "out": folder / "out"}
+    done = freefem.find().call("edp/bodies-3d.edp", *freefem.words_of(flags))
     assert done.returncode == 10 and done.stderr.count("\n") == 1 and re.match(f"ffimpact: {words}", done.stderr), done.stderr
     assert not (folder / "out").exists()
 

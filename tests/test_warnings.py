@@ -2,7 +2,6 @@
 
 import json
 import re
-import subprocess
 
 import numpy as np
 import pandas as pd
@@ -10,7 +9,6 @@ import pytest
 
 from orchestrate import run, scene
 from orchestrate.freefem import freefem
-from orchestrate.input import parameters
 from orchestrate.output import results
 from orchestrate.report import figures, report
 from orchestrate.report.figures import plt
@@ -132,9 +130,7 @@ def test_no_contact_no_contact_time(disc):
 
 def test_direct_run_prints_its_warnings(tmp_path):
     """Lines `warning` at the end of what FreeFem++ prints, the sentences of summary.json."""
-    program = freefem.find()
-    process = subprocess.run([program.command, "-nw", "-ne", "-v", "0", "edp/disc-plane.edp", "-accuracy", "0.1", "-penalty", "1e8", "-out", str(tmp_path / "out")],
-                             cwd=parameters.ROOT, env=program.environment, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=120)
+    process = freefem.find().call("edp/disc-plane.edp", "-accuracy", "0.1", "-penalty", "1e8", "-out", str(tmp_path / "out"), timeout=120)
     said = re.findall(r"^warning +(.*)$", process.stdout, re.MULTILINE)
     assert len(said) > 1 and said == results.read_summary(tmp_path / "out")["warnings"]
 

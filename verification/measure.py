@@ -34,14 +34,19 @@ class Outcome:
     history: dict[str, np.ndarray]
 
 
+@cache
 def measure(script: str, **given: Value | Path) -> dict[str, float]:
     """What verification/<script>.edp prints with these flags; every call once. Failure if it does not finish."""
-    return _measured(script, _flags(given))
+    said = _start(f"{script}.edp", given, SCRIPTS)   # includes start from the folder that FreeFem++ is started in
+    values = dict(LINE.findall(said))
+    if values.pop("done", None) != "1":
+        raise Failure(f"{script}: did not finish: {_end(said)}")
+    return {name: float(value) for name, value in values.items()}
 
 
 def disc(folder: Path, script: str = "disc-plane", **given: Value | Path) -> Outcome:
     """edp/<script>.edp with these flags, run into `folder`."""
-    _start(f"edp/{script}.edp", (*_flags(given), "-out", str(folder)), ROOT)
+    _start(f"edp/{script}.edp", given | {"out": folder})
     return outcome(folder)
 
 
@@ -53,14 +58,14 @@ def outcome(folder: Path) -> Outcome:
 def bodies(folder: Path, tables: dict, **given: Value | Path) -> Outcome:
     """The script of bodies for the scene in these tables (orchestrate.scene), with more flags, run into `folder`/run."""
     out = folder / "run"
-    _start(f"edp/{dimension.of(tables).script}.edp", (*_flags(prepared(folder, tables) | given), "-out", str(out)), ROOT)
+    _start(f"edp/{dimension.of(tables).script}.edp", prepared(folder, tables) | given | {"out": out})
     return outcome(out)
 
 
 def solid_bodies(folder: Path, scene: solids.Scene, **given: Value | Path) -> Outcome:
     """edp/bodies-3d.edp for a scene in three dimensions (solids.py), with more flags, run into `folder`/run."""
     out = folder / "run"
-    _start("edp/bodies-3d.edp", (*_flags(solids.write(scene, folder) | given), "-out", str(out)), ROOT)
+    _start("edp/bodies-3d.edp", solids.write(scene, folder) | given | {"out": out})
     return outcome(out)
 
 
@@ -74,27 +79,12 @@ def prepared(folder: Path, tables: dict) -> dict[str, Value | Path]:
     return flags | {"mesh": folder / scene.mesh_name, "bodies": folder / "scene.dat"}
 
 
-def _flags(given: dict[str, Value | Path]) -> tuple[str, ...]:
-    return tuple(word for name, value in given.items() for word in (f"-{name}", str(value)))
-
-
-@cache
-def _measured(script: str, flags: tuple[str, ...]) -> dict[str, float]:
-    said = _start(f"{script}.edp", flags, SCRIPTS)   # includes start from the folder that FreeFem++ is started in
-    values = dict(LINE.findall(said))
-    if values.pop("done", None) != "1":
-        raise Failure(f"{script}: did not finish: {_end(said)}")
-    return {name: float(value) for name, value in values.items()}
-
-
-def _start(script: str, flags: tuple[str, ...], folder: Path) -> str:
+def _start(script: str, given: dict[str, Value | Path], folder: Path = ROOT) -> str:
     """What FreeFem++ prints; Failure unless it ends with exit code 0 in LIMIT seconds."""
-    program = freefem.find()
+    flags = freefem.words_of(given)
     try:
-        process = subprocess.run([program.command, "-nw", "-ne", "-v", "0", script, *flags], cwd=folder, env=program.environment,
-                                 stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                                 errors="replace", timeout=LIMIT,
-                                 preexec_fn=partial(freefem.die_with_parent, os.getpid(), signal.SIGKILL))
+        process = freefem.find().call(script, *flags, cwd=folder, timeout=LIMIT, capture_output=False, stdout=subprocess.PIPE,
+                                      stderr=subprocess.STDOUT, preexec_fn=partial(freefem.die_with_parent, os.getpid(), signal.SIGKILL))
     except subprocess.TimeoutExpired:
         raise Failure(f"{script}: no end after {LIMIT} s: killed") from None
     if process.returncode != 0:

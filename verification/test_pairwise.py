@@ -83,11 +83,10 @@ def test_refusals(disc, given, words):
 def test_a_killed_run_goes_on_to_the_same_answer(tmp_path):
     """From a checkpoint in the middle of the contact to the history of a run that was not killed, to the last bit."""
     program = freefem.find()
-    flags = [text for name, value in (SCENE | {"pairing": "pairwise", "checkpoint_every": 10}).items() for text in (f"-{name}", str(value))]
 
     def start(out, *more):
-        return subprocess.Popen([program.command, "-nw", "-ne", "-v", "0", "edp/disc-block.edp", *flags, "-out", str(out), *more], cwd=ROOT,
-                                env=program.environment, stdout=subprocess.DEVNULL)
+        flags = freefem.words_of(SCENE | {"pairing": "pairwise", "checkpoint_every": 10, "out": out})
+        return subprocess.Popen(program.words("edp/disc-block.edp", *flags, *more), cwd=ROOT, env=program.environment, stdout=subprocess.DEVNULL)
     assert start(tmp_path / "whole").wait(120) == 0
     killed = start(tmp_path / "killed")
     part = tmp_path / "killed/history.part"

@@ -1,12 +1,10 @@
 """What the FreeFEM scripts say of themselves, of a scene and of its results: asked of edp/describe*.edp, never read from their source."""
 
 import json
-import subprocess
 from functools import cache
 
 from . import freefem
 from ..failure import BadInput, NotInstalled
-from ..places import ROOT
 
 
 def describe(values: dict | None = None, script: str = "disc-plane") -> dict:
@@ -16,7 +14,7 @@ def describe(values: dict | None = None, script: str = "disc-plane") -> dict:
 
     BadInput where the script refuses the values; NotInstalled without FreeFem++.
     """
-    return json.loads(_ask("edp/describe.edp", _flags(values, script)))
+    return json.loads(_ask("edp/describe.edp", *freefem.words_of({"script": script} | (values or {}))))
 
 
 def describe_results(values: dict | None = None, script: str = "disc-plane") -> dict:
@@ -24,22 +22,15 @@ def describe_results(values: dict | None = None, script: str = "disc-plane") -> 
     body_columns and body_summary (of each of several bodies), damped (what all four have beside, where bodies are damped), projected (what
     both columns have where volume is projected, of nu above plain_nu), contact_columns (of contacts.csv), and by file and name `meanings`:
     unit, words. Raises as describe()."""
-    return json.loads(_ask("edp/describe-results.edp", _flags(values, script)))
-
-
-def _flags(values: dict | None, script: str) -> tuple[str, ...]:
-    flags = {"script": script} | (values or {})
-    return tuple(text for name, value in flags.items() for text in (f"-{name}", str(value)))
+    return json.loads(_ask("edp/describe-results.edp", *freefem.words_of({"script": script} | (values or {}))))
 
 
 @cache
-def _ask(asked: str, flags: tuple[str, ...]) -> str:
+def _ask(asked: str, *flags: str) -> str:
     program = freefem.find()
-    answer = subprocess.run([program.command, "-nw", "-ne", "-v", "0", asked, *flags], cwd=ROOT, env=program.environment,
-                            stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace", timeout=60)
+    answer = program.call(asked, *flags, timeout=60)
     if answer.returncode == 0:
         return answer.stdout
-    said = [line.removeprefix("ffimpact: ") for line in answer.stderr.splitlines() if line.startswith("ffimpact: ")]
-    if answer.returncode == 10 and said:
-        raise BadInput(said[-1])
+    if answer.returncode == 10 and (said := freefem.said_in(answer.stderr)):
+        raise BadInput(said)
     raise NotInstalled(f"{program.command} does not run {asked} (exit code {answer.returncode}); {freefem.HOW}")

@@ -51,6 +51,25 @@ class FreeFem:
     version: str
     environment: dict[str, str]
 
+    def words(self, script: str | Path, *flags: str) -> list[str]:
+        """The command that runs a script."""
+        return [self.command, "-nw", "-ne", "-v", "0", str(script), *flags]
+
+    def call(self, script: str | Path, *flags: str, **options) -> subprocess.CompletedProcess:
+        """A script run to its end; `options` are of subprocess.run."""
+        usual = {"cwd": ROOT, "env": self.environment, "stdin": subprocess.DEVNULL, "capture_output": True}
+        return subprocess.run(self.words(script, *flags), **usual | {"text": True, "errors": "replace"} | options)
+
+
+def words_of(flags: Mapping[str, object]) -> list[str]:
+    """Flags of a script as words of its command."""
+    return [word for name, value in flags.items() for word in (f"-{name}", str(value))]
+
+
+def said_in(errors: str) -> str:
+    """The last line that a script says to the user on its stderr, "" where it says nothing."""
+    return next((line.removeprefix("ffimpact: ") for line in reversed(errors.splitlines()) if line.startswith("ffimpact: ")), "")
+
 
 def find() -> FreeFem:
     """$FREEFEM or FreeFem++ on the PATH, probed once; NotInstalled when missing, too old or without its plugins."""
@@ -149,21 +168,19 @@ class Process:
         self.errors.seek(0)
         said = self.errors.read()
         self.log.write(said)
-        lines = [line.removeprefix("ffimpact: ") for line in said.splitlines() if line.startswith("ffimpact: ")]
-        return code, lines[-1] if lines else ""
+        return code, said_in(said)
 
 
 @contextmanager
-def start(freefem: FreeFem, script: str, flags: list[str], log: Path, lock: int | None = None) -> Iterator[Process]:
+def start(freefem: FreeFem, script: str, flags: Mapping[str, object], log: Path, lock: int | None = None) -> Iterator[Process]:
     """edp/<script>.edp at work, with its output in `log`.
 
     The child has a process group of its own, is killed when this is left in any way, and by the kernel when this process dies. It
     shares the open file `lock`, and so what is locked stays locked until it has ended.
     """
-    command = [freefem.command, "-nw", "-ne", "-v", "0", f"edp/{script}.edp", *flags]
     with open(log, "w") as file, open(os.memfd_create("stderr"), "r+", errors="replace") as errors, subprocess.Popen(
-            command, cwd=ROOT, env=freefem.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-            stderr=errors, text=True, errors="replace", process_group=0, pass_fds=[] if lock is None else [lock],
+            freefem.words(f"edp/{script}.edp", *words_of(flags)), cwd=ROOT, env=freefem.environment, stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE, stderr=errors, text=True, errors="replace", process_group=0, pass_fds=[] if lock is None else [lock],
             preexec_fn=partial(die_with_parent, os.getpid(), signal.SIGKILL)) as child:
         try:
             with suppress(OSError):
@@ -175,7 +192,7 @@ def start(freefem: FreeFem, script: str, flags: list[str], log: Path, lock: int 
                 child.communicate()   # to the end of its own children, too
 
 
-def run(freefem: FreeFem, script: str, flags: list[str], log: Path, progress: Progress | None = None,
+def run(freefem: FreeFem, script: str, flags: Mapping[str, object], log: Path, progress: Progress | None = None,
         lock: int | None = None) -> tuple[int, str]:
     """Runs edp/<script>.edp to its end; see start() and Process.end()."""
     with start(freefem, script, flags, log, lock) as process:

@@ -1,7 +1,6 @@
 """Figure 3 of the paper: the friction laws (11)-(13), drawn from the function of edp/core/contact/friction.idp that runs use."""
 
 import argparse
-import os
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -43,8 +42,7 @@ def tabulate(folder: Path, values: dict[str, parameters.Value]) -> pd.DataFrame:
             pass
     except OSError as error:
         raise Unreadable(f"{folder} cannot be written: {error.strerror}; choose another --out") from None
-    flags = [text for name, value in values.items() for text in (f"-{name}", str(value))]
-    code, said = freefem.run(program, "friction-laws", [*flags, "-out", os.fspath(folder)], folder / "log.txt")
+    code, said = freefem.run(program, "friction-laws", values | {"out": folder}, folder / "log.txt")
     if code != 0:
         raise Failure(said or f"FreeFem++ stopped with exit code {code}; see {folder / 'log.txt'}", code if said else 1)
     return pd.read_csv(folder / "laws.csv")

@@ -74,8 +74,7 @@ class Solver:
         if told:
             told.at("set-up")
         flags = flags | {"out": where} | ({"restart": where / "checkpoint"} if goes_on else {})
-        words = [text for name, value in flags.items() for text in (f"-{name}", str(value))]
-        process = leaving.enter_context(freefem.start(self.program, scene.script, words, where / "log.txt", self.lock))
+        process = leaving.enter_context(freefem.start(self.program, scene.script, flags, where / "log.txt", self.lock))
         if where == self.stage and self.pair:
             self._start_beside(used)
         return process, scene_toml

@@ -105,8 +105,7 @@ def _printed(program: str, script: str, folder: str, limit: float, flags: dict[s
 def textbook(wanted: Scene, mesh_file: Path) -> dict:
     """What the textbook script prints of a disc on a mesh, under the names of summary.json. Seconds: processor time without set-up."""
     log = mesh_file.with_suffix(".log")
-    flags = [text for name, value in wanted.values.items() for text in (f"-{name}", str(value))]
-    code, _ = freefem.run(freefem.find(), TEXTBOOK, [*flags, "-mesh", str(mesh_file)], log)
+    code, _ = freefem.run(freefem.find(), TEXTBOOK, wanted.values | {"mesh": mesh_file}, log)
     said = log.read_text().strip().splitlines()
     words = said[-1].split() if said else []
     if code != 0 or words[:1] != ["textbook"]:

@@ -1,20 +1,21 @@
 """Shared by the tests: a stand-in for FreeFem++, and finished-looking folders made without it."""
 
 import sys
-from pathlib import Path
 
 import pytest
+from _pytest import runner
 
 import fake_freefem
 
-HERE = Path(__file__).resolve().parent
+# the name of the test in the environment: FreeFem++ is probed once for an environment, and would be for every test
+runner._update_current_test_var = lambda *_: None
 
 
 @pytest.fixture
 def fake(tmp_path, monkeypatch):
     """Puts the stand-in in the place of FreeFem++; fake(mode) picks what it does, fake.starts() counts its runs."""
     program, count = tmp_path / "FreeFem++", tmp_path / "starts"
-    program.write_text(f'#!/bin/sh\nexec {sys.executable} {HERE / "fake_freefem.py"} "$@"\n')
+    program.write_text(f'#!/bin/sh\nexec {sys.executable} {fake_freefem.__file__} "$@"\n')
     program.chmod(0o755)
     monkeypatch.setenv("FREEFEM", str(program))
     monkeypatch.setenv("FAKE_REAL", fake_freefem.REAL)
