@@ -48,6 +48,16 @@ def test_references_agree_within_their_bars():
     assert equal.compare(CASE, FINE | {equal.TUNED: [None] * 3}).empty
 
 
+def test_bars_see_mesh_and_step():
+    """The finest run of a reference has elements and steps at most three quarters of those of the two next, each program and case: of two runs alike in one of them the
+    bar would miss its error."""
+    for case in equal.CASES.values():
+        for program, points in case.finest.items():
+            *others, finest = [case.settings[program][-1], *points]
+            for name, value in finest.items():
+                assert all(value <= 0.75 * other[name] or name == "refine" and value >= 1.25 * other[name] for other in others), (case.title, program)
+
+
 def test_verdict_says_who_is_quicker():
     """Ratios are the quickest other over ours at the same level; below 1 it is not ours that is quicker, and a level that one side misses is no comparison."""
     table = pd.concat([rows(equal.OURS, (0.9, 1.0), (0.4, 2.0)), rows(equal.TUNED, (0.8, 0.5), (0.4, 6.0), (0.05, 9.0))], ignore_index=True)
