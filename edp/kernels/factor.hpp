@@ -1,8 +1,9 @@
 // factor.hpp: the tangent A = massScale M + stiffnessScale K in CHOLMOD's hands, A = L L^T with the unknowns that can touch ordered last:
 // those of the list `last`, w. The tail of L is then the factor of their Schur complement, S = A_ww - A_wr A_rr^-1 A_rw = L_ww L_ww^T,
 // and S^-1 = (A^-1)_ww [m/N] their compliance, without a back-substitution for each; of others columns of A^-1 are solved for, eight at
-// once, in the blocks of L that lead from them to the last. Only the numbers are computed anew while pattern and `last` stay. A small matrix CHOLMOD takes column by column, as L D L^T, which may be indefinite, though not in w; a large one by dense
-// blocks of columns, as L L^T, which may not. What is held has a 1 on the diagonal and no other entries.
+// once, in the blocks of L that lead from them to the last. Only the numbers are computed anew while pattern and `last` stay. A small
+// matrix CHOLMOD takes column by column, as L D L^T, which may be indefinite, though not in w; a large one by dense blocks of columns, as
+// L L^T, which may not. What is held has a 1 on the diagonal and no other entries.
 // An L that no cache holds is rounded to single precision, and S and its inverse are made of that: all solutions are those of one matrix,
 // off A by 1e-7, as the state that A is frozen at is by more. A back-substitution lasts as long as reading L does.
 #pragma once

@@ -89,7 +89,8 @@ def arrange(figure: plt.Figure) -> None:
     measure takes as long as to draw, and constrained_layout, which a figure of several grids asks for, does it twice."""
     renderer, pad = figure.canvas.get_renderer(), PAD * figure.dpi
     grid = figure.axes[0].get_gridspec()
-    before, after = ([[pad / 2] * count for count in (grid.ncols, grid.nrows)] for _ in range(2))   # left and above, right and below [pixels]
+    # left and above, right and below [pixels]
+    before, after = ([[pad / 2] * count for count in (grid.ncols, grid.nrows)] for _ in range(2))
     places = [(axes, axes.get_subplotspec().colspan.start, axes.get_subplotspec().rowspan.start) for axes in figure.axes]
     for axes in (one for panel in figure.axes for one in (panel, *panel.child_axes)):
         for axis in (axes.xaxis, axes.yaxis):
