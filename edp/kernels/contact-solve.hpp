@@ -5,7 +5,8 @@
 // Newton's matrix is that of the moves y of the unknowns, with K = B^T D B sparse, D = dt/dx:
 //   (S + K) y = f = B^T (t - tau)
 // by LU where there are few unknowns, else by conjugate residuals, preconditioned by a sparse LU of K and S where K has entries: what else
-// S couples is soft beside K; nothing where S is diagonal. They ask for a thousandth, and read S in single precision. Springs c T^T T are points more: rows T, force c x.
+// S couples is soft beside K; nothing where S is diagonal. They ask for a thousandth, and read S in single precision. Springs c T^T T are
+// points more: rows T, force c x.
 #pragma once
 #include <umfpack.h>
 #include <memory>
