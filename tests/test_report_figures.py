@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.transforms import Bbox
 
 from orchestrate.output import results, vtu
 from orchestrate.report import figures, impacts
@@ -33,6 +34,30 @@ def labels(axes) -> list[str]:
 def closed():
     yield
     figures.plt.close("all")
+
+
+def test_nothing_overlaps_and_nothing_is_cut():
+    """Panels with all that stands around them, their numbers, legends, second axes, bars of colours and marks outside, titles and warnings
+    are in the picture and apart from each other, also where they grow or shrink to fit."""
+    with figures.plt.rc_context(figures.STYLE):
+        figure, grid = figures.plt.subplots(2, 2, figsize=(6, 4), height_ratios=[2, 1])
+        for axes in grid.flat:
+            axes.plot([0, 1.7], [-12345.6, 98765.4], label="a name that is wider than its panel")
+            axes.plot([0.5], [-0.2], "x", transform=axes.transAxes, clip_on=False)
+            axes.set(xlabel="time [ms]", ylabel="energy [J/m]")
+            axes.legend(**figures.ABOVE)
+        second = grid[0, 1].twinx()
+        second.plot([0, 1], [0, 1e-5])
+        second.set_ylabel("on the right")
+        figure.colorbar(grid[1, 0].pcolormesh([[1, 2], [3, 4]]), cax=grid[1, 0].inset_axes((1.04, 0, 0.06, 1)), label="pressure [MPa]")
+        figure.suptitle("two lines\nof a title")
+        figures.footer(figure, ["a warning: what to do"])
+        figures.arrange(figure)
+        figure.canvas.draw()
+        boxes = [axes.get_tightbbox() for axes in grid.flat] + [text.get_window_extent() for text in figure.texts]
+        boxes[1] = Bbox.union([boxes[1], second.get_tightbbox()])
+    assert all(0 <= box.x0 and box.x1 <= figure.bbox.x1 and 0 <= box.y0 and box.y1 <= figure.bbox.y1 for box in boxes)
+    assert not [pair for pair in itertools.combinations(boxes, 2) if Bbox.intersection(*pair)]
 
 
 @pytest.mark.parametrize("draw", [figures._force, figures._velocity, figures._energies])

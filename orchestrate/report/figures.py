@@ -97,7 +97,8 @@ def arrange(figure: plt.Figure) -> None:
             if type(axis.get_major_locator()) is AutoLocator:   # as many numbers whatever the size: they stay as they are measured
                 axis.set_major_locator(MaxNLocator(NUMBERS, steps=(1, 2, 2.5, 5, 10)))
     for axes, column, row in places:
-        around = [*axes.texts, *axes.child_axes, *filter(None, [axes.get_legend()])]
+        around = [*axes.texts, *axes.child_axes, *(line for line in axes.lines if not line.get_clip_on()),
+                  *filter(None, [axes.get_legend()])]
         outer, inner = axes.get_tightbbox(renderer, bbox_extra_artists=around, for_layout_only=True), axes.get_window_extent(renderer)
         for side, k, room in ((before[0], column, inner.x0 - outer.x0), (after[0], column, outer.x1 - inner.x1),
                               (before[1], row, outer.y1 - inner.y1), (after[1], row, inner.y0 - outer.y0)):

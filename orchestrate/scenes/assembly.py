@@ -176,8 +176,10 @@ def contact_values(bodies: list[Body], contact: dict[str, Value], ask: Asker, pa
     radius = min([least, *(body.outline.half_thickness for body in bodies)])
     given = [body.contact_mesh_size for body in bodies]
     more = {"contact_mesh_size": min(*given, radius)} if min(given) > 0 else {}
-    used = ask.answer(bodies, radius, slides=True, exponent=contact["exponent"], **more)["used"]
-    found = contact | {name: used[name] for name in ("penalty", "slip_velocity") if contact[name] == "auto"}
+    found = dict(contact)
+    if (left := [name for name in ("penalty", "slip_velocity") if contact[name] == "auto"]):
+        used = ask.answer(bodies, radius, slides=True, exponent=contact["exponent"], **more)["used"]
+        found |= {name: used[name] for name in left}
     if contact["friction_dynamic"] == "auto":
         found["friction_dynamic"] = contact["friction_static"]
     if found["friction_dynamic"] > found["friction_static"]:
