@@ -250,17 +250,17 @@ def test_no_description_without_freefem(tmp_path, monkeypatch):
         describe({"speed": 1.25})
 
 
-@pytest.mark.parametrize("symmetry", ["half", "full"])
-def test_own_mesh_of_a_slow_impact_gives_what_gmsh_gives(tmp_path, symmetry):
-    """At 1e-5 of the bar's sound speed, where the contact is 1/220 of the radius, a direct run on its own mesh of half the disc or all of
-    it agrees with Python's on gmsh's to the accuracy asked."""
+def test_own_mesh_of_a_slow_impact_gives_what_gmsh_gives(tmp_path):
+    """At 1e-5 of the bar's sound speed, where the contact is 1/220 of the radius, direct runs on own meshes of half the disc and all of
+    it agree with Python's on gmsh's to the accuracy asked."""
     given = {"law": "neohookean", "nu": 0.4, "speed": 6.38e-4, "penalty": "auto", "accuracy": 0.005, "fields": 0}
     theirs = run.run(scene.load("disc-normal"), given, tmp_path / "python", estimate=False).summary
-    process = direct(*freefem.words_of(given | {"symmetry": symmetry, "out": tmp_path / "direct"}))
-    assert process.returncode == 0, process.stdout + process.stderr
-    ours = results.read_summary(tmp_path / "direct")
-    for key in ("thresholded_contact_time", "impulse"):
-        assert ours[key] == pytest.approx(theirs[key], rel=given["accuracy"]), key
+    for symmetry in ("half", "full"):
+        process = direct(*freefem.words_of(given | {"symmetry": symmetry, "out": tmp_path / symmetry}))
+        assert process.returncode == 0, process.stdout + process.stderr
+        ours = results.read_summary(tmp_path / symmetry)
+        for key in ("thresholded_contact_time", "impulse"):
+            assert ours[key] == pytest.approx(theirs[key], rel=given["accuracy"]), key
 
 
 def test_a_step_far_too_large_for_friction_ends_early(tmp_path):

@@ -5,6 +5,11 @@ from pathlib import Path
 
 import numpy as np
 
+from orchestrate.mesh import solid_mesh
+from orchestrate.mesh.mesh import AXIS, FREE, boundary
+from orchestrate.mesh.solid_mesh import DEPTH, right_handed
+from orchestrate.scenes.assembly import stack
+
 CORNERS = ((0, 1, 3, 7), (0, 3, 2, 7), (0, 2, 6, 7), (0, 6, 4, 7), (0, 4, 5, 7), (0, 5, 1, 7))    # a cell as six tetrahedra around its diagonal
 MATERIAL = ("neohookean", 7e6, 0.3, 1722.0)                                                       # law, young [Pa], nu, density [kg/m3]
 
@@ -43,16 +48,9 @@ def grid(low, high, counts) -> tuple[np.ndarray, np.ndarray]:
     return points.reshape(-1, 3), np.concatenate([np.stack([corner[k] for k in cell], 1) for cell in CORNERS])
 
 
-def positive(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
-    """The cells, turned where their volume is negative."""
-    a, b, c, d = (points[cells[:, k]] for k in range(4))
-    volume = np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a)
-    return np.where((volume < 0)[:, None], cells[:, [1, 0, 2, 3]], cells)
-
-
 def brick(low, high, counts, **start) -> Body:
     points, cells = grid(low, high, counts)
-    return Body(points, positive(points, cells), (np.array(low, float) + high) / 2, **start)
+    return Body(points, right_handed(points, cells), (np.array(low, float) + high) / 2, **start)
 
 
 def ball(centre, radius: float, count, copies: int = 1, turn: float = 0.0, focus: int = 0, **start) -> Body:
@@ -67,7 +65,7 @@ def ball(centre, radius: float, count, copies: int = 1, turn: float = 0.0, focus
         points, cells = mirrored(points, cells, axis)
     c, s = np.cos(turn), np.sin(turn)
     points = np.array(centre) + radius * points @ np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
-    return Body(points, positive(points, cells), np.array(centre, float), ((*centre, radius),), **start)
+    return Body(points, right_handed(points, cells), np.array(centre, float), ((*centre, radius),), **start)
 
 
 def mirrored(points: np.ndarray, cells: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndarray]:
@@ -79,28 +77,20 @@ def mirrored(points: np.ndarray, cells: np.ndarray, axis: int) -> tuple[np.ndarr
     return np.concatenate([points, points[off] * sign]), np.concatenate([cells, image[cells]])
 
 
-def surface(cells: np.ndarray) -> np.ndarray:
-    """The faces (n, 3) that belong to one cell."""
-    faces = np.concatenate([cells[:, k] for k in ([1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1])])
-    _, at, count = np.unique(np.sort(faces, 1), axis=0, return_index=True, return_counts=True)
-    return faces[at[count == 1]]
-
-
 def write(scene: Scene, folder: Path) -> dict[str, Path]:
-    """mesh.mesh and scene.dat in `folder`: the flags -mesh and -bodies. Label 1 may touch, 2 and 3 are the planes x = 0 and z = 0 of part of a body."""
+    """mesh.mesh and scene.dat in `folder`: the flags -mesh and -bodies."""
     folder.mkdir(parents=True, exist_ok=True)
-    points = np.concatenate([body.points for body in scene.bodies])
-    first = np.cumsum([0, *(len(body.points) for body in scene.bodies)])
-    lines = ["MeshVersionFormatted 2", "Dimension 3", f"Vertices {len(points)}", *(" ".join(map(repr, map(float, x))) + " 0" for x in points)]
-    faces = np.concatenate([surface(body.cells) + n for body, n in zip(scene.bodies, first)])
-    lies = [scene.copies > (1 if axis == 2 else 2) and np.abs(points[faces][..., axis]).max(1) < 1e-12 for axis in (0, 2)]
-    label = np.where(lies[1], 3, np.where(lies[0], 2, 1))
-    lines += [f"Triangles {len(faces)}", *(f"{a + 1} {b + 1} {c + 1} {k}" for (a, b, c), k in zip(faces, np.broadcast_to(label, len(faces))))]
-    cells = [(*(cell + n + 1), b) for b, (body, n) in enumerate(zip(scene.bodies, first)) for cell in body.cells]
-    lines += [f"Tetrahedra {len(cells)}", *(" ".join(map(str, cell)) for cell in cells), "End", ""]
-    (folder / "mesh.mesh").write_text("\n".join(lines))
+    meshes = [_mesh(body, scene.copies) for body in scene.bodies]
+    solid_mesh.write(*stack(meshes, np.zeros((len(meshes), 3))), folder / "mesh.mesh")
     (folder / "scene.dat").write_text(data(scene))
     return {"mesh": folder / "mesh.mesh", "bodies": folder / "scene.dat"}
+
+
+def _mesh(body: Body, copies: int) -> solid_mesh.SolidMesh:
+    """With its boundary: on x = 0 and z = 0 the planes of what is computed, a half or a quarter."""
+    faces = boundary(body.cells)
+    on_x, _, on_z = (np.abs(body.points[faces]) < 1e-12).all(axis=1).T
+    return solid_mesh.SolidMesh(body.points, body.cells, faces, np.select([on_z & (copies > 1), on_x & (copies > 2)], [DEPTH, AXIS], FREE))
 
 
 def data(scene: Scene) -> str:

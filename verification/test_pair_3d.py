@@ -21,7 +21,7 @@ def march(tmp_path):
 
 # ---- rows
 
-@pytest.mark.parametrize("without", ["none", "kernels"])
+@pytest.mark.parametrize("without", ["none", pytest.param("kernels", marks=pytest.mark.robustness)])   # whose rows are held against these
 @pytest.mark.parametrize("case", CASES)
 def test_rows_conserve(measure, case, without):
     """By the kernel and by the scripts: B d = q1 - q0, also when the step turns the pair by a radian or goes along the block; no row of B, S_1, S_2 carries a force or a moment about the

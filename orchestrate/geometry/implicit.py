@@ -1,13 +1,6 @@
-"""Obstacles by a signed distance, an expression of x, y (and z) [m]: positive outside, 0 on the surface, any smooth one that is not
-constant there.
-
-    [[obstacle]]
-    kind = "implicit"
-    distance = "y - 0.002*sin(200*x)"    # numbers, x, y, z, + - * / ^ (a number), sin cos sqrt exp abs, min and max of two, parentheses
-
-It becomes a program of numbers for a stack, which FreeFEM runs (edp/core/contact/shapes.idp: what they mean, and how the gap comes from
-it); `gap` does the same.
-"""
+"""Obstacles by a signed distance, an expression of x, y (and z) [m] (docs/bodies.md): positive outside, 0 on the surface, any smooth one
+that is not constant there. It becomes a program of numbers for a stack, which FreeFEM runs (edp/core/contact/shapes.idp: what they mean,
+and how the gap comes from it); `gap` does the same."""
 
 import ast
 from dataclasses import dataclass

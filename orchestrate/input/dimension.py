@@ -1,9 +1,4 @@
-"""What a scene of bodies is computed in: the top-level entry `dimension` of its file.
-
-    dimension = "plane-strain"   # x and y; forces and energies per metre of thickness
-                # "axisymmetric" # bodies of revolution: x is the radius, y the axis
-                # "3d"           # x, y and z, which completes them; y is up in each
-"""
+"""What a scene of bodies is computed in: the entry `dimension` at the top of its file. y is up in each."""
 
 from dataclasses import dataclass
 

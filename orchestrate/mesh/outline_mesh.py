@@ -29,14 +29,11 @@ def mesh_body(boundary: list[list[tuple[Curve, float, int]]], sizes: Sizes, scal
         gmsh.model.geo.synchronize()
         _grade(gmsh.model.mesh.field, inside, curves, bulk)
         gmsh.model.mesh.generate(2)
-        node_tags, coordinates, _ = gmsh.model.mesh.getNodes()
-        _, triangle_tags = gmsh.model.mesh.getElementsByType(2)
-        corner_tags = [gmsh.model.mesh.getNodes(0, tag)[0][0] for tag in np.concatenate(tags)]
-    row = np.empty(int(node_tags.max()) + 1, dtype=int)
-    row[node_tags] = np.arange(len(node_tags))
-    points, corners = coordinates.reshape(-1, 3)[:, :2] * scale, row[np.array(corner_tags, dtype=int)]
+        points, triangles, used = mesh.elements_of(gmsh.model, (2,), {2: 3}, "triangle", "triangles")
+        corners = np.searchsorted(used, [gmsh.model.mesh.getNodes(0, tag)[0][0] for tag in np.concatenate(tags)])
+    points = points[:, :2] * scale
     points[corners] = np.vstack(loops)
-    triangles = mesh.counter_clockwise(points, row[triangle_tags].reshape(-1, 3))
+    triangles = mesh.counter_clockwise(points, triangles)
     ends = np.split(corners, np.cumsum([len(nodes) for nodes in loops])[:-1])
     edges = np.vstack([np.column_stack([each, np.roll(each, -1)]) for each in ends])
     return mesh.Mesh(points, triangles, edges, np.concatenate(labels))

@@ -1,15 +1,7 @@
-"""Bodies of revolution about the axis x = 0: [[body]] tables as their section with a plane through the axis, SI units.
+"""Bodies of revolution about the axis x = 0: [[body]] tables (docs/bodies.md) as their section with a plane through the axis, SI units.
 
 x is the radius, y the axis. The section is symmetric about x = 0: an Outline about the centre of volume, of which the half x >= 0 is
 meshed.
-
-    [[body]]
-    shape = "ball"               # radius
-                                 # ellipsoid: semi_axes [a, b], b along the axis;  cylinder: radius, height
-                                 # polygon: vertices [[x, y], ...] from the axis to the axis, x > 0 between
-                                 # mesh: file, the half x >= 0 of the section, the label 2 on the axis
-    position = [0, 0.1]          # centre of its volume at the start [m], or the height alone: position = 0.1
-    velocity = [0, -1]           # [m/s], likewise
 """
 
 from collections.abc import Callable

@@ -1,16 +1,5 @@
-"""Bodies in three dimensions: [[body]] tables as solids with signed distances, their places and motions, SI units. y is up, z completes x
-and y.
-
-    [[body]]
-    shape = "ball"               # radius
-                                 # box: width, height, depth along x, y, z;  cylinder: radius, height, its axis y
-                                 # mesh: file, tetrahedra (gmsh's .msh, Medit's .mesh) or a geometry that gmsh meshes (.geo, .step, .stp),
-                                 # lengths in m; a physical surface `contact` may touch, others never; without one the whole outer one
-    position = [0, 1.5, 0]       # centre of its volume at the start [m]
-    turn = [0, 0, 30]            # turned about it: axis times angle [deg]; angle = 30 is a turn about z
-    velocity = [0, -10, 0]       # [m/s]
-    spin = [0, 0, 5]             # [rad/s]; spin = 5 is one about z
-"""
+"""Bodies in three dimensions: [[body]] tables (docs/bodies.md) as solids with signed distances, their places and motions, SI units. y is
+up, z completes x and y."""
 
 import math
 from collections.abc import Callable

@@ -48,10 +48,6 @@ class Results:
         """The folder of a run."""
         return self.folder / name
 
-    def has(self, name: str) -> bool:
-        """Whether a run is there."""
-        return (self.run(name) / "summary.json").exists()
-
     def picture(self, name: str, kind: str) -> Path:
         """A picture of a run."""
         return self.run(name) / f"figures/{kind}.png"

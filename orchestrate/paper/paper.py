@@ -6,7 +6,8 @@ its last digit.
 """
 
 import argparse
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
+from functools import partial
 from pathlib import Path
 
 from verification import verify
@@ -56,44 +57,35 @@ def main(argv: list[str]) -> int:
 
 def require(results: judging.Results) -> None:
     """Failure with one line that names every make target whose result is missing, or of another scene or other code."""
-    missing = dict.fromkeys([*_cases(results), *_sweeps(results), *_others(results)])
+    missing = dict.fromkeys(target for target, files, there in _needed(results) if not (all(file.exists() for file in files) and there()))
     if missing:
         raise Failure(f"paper: no results of the present scenes and code for {', '.join(missing)}; run: make {' '.join(missing)}   "
                       "(or: make paper)", Unreadable("").code)
 
 
-def _cases(results: judging.Results) -> list[str]:
-    """The targets of the runs that are not there."""
-    missing = [TARGETS.get(name, name) for name, pictures in RUNS.items() if not _holds([(results.run(name), scene.load(name))])
-               or not all(results.picture(name, picture).exists() for picture in pictures)]
-    return missing + ["ball-comparison"] * (not all((results.folder / drawn).exists()
-                                                    for drawn in (bodies.ACCELERATIONS, bodies.LIKE_FOR_LIKE)))
-
-
-def _sweeps(results: judging.Results) -> list[str]:
-    """The sweeps that are not there."""
-    missing = []
+def _needed(results: judging.Results) -> Iterator[tuple[str, list[Path], Callable[[], bool]]]:
+    """(target, files that it leaves, whether what else it leaves is there) of all that the statements read."""
+    for name, pictures in RUNS.items():
+        runs = [(results.run(name), scene.load(name))]
+        yield TARGETS.get(name, name), [results.picture(name, picture) for picture in pictures], partial(_hold, runs)
+    yield "ball-comparison", results.drawn(bodies.ACCELERATIONS, bodies.LIKE_FOR_LIKE), lambda: True
     for name in sweep.built_in():
-        wanted = sweep.load(name)
-        given = scene.load(wanted.scene)
-        runs = [(study.place(results.sweep(name), point), given.override(wanted.base | point)) for point in wanted.runs]
-        if not all(picture.exists() for picture in results.drawn(name)) or not _holds(runs):
-            missing.append(name)
-    return missing
-
-
-def _others(results: judging.Results) -> list[str]:
-    """Which of the search for sliding and sticking, the friction laws and the verification are not there."""
-    place, base = results.folder / "stick-slip", scene.load(stick_slip.SCENE)
-    runs = [(study.place(place, point), base.override(stick_slip.BASE | point)) for point in stick_slip.grid(stick_slip.AXES)]
+        wanted = judging.loaded(name)
+        yield name, results.drawn(name), partial(_hold, _runs(results.sweep(name), scene.load(wanted.scene), wanted.base, wanted.runs))
+    place = results.folder / "stick-slip"
+    yield ("stick-slip", [place / "stick-slip.csv", place / "stick-slip.png"],
+           partial(_hold, _runs(place, scene.load(stick_slip.SCENE), stick_slip.BASE, stick_slip.grid(stick_slip.AXES))))
     laws = [ROOT / "edp/core/contact/friction.idp", ROOT / "edp/friction-laws.edp"]
-    drawn = [results.folder / f"friction-laws/{name}" for name in ("laws.csv", "friction-laws.png")]
-    there = {"stick-slip": all((place / f"stick-slip.{kind}").exists() for kind in ("csv", "png")) and _holds(runs),
-             "friction-laws": all(made.exists() and all(made.stat().st_mtime >= law.stat().st_mtime for law in laws) for made in drawn),
-             "verify": verify.there(results.folder / "verify")}
-    return [name for name, found in there.items() if not found]
+    drawn = [results.folder / "friction-laws" / name for name in ("laws.csv", "friction-laws.png")]
+    yield "friction-laws", drawn, lambda: all(made.stat().st_mtime >= law.stat().st_mtime for made in drawn for law in laws)
+    yield "verify", [], lambda: verify.there(results.folder / "verify")
 
 
-def _holds(runs: Iterable[tuple[Path, scene.Scene]]) -> bool:
+def _runs(folder: Path, given: scene.Scene, base: study.Point, points: list[study.Point]) -> Iterator[tuple[Path, scene.Scene]]:
+    """The runs of a study in a folder, each with its scene."""
+    return ((study.place(folder, point), given.override(base | point)) for point in points)
+
+
+def _hold(runs: Iterable[tuple[Path, scene.Scene]]) -> bool:
     """Whether every folder holds the outcome of its scene, by the present code."""
     return all(study.there(folder, wanted) for folder, wanted in runs)

@@ -75,7 +75,7 @@ def _over_meshes(name: str, every: pd.DataFrame, beside: str) -> tuple[str, str]
     rows, meshes, time = every[every.exit == 0], every.mesh_size.unique(), loaded(name).figure["level"]
     whole = _whole(rows)
     met, sound = _met(whole, name), _met(whole[whole.ellipticity_lost_time.isna()], name)
-    independent = [nu for nu in rows.nu.unique() if _together([sound.get((h, nu), []) for h in meshes])]
+    independent = [nu for nu in rows.nu.unique() if _shared(*(sound.get((h, nu), []) for h in meshes))]
     nearest = whole.loc[(whole.contact_time - time).abs().idxmin()] if len(whole) else None
     same = "" if nearest is None else f"; nearest ν = {nearest.nu:g}, k = {nearest.penalty:.2g} Pa/m: " + ", ".join(
         f"{1e3 * row.contact_time:.3f} ms on {1e3 * row.mesh_size:g} mm ({when(row.ellipticity_lost_time, 'ellipticity lost')}, "
@@ -99,9 +99,10 @@ def _met(rows: pd.DataFrame, name: str) -> dict[tuple[float, float], Ranges]:
             for nu, ranges in sweep_figures.level_set(figure, group).items() if ranges}
 
 
-def _together(each: list[Ranges]) -> bool:
-    """Whether some k is in a range of every list."""
-    return bool(each) and any(max(low for low, _ in chosen) <= min(high for _, high in chosen) for chosen in product(*each))
+def _shared(*each: Ranges) -> Ranges:
+    """The k that are in a range of every list."""
+    parts = [(max(low for low, _ in chosen), min(high for _, high in chosen)) for chosen in product(*each)]
+    return [(low, high) for low, high in parts if low <= high]
 
 
 def _where(met: dict[tuple[float, float], Ranges]) -> str:
@@ -137,8 +138,9 @@ def at_once(results: Results) -> tuple[str, str]:
             if nearest else ""))
     each = {name: _meeting(_joint(results, ANGLE, False, [name])) for name in MAPS}
     alone = ". ".join(f"{name}: {_each(found) or 'nowhere'}" for name, found in each.items())
-    pairs = ". ".join(f"{first} and {second}: {_each(_common(each[first], each[second])) or 'nowhere'}"
-                      for first, second in combinations(MAPS, 2))
+    both = {pair: {nu: shared for nu in each[pair[0]] if (shared := _shared(*(each[name].get(nu, []) for name in pair)))}
+            for pair in combinations(MAPS, 2)}
+    pairs = ". ".join(f"{first} and {second}: {_each(found) or 'nowhere'}" for (first, second), found in both.items())
     return graded(any(kept.values()), any(met.values())), (
         f"{'. '.join(words)}. Two at once, oblique at {ANGLE:g}° [Pa/m]: {pairs}. Each alone: {alone}.")
 
@@ -174,13 +176,6 @@ def _joint(results: Results, angle: float, kept: bool, names: Iterable[str] = MA
 def _meeting(maps: list[Together]) -> dict[float, Ranges]:
     """For each ν that meets the numbers, the ranges of k that do."""
     return {each.nu: each.met for each in maps if each.met}
-
-
-def _common(one: dict[float, Ranges], other: dict[float, Ranges]) -> dict[float, Ranges]:
-    """What two numbers share of their ranges of k, for each ν."""
-    found = {nu: [(max(a, c), min(b, d)) for (a, b), (c, d) in product(one[nu], other[nu]) if max(a, c) <= min(b, d)] for nu in one
-             if nu in other}
-    return {nu: ranges for nu, ranges in found.items() if ranges}
 
 
 def _miss(name: str, low: np.ndarray, high: np.ndarray) -> np.ndarray:

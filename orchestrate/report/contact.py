@@ -26,11 +26,7 @@ def read(folder: Path, beside: bool = False) -> np.recarray:
     """fields/contact.csv of the run in `folder`: a row for every point of an outline that bears load, at the instants of the snapshots;
     also for those `beside`, where only the projected pressure is not 0.
 
-    t [s]; body (from 1); partner (k: body k, -k: obstacle k); s: along the body's outline from where it was first touched, the body to the
-    left; X, Y, x, y: reference and present place; weight: share of the outline [m]; pressure (10), shear (11) [Pa] per reference length,
-    means over the step that ends at t; slip_velocity [m/s]; slides (1 or 0); projected_pressure [Pa]: the pressure as the outline's own
-    functions have it, with the same resultant and moment. In three dimensions also Z, z, shear_z, slip_velocity_z; weight [m2]. Unreadable
-    where it is not such a table.
+    Columns and units: docs/results.md; in three dimensions weight is in m2. Unreadable where it is not such a table.
     """
     table = read_table(folder / "fields/contact.csv", COLUMNS)
     return table if beside else table[table.pressure > 0]

@@ -25,6 +25,7 @@ from PIL import Image
 
 from ..input import dimension
 from ..input.parameters import Value
+from ..mesh import mesh
 from ..output import vtu
 from ..output.results import mechanical_energy
 from . import literature
@@ -470,10 +471,7 @@ def _pose(t: float, path: Path, history: dict[str, np.ndarray]) -> Pose:
     """The deformed outline and the deformed upright diameter of a snapshot of a whole disc, the mark at its top."""
     snapshot = vtu.read(path)
     moved = snapshot.points + snapshot.fields["displacement"][:, :2]
-    sides = snapshot.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
-    number = sides @ (len(moved), 1)
-    # along the boundary: no triangle on the other side
-    following = dict(sides[~np.isin(number, sides[:, ::-1] @ (len(moved), 1))].tolist())
+    following = dict(mesh.boundary(snapshot.triangles).tolist())
     loop = [next(iter(following))]
     while following[loop[-1]] != loop[0]:
         loop.append(following[loop[-1]])

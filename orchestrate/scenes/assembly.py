@@ -339,22 +339,8 @@ def stack(meshes: list[mesh.Mesh] | list[solid_mesh.SolidMesh], centres: np.ndar
 # ---- scene.dat
 
 def data_file(scene: Scene, disc: dict[str, Value], centres: np.ndarray, rounds: list[tuple], pairs: list[dict[str, Value]]) -> str:
-    """The text of scene.dat, words and numbers (SI, radians):
-        ffimpact-bodies 1
-        disc radius young nu density speed angle spin                                                   that the rules stand for
-        bodies N       name law young nu density  centreX centreY  placeX placeY angle  vx vy spin     a line a body
-        circles C      body x y radius                                                                  in the mesh
-        files F        body                                                                             whose mesh is that of a file
-        obstacles M    name kind count p1 ... pcount vx vy
-        pairs K        a b penalty friction_static friction_dynamic                             a, b: body, or -1 - obstacle (a = b: itself)
-        damping D      body viscosity bulk_viscosity relaxation_modulus relaxation_time         of those that are damped; none where none is
-    centre: of the area in the mesh; place: where it is at the start; the angle of the disc in degrees. In three dimensions
-        ffimpact-bodies-3d 1
-        copies 1, 2 or 4                                                            how often the mesh makes the whole bodies
-        bodies N       name law young nu density  centreX Y Z  shiftX Y Z  vx vy vz  spinX Y Z         shift: from the mesh to the start
-        spheres C      body x y z radius
-        cylinders C    body x y z axisX Y Z radius
-    and the rest alike. `rounds` are the lines of circles, or of spheres and cylinders."""
+    """The text of scene.dat, words and numbers (SI, radians), as edp/core/input/scene-file.idp says; the disc, or ball, is what the rules
+    stand for, `rounds` are the lines of circles, or of spheres and cylinders."""
     if scene.dimension is SOLID:
         head = [("ffimpact-bodies-3d", 1), ("copies", copies(scene))]
         starts = [(*(body.position - centre), *body.velocity, *body.spin) for body, centre in zip(scene.bodies, centres)]

@@ -1,21 +1,5 @@
-"""The bodies of a scene: [[body]] tables as outlines (or meshes) with material, place and motion, SI units. In plane strain (flat.py; of
-revolution and in three dimensions shapes and motions are those of revolution.py and solids.py):
-
-    [[body]]
-    name = "disc"                # body1, body2 ... where it is left out
-    shape = "disc"               # radius
-                                 # ellipse: semi_axes [a, b];  rectangle: width, height;  ring: radius, inner_radius
-                                 # polygon: vertices [[x, y], ...], holes [[[x, y], ...], ...], in coordinates of its own
-                                 # mesh: file (FreeFEM's or gmsh's .msh), lengths in m; labels 1: may touch, others: never touch
-    position = [0, 1.5]          # centre of its area at the start [m]
-    angle = 30                   # turned about it, counter-clockwise [deg]
-    velocity = [0, -10]          # [m/s], or: speed = 10, direction = -90 [deg], counter-clockwise from x
-    spin = 0                     # [rad/s], counter-clockwise
-    young = 7e6                  # law, young, nu, density, law_parameters: those at the top of the file where they are left out
-    viscosity = 20               # and viscosity, bulk_viscosity [Pa s], or loss, the loss factor at the first mode of a disc as thick
-    relaxation_modulus = 1e6     # and relaxation_time: a Maxwell branch beside the law [Pa], [s]
-    mesh_size = 0.1              # mesh_size, contact_mesh_size [m]: from the accuracy where they are left out
-"""
+"""The bodies of a scene: [[body]] tables (docs/bodies.md says what they hold) as outlines (or meshes) with material, place and motion, SI
+units. Shapes and motions: flat.py in plane strain, revolution.py of revolution, solids.py in three dimensions."""
 
 import re
 from dataclasses import dataclass

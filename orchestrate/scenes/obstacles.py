@@ -1,16 +1,5 @@
-"""Rigid obstacles: [[obstacle]] tables as numbers that the scripts read (edp/core/contact/shapes.idp), and signed distances, SI units.
-
-    [[obstacle]]
-    name = "floor"               # obstacle1, obstacle2 ... where it is left out
-    kind = "plane"               # point [x, y], normal [x, y] towards the bodies
-                                 # circle: centre, radius, solid inside;  bowl: centre, radius, solid outside
-                                 # implicit: distance, an expression of x, y (z), positive outside (implicit.py)
-                                 # polyline: vertices [[x, y], ...], closed = false, rounding = 0: the bodies to its left (polyline.py)
-    velocity = [0, 0]            # it moves on with it, whatever it meets [m/s]
-
-Of revolution about x = 0: planes across the axis; sphere (a ball) and bowl on it, centre = [0, y] or y; polyline: a chain that begins or
-ends on the axis, without `closed`. In three dimensions plane, sphere, bowl and implicit, points and vectors [x, y, z].
-"""
+"""Rigid obstacles: [[obstacle]] tables (docs/bodies.md says what they hold) as numbers that the scripts read (edp/core/contact/shapes.idp),
+and signed distances, SI units. Of revolution about x = 0 they lie across the axis or on it, or begin or end there."""
 
 from dataclasses import dataclass, replace
 

@@ -1,19 +1,5 @@
-"""A scene: bodies and obstacles in the tables of one TOML file, read, checked, and its entries set by dotted names; or one of the paper's,
-whose script makes the bodies of its parameters, all at the top of the file.
-
-    title = "..."
-    dimension = "plane-strain"   # or axisymmetric (dimension.py)
-    young = 7e6                  # law, young, nu, density ..., mesh_size, contact_mesh_size: of the bodies that say nothing else
-    gravity = 9.81               # [m/s2], along -y; beside it the parameters of a run: end_time, dt, accuracy, fields ...
-    [[body]]                     # see bodies.py
-    [[obstacle]]                 # see obstacles.py; with penalty, friction_static, friction_dynamic of its own
-    [contact]                    # penalty, exponent, friction_static, friction_dynamic, slip_velocity, regularization, friction_transition,
-    pairing = "closest-point"    # pairing_range
-    self_contact = "auto"        # which bodies touch themselves, too: auto, those that may fold onto themselves; on: all, off: none
-    [[contact.pair]]             # what differs between two of them, or of a body and itself, which then touches itself
-    bodies = ["disc", "floor"]
-    friction_static = 0.3
-"""
+"""A scene: bodies and obstacles in the tables of one TOML file (docs/bodies.md says which), read, checked, and its entries set by dotted
+names; or one of the paper's, whose script makes the bodies of its parameters, all at the top of the file."""
 
 import hashlib
 import itertools
