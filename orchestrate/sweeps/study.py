@@ -19,6 +19,7 @@ from .. import run, scene, stopping
 from ..freefem import freefem
 from ..output import estimate as estimates
 from ..failure import BadInput, Busy, Failure, TooLong, Unreadable
+from ..mesh import mesh
 from ..input.parameters import Value
 from ..progress import Line, forward
 from ..output.results import read_json
@@ -46,6 +47,8 @@ def study(points: list[Point], folder: Path, base: Point, limit: float, name: st
     tasks = {where: given.override(base | point) for where, point in zip(places, points) if where not in found}
     if tasks:
         freefem.find()
+        if given.meshed:
+            mesh.start_gmsh()     # once for all runs, which are forks of this process
         (folder / "runs").mkdir(parents=True, exist_ok=True)   # here: a run takes away what it had to make if it is interrupted
     acts = {where: partial(_limited, limit, where, wanted, estimate) for where, wanted in tasks.items()}
     for where, outcome in side_by_side(acts, cores, "/".join(folder.parts[-2:]), len(found)):
