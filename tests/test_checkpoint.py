@@ -17,6 +17,7 @@ from orchestrate.freefem import freefem
 from orchestrate.input import parameters
 from orchestrate.output import results
 from orchestrate.failure import Failure, Unreadable
+from verification.measure import prepared
 from test_cli import call, is_alive, start, wait_for
 
 COARSE = dict(law="neohookean", nu=0.4)
@@ -36,10 +37,10 @@ SCENES = {   # flags of edp/disc-plane.edp, steps between checkpoints, rows of h
 EFFORT = ("start_seconds", "wall_seconds", "total_seconds", "cpu_seconds", "estimate_cpu_seconds", "peak_memory", "phase_seconds", "resumed_at", "provenance")
 
 
-def direct(flags: dict, out: Path) -> subprocess.Popen:
+def direct(flags: dict, out: Path, script: str = "disc-plane") -> subprocess.Popen:
     """FreeFem++ without Python."""
     program = freefem.find()
-    return subprocess.Popen(program.words("edp/disc-plane.edp", *freefem.words_of(flags | {"out": out})), cwd=parameters.ROOT, text=True,
+    return subprocess.Popen(program.words(f"edp/{script}.edp", *freefem.words_of(flags | {"out": out})), cwd=parameters.ROOT, text=True,
                             env=program.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
 
@@ -110,6 +111,20 @@ def test_half_a_run_and_the_rest_are_the_whole(tmp_path, name):
     assert summary["resumed_at"] == results.read_history(out)["t"][knows - 1]
     assert results.read_summary(tmp_path / "straight")["resumed_at"] is None
     assert not {path.name for path in out.iterdir()} - {"scene.toml", "history.csv", "contacts.csv", "summary.json", "fields", "fields.pvd"}
+
+
+def test_bodies_go_on_to_the_last_bit(tmp_path):
+    """Two balls of revolution on a surface of its own expression: what steps have learnt of gaps and of the contact's window goes on with the run."""
+    ball = {"shape": "ball", "radius": 0.04, "law": "neohookean", "young": 2e6, "nu": 0.4, "density": 1000.0, "mesh_size": 0.015, "contact_mesh_size": 0.006}
+    flags = prepared(tmp_path, {
+        "dimension": "axisymmetric", "accuracy": 0.2, "end_time": 6e-3, "checkpoint_every": 4, "obstacle": [{"kind": "implicit", "distance": "y + 10*x^2"}],
+        "body": [ball | {"name": name, "position": [0.0, y], "velocity": [0.0, v]} for name, y, v in (("a", 0.0403, -3.0), ("b", 0.1205, -5.0))]})
+    script, out = "bodies-axisymmetric", tmp_path / "out"
+    assert direct(flags, tmp_path / "straight", script).communicate(timeout=120)
+    rows = len(results.read_history(tmp_path / "straight")["t"])
+    kill_at(direct(flags, out, script), out / "checkpoint", rows // 2)
+    assert direct(flags | {"restart": out / "checkpoint"}, out, script).communicate(timeout=120)
+    assert results.read_summary(out)["resumed_at"] > 0 and (out / "history.csv").read_bytes() == (tmp_path / "straight/history.csv").read_bytes()
 
 
 # ---- the same command

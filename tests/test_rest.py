@@ -101,6 +101,27 @@ def test_end_time_is_the_latest(tmp_path):
     found = disc(tmp_path, **FALL | {"end_time": 0.5, "contact_mesh_size": 0.002})
     assert found.summary["ended"] == "end_time" and found.history["t"][-1] == pytest.approx(0.5)
     assert found.summary["energy_drift"] < 1e-9 and found.summary["bounces"] == 1
+    assert any(said.startswith("not over: at the end_time the body does not rest yet") for said in found.summary["warnings"])
+
+
+def pulled(shape: dict, normal: list[float], **more) -> dict:
+    """A soft, lossy body that a pull of 9.81 m/s2 brings to a plane through the origin."""
+    body = {"law": "neohookean", "young": 2e5, "nu": 0.3, "density": 1000.0, "loss": 2.0, "mesh_size": 0.02, "contact_mesh_size": 0.01}
+    return {"until": "rest", "accuracy": 0.2, "body": [body | shape], "obstacle": [{"kind": "plane", "point": [0.0, 0.0], "normal": normal}]} | more
+
+
+def test_a_pull_to_the_side_is_one(tmp_path):
+    """On a wall, by a body force alone, a disc rests as on the floor, and no warning says that its contact is not over."""
+    found = bodies(tmp_path, pulled({"shape": "disc", "radius": 0.05, "position": [0.06, 0.0]}, [1.0, 0.0], body_force_x=-9.81))
+    assert found.summary["ended"] == "rest" and not any(said.startswith("not over") for said in found.summary["warnings"])
+
+
+def test_what_creeps_on_a_slope_is_refused(tmp_path):
+    """A block whose points stick, but creep below slip_velocity for ever, as friction takes what gravity gives: one line says so."""
+    down, up = math.radians(10), [math.sin(math.radians(10)), math.cos(math.radians(10))]
+    block = {"shape": "rectangle", "width": 0.06, "height": 0.04, "angle": -math.degrees(down), "position": [0.0205 * each for each in up]}
+    with pytest.raises(Failure, match="exit code 10.*fell by less than 20 %: what slides or creeps on a slope never rests"):
+        bodies(tmp_path, pulled(block | {"young": 2e4}, up, gravity=9.81, contact={"friction_static": 0.3, "slip_velocity": 0.02}))
 
 
 @pytest.mark.parametrize("change, said", [({"gravity": 0}, "until: rest needs what pulls"), ({"loss": 0}, "until: rest needs what takes energy"),

@@ -226,13 +226,20 @@ class Problem {
   Vector start, tau, force;                                        // x_w; tau; B^T tau: what pushes the unknowns
   double enough = 0, sticksBelow = 0;
   int inverses = 0, mostTurns = 4, agreeingFrom = 20;              // inverses, before plain Newton with a line search takes over
+  Indices grown;                                                   // orders that S was made at, of columns that came, to the last bit
 
-  void compliance(int n, const double *given) {
+  void compliance(int n, const double *given, const Indices &asBefore) {
+    // asBefore: `grown` at the checkpoint that a run goes on from
     const int before = order(C);
     bool grows = n >= before;                                      // the same columns, and more
     for (int j = 0; j < before && grows; j++)
       grows = std::equal(&C[(size_t)before * j], &C[(size_t)before * j] + before, given + (size_t)n * j);
-    if (!grows) S.clear();
+    if (!grows) { S.clear();  grown.clear(); }
+    if (before == 0) for (int m : asBefore) {
+      C.resize((size_t)m * m);
+      for (int j = 0; j < m; j++) std::copy(given + (size_t)n * j, given + (size_t)n * j + m, &C[(size_t)m * j]);
+      stiffen();
+    }
     C.assign(given, given + (size_t)n * n);
   }
   void looseness(int n, const double *given) { C.assign(given, given + n);  S.clear(); }   // diagonal
@@ -283,6 +290,8 @@ class Problem {
     const int n = order(C), m = 3 * order(S) < 2 * n ? 0 : order(S), k = n - m;
     int info;
     if (k == 0) return;
+    if (m == 0) grown.clear();
+    grown.push_back(n);
     Vector q(m * k), sq(m * k), s(k * k), whole((size_t)n * n);
     const double *b = &C[(size_t)n * m];
     for (int j = 0; j < k; j++) std::copy(b + (size_t)n * j + m, b + (size_t)n * (j + 1), &s[k * j]);
