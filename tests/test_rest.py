@@ -96,6 +96,18 @@ def test_friction_stops_a_disc(tmp_path):
     assert np.interp(0.1, found.history["t"], found.history["x"]) == pytest.approx(0.5**2 / (2 * 0.5 * GRAVITY), rel=0.05)
 
 
+def test_what_rolls_on_ends_the_run(tmp_path):
+    """A soft disc that rolls loses a few percent of its energy a second: the run ends as it rolls, its weight on the plane, and says so; its outline is fine all around.
+    With an end_time it goes on."""
+    rolls = REST | {"young": 7e5, "speed": 0.5, "angle": 0, "spin": -10, "friction_static": 0.5, "loss": 0.2, "accuracy": 0.2, "symmetry": "full", "mesh_size": 0.025,
+                    "contact_mesh_size": 0.003}
+    found = disc(tmp_path / "on", **rolls)
+    assert found.summary["ended"] == "rolling" and found.summary["energy_drift"] < 1e-9 and any(said.startswith("rest: ") for said in found.summary["warnings"])
+    assert found.history["normal_force"][-1] == pytest.approx(weight(math.pi * RADIUS**2), rel=0.2)
+    assert found.history["vx"][-1] == pytest.approx(0.5, rel=0.05) == pytest.approx(-RADIUS * found.history["spin"][-1], rel=0.05)
+    assert disc(tmp_path / "until", **rolls, end_time=0.05).summary["ended"] == "end_time"
+
+
 def test_end_time_is_the_latest(tmp_path):
     """With an end_time the run ends there where nothing rests before, also in the middle of a flight."""
     found = disc(tmp_path, **FALL | {"end_time": 0.5, "contact_mesh_size": 0.002})
