@@ -168,7 +168,7 @@ def _maps(figure: plt.Figure, points: np.recarray, rubs: bool, symmetry: str, se
                                    linewidths=0, **colours)
             axes.set(aspect="equal", xlim=(low[0], high[0]), ylim=(low[1], high[1]))
             axes.tick_params(labelsize=7)
-            if row is grid[0]:
+            if column == "pressure":
                 axes.set_title(f"{1e3 * t:.3g} ms", fontsize=8)
         row[0].set_ylabel(labels[1])
         if column == "pressure":
