@@ -12,6 +12,7 @@ from orchestrate.freefem import freefem
 from orchestrate.mesh import mesh
 from orchestrate.output import folder, results
 from orchestrate.freefem.describe import describe
+from orchestrate.report import figures
 from orchestrate.failure import BadInput, Failure, NotInstalled, Unreadable
 
 
@@ -250,7 +251,7 @@ def test_the_folder_knows_every_figure():
     """What is drawn of a run is the program's, to be drawn anew: no figure's name is missing in the list of what it writes."""
     text = "".join((run.PACKAGE / f"report/{name}.py").read_text() for name in ("drawing", "figures", "bodies"))
     lines = "".join(line for line in text.splitlines() if re.search(r"\bdrawn\b", line))
-    assert set(re.findall(r'"([a-z]+)"(?=\]|:)', lines)) == set(folder.FIGURES)
+    assert set(re.findall(r'"([a-z]+)"(?=\]|:)', lines)) | set(figures.COLOURED) == set(folder.FIGURES)
 
 
 def test_what_decides_a_result_is_derived():
