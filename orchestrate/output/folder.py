@@ -23,7 +23,7 @@ from .results import read_summary, why
 RECORDS = ("scene.toml", "history.csv", "contacts.csv", "modes.csv", "summary.json")
 FIELDS = [f"fields{on_its_way}/{name}" for on_its_way in ("", ".part")
           for name in ("[0-9][0-9][0-9][0-9].vtu", "contact.csv", "contact.pvd", "contact-[0-9][0-9][0-9][0-9].vtp")]
-FIGURES = ("energies", "velocity", "force", "rolling", "shapes", "flight", "contact", "bounces", "height", "vibration", "solid")
+FIGURES = ("energies", "velocity", "force", "rolling", "shapes", "pressure", "flight", "contact", "bounces", "height", "vibration", "solid")
 OWN = (*RECORDS, *(f"{Path(name).stem}.part" for name in RECORDS), "failure.json", "log.txt", "mesh.msh", "mesh.mesh", "scene.dat",
        "history.cut", "summary.json.part", "checkpoint", "checkpoint.json", "checkpoint.part", "checkpoint.state", "parting", "fields.pvd",
        "fields.pvd.part", *FIELDS, *(f"figures/{name}.png" for name in FIGURES))
