@@ -123,8 +123,10 @@ class Loop:
         """Signed distances (n,) of points from the loop, negative inside."""
         if self.radius:
             return np.linalg.norm(points - self.centre, axis=1) - self.radius
-        distance = distance_to_polygon(points, self.sides)
-        return np.where(inside_polygon(points, self.sides), -distance, distance)
+        import shapely      # here: a disc needs none
+        inside, distance = shapely.contains_xy(shapely.Polygon(self.sides), *points.T), shapely.distance(
+            shapely.LinearRing(self.sides), shapely.points(points))
+        return np.where(inside, -distance, distance)
 
 
 def polygon_loop(corners: np.ndarray, hubs: np.ndarray | None = None) -> Loop:
@@ -287,30 +289,6 @@ def polygon_centre(corners: np.ndarray) -> np.ndarray:
     return corners[0] + ((a + b) * cross(a, b)[:, None]).sum(axis=0) / (6 * signed_area(corners))
 
 
-def inside_polygon(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """Which points (n,) are inside: a ray along +x crosses an odd number of sides."""
-    a, b = corners, np.roll(corners, -1, axis=0)
-    inside = np.zeros(len(points), dtype=bool)
-    for at in range(0, len(points), CHUNK):
-        p = points[at:at + CHUNK, None]
-        straddles = (a[:, 1] > p[..., 1]) != (b[:, 1] > p[..., 1])
-        left = cross(b - a, p - a) * np.sign(b[:, 1] - a[:, 1]) > 0
-        inside[at:at + CHUNK] = (straddles & left).sum(axis=1) % 2 == 1
-    return inside
-
-
-def distance_to_polygon(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """Distances (n,) to the nearest point of any side."""
-    a, along = corners, np.roll(corners, -1, axis=0) - corners
-    length = np.maximum((along**2).sum(axis=1), np.finfo(float).tiny)
-    distance = np.empty(len(points))
-    for at in range(0, len(points), CHUNK):
-        to = points[at:at + CHUNK, None] - a
-        s = np.clip((to * along).sum(axis=2) / length, 0, 1)
-        distance[at:at + CHUNK] = np.sqrt(((to - s[..., None] * along)**2).sum(axis=2).min(axis=1))
-    return distance
-
-
 def folding(corners: np.ndarray, thickness: float, revolved: bool) -> float:
     """Least of thickness s / w^2 over pairs of sides of a polygon, the body to its left, that see each other across what is empty
     (pair.idp): s [m] their distance, w the way along the polygon. A wall that closes s bends by some of that; of a ring it is 0.2 thickness
@@ -335,11 +313,10 @@ def folding(corners: np.ndarray, thickness: float, revolved: bool) -> float:
 
 def crossing_sides(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     """Pairs (k, 2) of sides, one of each polygon, that cross or touch, counted from 0."""
-    a, b = first[:, None], np.roll(first, -1, axis=0)[:, None]
-    c, d = second[None], np.roll(second, -1, axis=0)[None]
-    apart = (np.minimum(a, b) > np.maximum(c, d)).any(axis=2) | (np.minimum(c, d) > np.maximum(a, b)).any(axis=2)
-    sides = cross(b - a, c - a) * cross(b - a, d - a) <= 0
-    return np.argwhere(~apart & sides & (cross(d - c, a - c) * cross(d - c, b - c) <= 0))
+    import shapely
+    one, other = (shapely.linestrings(np.stack([of, np.roll(of, -1, axis=0)], axis=1)) for of in (first, second))
+    pairs = shapely.STRtree(other).query(one, predicate="intersects").T
+    return pairs[np.lexsort(pairs.T[::-1])]
 
 
 def self_crossing(corners: np.ndarray) -> tuple[int, int] | None:
