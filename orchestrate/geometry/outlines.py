@@ -124,9 +124,8 @@ class Loop:
         if self.radius:
             return np.linalg.norm(points - self.centre, axis=1) - self.radius
         import shapely      # here: a disc needs none
-        inside, distance = shapely.contains_xy(shapely.Polygon(self.sides), *points.T), shapely.distance(
-            shapely.LinearRing(self.sides), shapely.points(points))
-        return np.where(inside, -distance, distance)
+        distance = shapely.distance(shapely.LinearRing(self.sides), shapely.points(points))
+        return np.where(shapely.contains_xy(shapely.Polygon(self.sides), *points.T), -distance, distance)
 
 
 def polygon_loop(corners: np.ndarray, hubs: np.ndarray | None = None) -> Loop:

@@ -3,12 +3,8 @@
 import sys
 
 import pytest
-from _pytest import runner
 
 import fake_freefem
-
-# the name of the test in the environment: FreeFem++ is probed once for an environment, and would be for every test
-runner._update_current_test_var = lambda *_: None
 
 
 @pytest.fixture
