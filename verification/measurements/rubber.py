@@ -24,8 +24,8 @@ BETTER = 4                                          # times smaller: the accurac
 SLACK = 2 * BASE["accuracy"]                         # both ends of a rise may be off by as much
 PEER_NU, FINE, PEER_DT, PEER_PENALTY, AGREE = 0.499, 0.5, 1e-5, 1e10, 5e-3   # beside NGSolve: sizes over peers.sized(1), [s], [Pa/m]
 ANSWERS = {"contact [ms]": ("thresholded_contact_time", 1e3), "impulse": ("impulse", 1.0), "rebound [m/s]": ("rebound_vy", 1.0)}
-FORMATS = {"body": "", "volume": "", "nu": "g", "contact [ms]": ".3f", "finer [ms]": ".3f", "impulse": ".4f", "rebound [m/s]": ".4f", "energy": ".0e",
-           "dofs": ".0f", "steps": ".0f", "iterations": ".0f", "factors": ".0f", "CPU [s]": ".2f", "outcome": ""}
+FORMATS = {"body": "", "volume": "", "nu": "g", "contact [ms]": ".3f", "finer [ms]": ".3f", "impulse": ".4f", "rebound [m/s]": ".4f",
+           "energy": ".0e", "dofs": ".0f", "steps": ".0f", "iterations": ".0f", "factors": ".0f", "CPU [s]": ".2f", "outcome": ""}
 
 
 def main(argv: list[str]) -> int:
@@ -134,17 +134,18 @@ def report(table: pd.DataFrame, beside: list[dict]) -> str:
     mine = table[table.volume == "projected"]
     lines = [f"Impact on the plane at {BASE['speed']:g} m/s, neo-Hookean, accuracy {BASE['accuracy']:g}. projected: what lambda has beyond "
              f"nu = {PLAIN:g} acts on the mean volume of each element, nu = 0.5: law = incompressible;",
-             f"plain: all of it at points, shown where the two differ. contact: time above 1 % of the largest force, finer: at {BETTER} times "
-             "smaller accuracy; impulse in N s/m, of the ball N s; energy: largest error of the balance; CPU: without the start.", "", study.table(table, FORMATS), ""]
+             f"plain: all of it at points, shown where the two differ. contact: time above 1 % of the largest force, finer: at {BETTER} "
+             "times smaller accuracy; impulse in N s/m, of the ball N s; energy: largest error of the balance; CPU: without the start.",
+             "", study.table(table, FORMATS), ""]
     for body, one in mine.groupby("body", sort=False):
         first, last = one.iloc[0], one.iloc[-1]
         lines.append(f"- {body}: from nu = {first.nu:g} to {last.nu:g} the contact time falls by "
                      f"{100 * (1 - last['contact [ms]'] / first['contact [ms]']):.1f} %, the rebound goes from "
                      f"{first['rebound [m/s]']:.3f} to {last['rebound [m/s]']:.3f} m/s; processor time at {last.nu:g} is "
-                     f"{_dearer(one):.2f} times that at {PLAIN:g}. From one nu to the next contact times rise by {_rise(one, 'contact [ms]')}, "
-                     f"finer by {_rise(one, 'finer [ms]')}.")
-    lines += ["", "Contact times jump where impulses do not: what is left of the force at the end is a shoulder of 1 to 3 % of the peak for "
-              "0.1 ms, of the last points to leave,", "which ends above the threshold of 1 % on one mesh and below it on another."]
+                     f"{_dearer(one):.2f} times that at {PLAIN:g}. From one nu to the next contact times rise by "
+                     f"{_rise(one, 'contact [ms]')}, finer by {_rise(one, 'finer [ms]')}.")
+    lines += ["", "Contact times jump where impulses do not: what is left of the force at the end is a shoulder of 1 to 3 % of the peak for",
+              "0.1 ms, of the last points to leave, which ends above the threshold of 1 % on one mesh and below it on another."]
     if beside:
         lines += ["", f"NGSolve, on the same equations with plain quadratic elements, and this program, nu = {PEER_NU:g}, elements "
                   f"of {FINE:g} times the usual sizes, steps of {PEER_DT:g} s, k = {PEER_PENALTY:g} Pa/m:", "",
