@@ -144,8 +144,8 @@ def report(table: pd.DataFrame, beside: list[dict]) -> str:
                      f"{first['rebound [m/s]']:.3f} to {last['rebound [m/s]']:.3f} m/s; processor time at {last.nu:g} is "
                      f"{_dearer(one):.2f} times that at {PLAIN:g}. From one nu to the next contact times rise by "
                      f"{_rise(one, 'contact [ms]')}, finer by {_rise(one, 'finer [ms]')}.")
-    lines += ["", "Contact times jump where impulses do not: what is left of the force at the end is a shoulder of 1 to 3 % of the peak",
-              "for 0.1 ms, of the last points to leave, which ends above the threshold of 1 % on one mesh and below it on another."]
+    lines += ["", "Contact times jump where impulses do not: what is left of the force at the end is a shoulder of 1 to 3 % of the "
+              "peak", "for 0.1 ms, of the last points to leave, which ends above the threshold of 1 % on one mesh and below it on another."]
     if beside:
         lines += ["", f"NGSolve, on the same equations with plain quadratic elements, and this program, nu = {PEER_NU:g}, elements "
                   f"of {FINE:g} times the usual sizes, steps of {PEER_DT:g} s, k = {PEER_PENALTY:g} Pa/m:", "",
