@@ -25,5 +25,6 @@ def test_runs_become_rows_and_a_figure(tmp_path, monkeypatch):
     monkeypatch.setattr(rubber, "BASE", rubber.BASE | {"accuracy": 0.1})
     found = rubber.compare([0.45, 0.499], 60, tmp_path)
     assert len(found) == 6 and (found.outcome == "").all() and (found[found.volume == "projected"].energy < 1e-9).all()
+    assert (found["finer [ms]"].notna() == (found.volume == "projected")).all()
     rubber.draw(found, tmp_path / "rubber.png")
     assert (tmp_path / "rubber.png").exists() and "The requirement" in rubber.report(found, []).splitlines()[-1]
