@@ -7,6 +7,7 @@ from typing import Any
 
 import pandas as pd
 
+from orchestrate.freefem import freefem
 from orchestrate.input.parameters import Value
 from orchestrate.places import shown
 from orchestrate.progress import in_turn
@@ -123,6 +124,7 @@ def main(argv: list[str]) -> int:
     for name in options.cases:
         if name not in CASES:
             parser.error(f"'{name}' is not known (accepted: {', '.join(CASES)})")
+    freefem.find()      # which builds the kernels where there are none, outside all times
     tables, texts, agreed, ratios = [], [], {}, {}
     for name in in_turn("equal-errors", options.cases):
         rows, reference = measure(CASES[name])
