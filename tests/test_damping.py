@@ -96,6 +96,14 @@ def test_a_branch_is_a_viscosity_where_it_is_fast_and_a_spring_where_it_is_slow(
     assert slow.summary["contact_time"] < 0.97 * elastic.summary["contact_time"]
 
 
+def test_steps_go_with_a_short_relaxation(tmp_path):
+    """Adaptive steps are no longer than a relaxation_time asks for: what the branch takes is that of steps of a twentieth of it, to the accuracy."""
+    given = {"law": "neohookean", "nu": 0.3, "speed": 6, "accuracy": 0.1, "relaxation_modulus": 2.7e6, "relaxation_time": 1e-4}
+    found, fine = (disc(tmp_path / str(dt), "ball-axisymmetric", **given, dt=dt).summary for dt in (0, 5e-6))
+    assert found["viscous_work"] == pytest.approx(fine["viscous_work"], rel=0.1) and not any(said.startswith("relaxation") for said in found["warnings"])
+    assert found["energy_final"] == pytest.approx(fine["energy_final"], abs=0.02 * fine["energy_initial"])
+
+
 def scene(**more):
     body = {"shape": "disc", "radius": 0.05, "velocity": [0, -3], "law": "neohookean", "young": 7e6, "nu": 0.4, "density": 1722.0}
     return {"accuracy": 0.2, "end_time": 6e-3, "body": [body | {"name": "damped", "position": [0, 0.051]} | more, body | {"name": "elastic", "position": [0.2, 0.051], "loss": 0}],
