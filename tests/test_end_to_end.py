@@ -269,7 +269,7 @@ def test_a_step_far_too_large_for_friction_ends_early(tmp_path):
     given = ("-law", "neohookean", "-speed", "12", "-angle", "60", "-friction_static", "0.7", "-friction_dynamic", "0.5", "-slip_velocity", "0.1", "-penalty", "1e10")
     process = direct(*given, "-dt", "4e-4", "-out", str(tmp_path / "out"))
     assert process.returncode == 11 and re.search(r"dt = 0.0004 s is too long for its friction, .* take dt = 0, or up to 0.00024\d+ s", process.stderr)
-    assert process.stderr.count("\n") == 1 and json.loads((tmp_path / "out/failure.json").read_text())["steps"] < 4
+    assert process.stderr.count("\n") == 1 and json.loads((tmp_path / "out/failure.json").read_text())["steps"] < 6
 
 
 def test_a_step_longer_than_the_contact_ends_in_its_first_try(tmp_path):

@@ -113,14 +113,14 @@ def test_stress_reports(fake, tmp_path, capsys, mode, returned, words):
 
 
 def test_stress_has_every_combination_once(fake, tmp_path, monkeypatch):
-    """648 sets, none twice; a part of them is always the same part."""
+    """891 sets, none twice; a part of them is always the same part."""
     asked = []
     monkeypatch.setattr(study, "study", lambda points, *rest: asked.append(points) or pd.DataFrame(
         [point | {"exit": 0, "message": "", "energy_drift": 1e-12} for point in points]))
     monkeypatch.setattr(stress, "report", lambda *_: "")
     for quick in ([], ["--quick", "5"], ["--quick", "5"]):
         assert stress.main([*quick, "--out", str(tmp_path)]) == 0
-    assert len(asked[0]) == len({tuple(point.values()) for point in asked[0]}) == 648
+    assert len(asked[0]) == len({tuple(point.values()) for point in asked[0]}) == 891
     assert asked[1] == asked[2] and len(asked[1]) == 5
 
 
