@@ -124,13 +124,13 @@ def test_what_is_left_out_is_not_called_skipped(tmp_path, without, said):
     assert left_out.summary["energy_drift"] < 1e-9
 
 
-EFFORTS = {"disc-normal": 9, "disc-oblique": 10, "two-discs": 8}   # iterations a step; 13, 14 and 9 with a matrix made at the prediction
+EFFORTS = {"disc-normal": 9, "disc-oblique": 10, "two-discs": 8}   # iterations a step; 13, 14 and 9 with matrices renewed later
 
 
 @pytest.mark.parametrize("name", EFFORTS)
 @pytest.mark.parametrize("without", ["none", "kernels"])
 def test_a_step_takes_few_iterations(tmp_path, name, without):
-    """Iterations and factorisations a step, scripted and compiled: a matrix is renewed at a step's first iterate, where it contracts best."""
+    """Iterations and factorisations a step, scripted and compiled: a matrix is renewed as soon as that pays."""
     end = run.run(scene.load(name), {"accuracy": 0.05, "fields": 0, "without": without}, tmp_path / "a", estimate=False).summary
     assert end["newton_iterations"] < EFFORTS[name] * end["steps"] and end["factorizations"] < end["steps"]
     assert end["energy_drift"] < 1e-9 and end["momentum_drift"] < 1e-9 and end["rejected_steps"] == 0
