@@ -6,7 +6,7 @@ from pathlib import Path
 
 from .failure import NotInstalled
 
-PACKAGE = Path(__file__).resolve().parent                             # the Python side: scenes, sweeps, probe.edp
+PACKAGE = Path(__file__).resolve().parent                             # the Python side: scenes, sweeps
 # the folder that edp/ lies in: the package where it is installed, else the source folder
 ROOT = PACKAGE if (PACKAGE / "edp").is_dir() else PACKAGE.parent
 RESULTS = Path("results")                                             # below the working folder

@@ -104,10 +104,13 @@ def summary(status: str = "ok", message: str = "") -> dict:
 
 def main(arguments: list[str]) -> int:
     mode = os.environ.get("FAKE", "ok")
-    if any(word.endswith("probe.edp") for word in arguments):
-        print("Load error: Element_QF" if mode == "noplugin" else "version 4.6" if mode == "old" else "version 4.9")
-        return 2 if mode == "noplugin" else 0
     if any("/describe" in word for word in arguments):
+        if mode == "noplugin":
+            print("Load error: Element_QF")
+            return 2
+        if mode == "old":
+            print('{"version": "4.6"}')
+            return 0
         os.execv(REAL, [REAL, *arguments])
     if count := os.environ.get("FAKE_COUNT"):
         with open(count, "a") as file:

@@ -65,7 +65,7 @@ def test_second_run_on_a_folder_is_refused(tmp_path):
     """The lock is the kernel's: the second run is refused with 14 as long as the first one lives, and no longer, even if it was killed."""
     first = start(*COARSE, "-dt", "1e-6", "-out", "out", cwd=tmp_path)
     end = time.monotonic() + 20
-    while not (tmp_path / "out/history.part").exists() and time.monotonic() < end:
+    while not (tmp_path / "out/run.part/history.csv").exists() and time.monotonic() < end:
         time.sleep(0.01)
     code, _, error = call(*COARSE, "-out", str(tmp_path / "out/"), cwd=tmp_path)
     assert code == 14 and error.startswith("ffimpact: out: ") and "another run" in error and error.count("\n") == 1

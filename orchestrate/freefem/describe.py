@@ -1,5 +1,6 @@
 """What the FreeFEM scripts say of themselves, of a scene and of its results: asked of edp/describe*.edp, never read from their source."""
 
+import copy
 import json
 from functools import cache
 
@@ -14,7 +15,9 @@ def describe(values: dict | None = None, script: str = "disc-plane") -> dict:
 
     BadInput where the script refuses the values; NotInstalled without FreeFem++.
     """
-    return json.loads(_ask("edp/describe.edp", *freefem.words_of({"script": script} | (values or {}))))
+    if not values and script == "disc-plane":
+        return copy.deepcopy(freefem.find().description)
+    return json.loads(_ask(freefem.DESCRIBE, *freefem.words_of({"script": script} | (values or {}))))
 
 
 def describe_results(values: dict | None = None, script: str = "disc-plane") -> dict:

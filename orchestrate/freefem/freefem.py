@@ -2,6 +2,7 @@
 
 import ctypes
 import fcntl
+import json
 import os
 import re
 import shutil
@@ -16,12 +17,12 @@ from typing import NamedTuple, TextIO
 
 from . import kernels
 from ..failure import BadInput, NotInstalled
-from ..places import INSTALLED, PACKAGE, ROOT
+from ..places import INSTALLED, ROOT
 
 CORES = len(os.sched_getaffinity(0))
 OLDEST = (4, 9)                          # the version in the banner; Debian's 4.11 calls itself 4.9
 DEBIAN_PLUGINS = "/usr/lib/freefem++"    # where Debian puts the plugins, and its FreeFem++ does not look
-PROBE = PACKAGE / "probe.edp"
+DESCRIBE = "edp/describe.edp"
 CLOCK = ROOT / "edp/clock.c"
 SAYS = re.compile(r"progress (\S+) t=(\S+) steps=(\S+)(?: unknowns=(\S+) apart=(\S+))?$")
 UNREAD = 2**20                           # bytes that a process can say while nobody reads; then it waits
@@ -45,11 +46,12 @@ Progress = Callable[[At], None]
 
 @dataclass(frozen=True)
 class FreeFem:
-    """A FreeFem++ that runs our scripts: its path, its version and the environment it needs."""
+    """A FreeFem++ that runs our scripts: its path, its version, the environment it needs, and what the scripts say of themselves."""
 
     command: str
     version: str
     environment: dict[str, str]
+    description: dict
 
     def words(self, script: str | Path, *flags: str) -> list[str]:
         """The command that runs a script."""
@@ -86,16 +88,17 @@ def _find(variables: tuple[tuple[str, str], ...]) -> FreeFem:
         raise NotInstalled(f"{wanted} not found; {HOW}")
     environment |= _threads(environment.get("FFIMPACT_THREADS", "1"))
     environment = _blas_kernels() | environment | _quick_clock(environment)
-    version = _probe(command, environment)
-    if not version and "FF_LOADPATH" not in environment:
+    description = _probe(command, environment)
+    if not description and "FF_LOADPATH" not in environment:
         environment["FF_LOADPATH"] = DEBIAN_PLUGINS
-        version = _probe(command, environment)
-    if not version:
-        raise NotInstalled(f"{command} lacks its plugin Element_QF or does not start; {HOW}")
+        description = _probe(command, environment)
+    if not description:
+        raise NotInstalled(f"{command} lacks its plugin Element_QF, is older than 4.9 or does not start; {HOW}")
+    version = description["version"]
     if tuple(map(int, version.split(".")[:2])) < OLDEST:
         raise NotInstalled(f"{command} is version {version}, needed is {OLDEST[0]}.{OLDEST[1]} or newer; {HOW}")
     kernels.build(command, version, environment)
-    return FreeFem(command, version, environment)
+    return FreeFem(command, version, environment, description)
 
 
 def _threads(wanted: str) -> dict[str, str]:
@@ -138,15 +141,12 @@ def _quick_clock(environment: Mapping[str, str]) -> dict[str, str]:
     return {"LD_PRELOAD": ":".join([str(library), *environment.get("LD_PRELOAD", "").split()])}
 
 
-def _probe(command: str, environment: dict[str, str]) -> str | None:
-    """The version, if the plugins load."""
+def _probe(command: str, environment: dict[str, str]) -> dict | None:
+    """What edp/describe.edp says without a scene, if it starts and finds the plugins that the scenes load."""
     try:
-        answer = subprocess.run([command, "-nw", "-ne", "-v", "0", PROBE], env=environment, stdin=subprocess.DEVNULL,
-                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT, errors="replace", timeout=60).stdout
-    except (OSError, subprocess.TimeoutExpired):
+        return json.loads(FreeFem(command, "", environment, {}).call(DESCRIBE, timeout=60).stdout)
+    except (OSError, subprocess.TimeoutExpired, ValueError):
         return None
-    match = re.search(r"^version (\d+\.\d+\S*)", answer, re.MULTILINE)
-    return match and match[1]
 
 
 @dataclass(frozen=True)

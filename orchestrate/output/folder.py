@@ -21,13 +21,11 @@ from .results import read_summary, why
 
 # what the program writes into a folder: what a run leaves, what it needs on its way, and its pictures
 RECORDS = ("scene.toml", "history.csv", "contacts.csv", "modes.csv", "summary.json")
-FIELDS = [f"fields{on_its_way}/{name}" for on_its_way in ("", ".part")
-          for name in ("[0-9][0-9][0-9][0-9].vtu", "contact.csv", "contact.pvd", "contact-[0-9][0-9][0-9][0-9].vtp")]
+FIELDS = [f"fields/{name}" for name in ("[0-9][0-9][0-9][0-9].vtu", "contact.csv", "contact.pvd", "contact-[0-9][0-9][0-9][0-9].vtp")]
 FIGURES = ("energies", "velocity", "force", "rolling", "shapes", "pressure", "flight", "contact", "bounces", "height", "vibration", "solid")
-OWN = (*RECORDS, *(f"{Path(name).stem}.part" for name in RECORDS), "failure.json", "log.txt", "mesh.msh", "mesh.mesh", "scene.dat",
-       "history.cut", "summary.json.part", "checkpoint", "checkpoint.json", "checkpoint.part", "checkpoint.state", "parting", "fields.pvd",
-       "fields.pvd.part", *FIELDS, *(f"figures/{name}.png" for name in FIGURES))
-OURS = {"scene.toml", "failure.json", "scene.part", "history.part", "checkpoint.json"}   # a folder with one of these is the program's
+OWN = (*RECORDS, "run.part/*", "failure.json", "log.txt", "mesh.msh", "mesh.mesh", "scene.dat", "summary.json.part", "checkpoint",
+       "checkpoint.json", "fields.pvd", *FIELDS, *(f"figures/{name}.png" for name in FIGURES))
+OURS = {"scene.toml", "failure.json", "run.part", "checkpoint.json"}   # a folder with one of these is the program's
 
 
 def result_folder(out: Path) -> Path:
