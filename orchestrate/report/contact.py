@@ -35,8 +35,8 @@ def read(folder: Path, beside: bool = False) -> np.recarray:
 def draw(table: np.recarray, names: list[str], half: bool, free: np.ndarray, ball: dict[str, Value] | None = None, symmetry: str = "full",
          history: dict[str, np.ndarray] | None = None) -> plt.Figure | None:
     """A row of panels a body: pressure over the outline at some instants, over outline and time, with friction where it sticks and slides,
-    and with the `history` half-width and largest pressure; None without contact. `table`: also of the points beside. `free`: times [s] at
-    which nothing is touched.
+    and with the `history` half-width and largest pressure; None without contact. Of two bodies that touch nothing but each other the first
+    shows all. `table`: also of the points beside. `free`: times [s] at which nothing is touched.
 
     Half a body is drawn with its mirror image. `ball`: the scene where the body is a ball that nothing turns: all is drawn over the
     distance from its axis. Of other bodies in three dimensions: of one the points nearest to the plane z = 0, of several all over the
@@ -47,6 +47,9 @@ def draw(table: np.recarray, names: list[str], half: bool, free: np.ndarray, bal
         return None
     bodies = [int(body) for body in np.unique(table.body)]
     bodies = sorted(sorted(bodies, key=lambda body: -table.pressure[table.body == body].max())[:MOST_BODIES])
+    alone = set(zip(table.body, table.partner)) == {(1, 2), (2, 1)}
+    if alone:
+        bodies = [1]
     instants = np.union1d(table.t, free[(free > table.t.min()) & (free < table.t.max())])
     rubs, solid = bool(table.shear.any()), "Z" in table.dtype.names
     shown = ["profiles", "pressure"] + ["slip"] * rubs + ["history"] * (history is not None and "contact_half_width" in history)
@@ -73,7 +76,7 @@ def draw(table: np.recarray, names: list[str], half: bool, free: np.ndarray, bal
         if "history" in shown:
             _history(panels["history"], history, f"_{body}" if len(names) > 1 else "")
         if len(names) > 1:
-            panels["pressure"].set_title(names[body - 1])
+            panels["pressure"].set_title(f"{names[0]} on {names[1]}" if alone else names[body - 1])
         if maps:
             _maps(parts[2 * k + 1], points, rubs, symmetry, len(names) > 1)
     return figure
