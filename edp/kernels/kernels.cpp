@@ -22,12 +22,12 @@ static bodies::Triplets entries(Sparse A) {
 static void addBodies() {
   add("kernelComponent", +[](long i, long dimensions, Sparse pick) { body.component(int(i), int(dimensions), entries(pick)); });
   add("kernelMaterial", +[](Reals lambda, Reals mu, Reals eta, Reals zeta, Reals relaxing, Reals relaxTime, Reals bulk, Reals dampingState,
-                           Ints neohookean, Reals weight) {
+                           Ints neohookean, Ints held, Reals weight) {
     body.weight = copied<double>(weight);
     body.material.resize(weight.N());
     body.damping = dampingState;
     for (int q = 0; q < weight.N(); q++)
-      body.material[q] = {lambda[q], mu[q], eta[q], zeta[q], relaxing[q], relaxTime[q], bulk[q], neohookean[q] >= 1, neohookean[q] == 2};
+      body.material[q] = {lambda[q], mu[q], eta[q], zeta[q], relaxing[q], relaxTime[q], bulk[q], neohookean[q] == 1, held[q] == 1};
   });
   add("kernelBodies", +[](Sparse gradient, Sparse mass, Reals free) {
     body.free = copied<double>(free);

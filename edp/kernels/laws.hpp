@@ -14,7 +14,7 @@ struct Material {
   double relaxing, relaxTime;              // G [Pa], tau [s] of relaxation.idp
   double bulk;                             // kappa [Pa], the part of the law's lambda that acts in the mean of an element (volume.idp)
   bool neohookean;                         // or St. Venant-Kirchhoff
-  bool held;                               // with J = 1 (incompressible.idp)
+  bool held;                               // with J = 1 (material.idp)
 };
 
 // det F.
