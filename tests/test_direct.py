@@ -15,7 +15,7 @@ from orchestrate.freefem import freefem
 from orchestrate.input import parameters
 from orchestrate.mesh import mesh
 from orchestrate.output import folder, results
-from orchestrate.failure import Busy
+from orchestrate.failure import Busy, Unreadable
 
 COARSE = ("-law", "neohookean", "-nu", "0.4", "-accuracy", "0.4")
 ODD = "it's; touch pwned #$(touch pwned)`touch pwned`\"\\ *"     # a name that a shell would make something of
@@ -93,6 +93,15 @@ def test_files_of_others_are_left_alone(tmp_path):
     (tmp_path / "out/thesis.tex").write_text("years of work")
     code, _, error = call(*COARSE, "-out", "out", cwd=tmp_path)
     assert code == 14 and "files of others" in error and error.count("\n") == 1 and names(tmp_path) == {"out/thesis.tex"}
+
+
+@pytest.mark.parametrize("name", ["out/run.part", "run.part/", "run.part/deeper"])
+def test_the_folder_of_a_run_under_way_is_no_folder_of_results(tmp_path, name):
+    """What a run in DIR would take away, DIR/run.part, is refused as -out and --out with 14: a finished run there would be lost."""
+    code, _, error = call(*COARSE, "-out", name, cwd=tmp_path)
+    assert code == 14 and "is in a folder run.part" in error and error.count("\n") == 1 and not names(tmp_path)
+    with pytest.raises(Unreadable, match="is in a folder run.part"):
+        folder.result_folder(tmp_path / name)
 
 
 def test_earlier_runs(tmp_path):

@@ -34,6 +34,8 @@ def result_folder(out: Path) -> Path:
         folder = out.resolve()
     except (OSError, RuntimeError) as error:   # a loop of links
         raise Unreadable(f"{out} cannot be made: {getattr(error, 'strerror', None) or error}; choose another --out") from None
+    if "run.part" in folder.parts:
+        raise Unreadable(f"{out} is in a folder run.part, which runs write and take away; choose another --out")
     if not folder.name:
         raise Unreadable(f"{out} cannot be the folder of a run; choose another --out")
     return folder
