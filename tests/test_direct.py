@@ -104,6 +104,23 @@ def test_the_folder_of_a_run_under_way_is_no_folder_of_results(tmp_path, name):
         folder.result_folder(tmp_path / name)
 
 
+def test_a_run_killed_while_its_files_took_their_places_goes_on(tmp_path, monkeypatch):
+    """kill -9 when some of its files are in their places and others are not: from the checkpoint it comes to the same end."""
+    assert call(*COARSE, "-fields", "2", "-out", "straight", cwd=tmp_path)[0] == 0
+    (tmp_path / "mv").write_text("""#!/bin/sh
+if [ "$2" = scene.toml ]; then PATH=${PATH#*:}; mv "$2" "$3" ..; kill -9 0; fi
+PATH=${PATH#*:}; exec mv "$@"\n""")
+    (tmp_path / "mv").chmod(0o755)
+    flags = (*COARSE, "-fields", "2", "-checkpoint_every", "5", "-out", "out")
+    with monkeypatch.context() as patched:
+        patched.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
+        assert call(*flags, cwd=tmp_path, process_group=0)[0] == -signal.SIGKILL
+    assert (tmp_path / "out/history.csv").exists() and not (tmp_path / "out/summary.json").exists()
+    assert call(*flags, "-restart", "out/checkpoint", cwd=tmp_path)[0::2] == (0, "")
+    assert names(tmp_path / "out") == names(tmp_path / "straight")
+    assert (tmp_path / "out/history.csv").read_bytes() == (tmp_path / "straight/history.csv").read_bytes()
+
+
 def test_earlier_runs(tmp_path):
     """Another scene, or mesh, puts the folder aside; the same one replaces what the program wrote, and what the user put there stays."""
     assert call(*COARSE, "-fields", "4", "-out", "out", cwd=tmp_path)[0] == 0
