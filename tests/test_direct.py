@@ -121,6 +121,15 @@ PATH=${PATH#*:}; exec mv "$@"\n""")
     assert (tmp_path / "out/history.csv").read_bytes() == (tmp_path / "straight/history.csv").read_bytes()
 
 
+def test_an_interrupt_while_files_take_their_places_is_no_success(tmp_path, monkeypatch):
+    """Ctrl-C that reaches the commands which FreeFEM waits for, and not itself: exit code 130, no results claimed, none half in place."""
+    (tmp_path / "mv").write_text("#!/bin/sh\nkill -INT 0\n")
+    (tmp_path / "mv").chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
+    code, said, _ = call(*COARSE, "-out", "out", cwd=tmp_path, process_group=0)
+    assert code == 130 and "results in" not in said and not (tmp_path / "out/summary.json").exists()
+
+
 def test_earlier_runs(tmp_path):
     """Another scene, or mesh, puts the folder aside; the same one replaces what the program wrote, and what the user put there stays."""
     assert call(*COARSE, "-fields", "4", "-out", "out", cwd=tmp_path)[0] == 0
