@@ -130,6 +130,22 @@ def test_an_interrupt_while_files_take_their_places_is_no_success(tmp_path, monk
     assert code == 130 and "results in" not in said and not (tmp_path / "out/summary.json").exists()
 
 
+def test_an_earlier_run_that_cannot_be_put_aside(tmp_path):
+    """On a mount point, which cannot be renamed, a second run is refused with 14 before it begins, and through Python any run."""
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    if subprocess.run(["mount", "-t", "tmpfs", "none", disk], capture_output=True).returncode:
+        pytest.skip("nothing can be mounted here")
+    try:
+        assert call(*COARSE, "-out", "disk", cwd=tmp_path)[0] == 0
+        code, said, error = call(*COARSE, "-speed", "3", "-out", "disk", cwd=tmp_path)
+        assert code == 14 and "cannot be put aside" in error and "progress" not in said and names(disk) == RESULTS
+        with pytest.raises(Unreadable, match="cannot be put aside"):
+            folder.finished_in(disk, force=False)
+    finally:
+        subprocess.run(["umount", disk], check=True)
+
+
 def test_earlier_runs(tmp_path):
     """Another scene, or mesh, puts the folder aside; the same one replaces what the program wrote, and what the user put there stays."""
     assert call(*COARSE, "-fields", "4", "-out", "out", cwd=tmp_path)[0] == 0

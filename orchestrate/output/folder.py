@@ -52,6 +52,8 @@ def finished_in(folder: Path, force: bool) -> dict | None:
             raise Unreadable(f"{path} is a file; choose another --out")
         if path.exists() and any(path.iterdir()) and not OURS & set(os.listdir(path)):
             raise Unreadable(f"{path} has files of others in it and no scene.toml; choose another --out")
+    if folder.is_mount():
+        raise Unreadable(f"{folder} is a mount point, which cannot be put aside; choose another --out, such as a folder in it")
     if not (folder / "summary.json").exists():
         return None
     try:
