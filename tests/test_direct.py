@@ -15,7 +15,7 @@ from orchestrate.freefem import freefem
 from orchestrate.input import parameters
 from orchestrate.mesh import mesh
 from orchestrate.output import folder, results
-from orchestrate.failure import Busy
+from orchestrate.failure import Busy, Unreadable
 
 COARSE = ("-law", "neohookean", "-nu", "0.4", "-accuracy", "0.4")
 ODD = "it's; touch pwned #$(touch pwned)`touch pwned`\"\\ *"     # a name that a shell would make something of
@@ -93,6 +93,57 @@ def test_files_of_others_are_left_alone(tmp_path):
     (tmp_path / "out/thesis.tex").write_text("years of work")
     code, _, error = call(*COARSE, "-out", "out", cwd=tmp_path)
     assert code == 14 and "files of others" in error and error.count("\n") == 1 and names(tmp_path) == {"out/thesis.tex"}
+
+
+@pytest.mark.parametrize("name", ["out/run.part", "run.part/", "run.part/deeper"])
+def test_the_folder_of_a_run_under_way_is_no_folder_of_results(tmp_path, name):
+    """What a run in DIR would take away, DIR/run.part, is refused as -out and --out with 14: a finished run there would be lost."""
+    code, _, error = call(*COARSE, "-out", name, cwd=tmp_path)
+    assert code == 14 and "is in a folder run.part" in error and error.count("\n") == 1 and not names(tmp_path)
+    with pytest.raises(Unreadable, match="is in a folder run.part"):
+        folder.result_folder(tmp_path / name)
+
+
+def test_a_run_killed_while_its_files_took_their_places_goes_on(tmp_path, monkeypatch):
+    """kill -9 when some of its files are in their places and others are not: from the checkpoint it comes to the same end."""
+    assert call(*COARSE, "-fields", "2", "-out", "straight", cwd=tmp_path)[0] == 0
+    (tmp_path / "mv").write_text("""#!/bin/sh
+if [ "$2" = scene.toml ]; then PATH=${PATH#*:}; mv "$2" "$3" ..; kill -9 0; fi
+PATH=${PATH#*:}; exec mv "$@"\n""")
+    (tmp_path / "mv").chmod(0o755)
+    flags = (*COARSE, "-fields", "2", "-checkpoint_every", "5", "-out", "out")
+    with monkeypatch.context() as patched:
+        patched.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
+        assert call(*flags, cwd=tmp_path, process_group=0)[0] == -signal.SIGKILL
+    assert (tmp_path / "out/history.csv").exists() and not (tmp_path / "out/summary.json").exists()
+    assert call(*flags, "-restart", "out/checkpoint", cwd=tmp_path)[0::2] == (0, "")
+    assert names(tmp_path / "out") == names(tmp_path / "straight")
+    assert (tmp_path / "out/history.csv").read_bytes() == (tmp_path / "straight/history.csv").read_bytes()
+
+
+def test_an_interrupt_while_files_take_their_places_is_no_success(tmp_path, monkeypatch):
+    """Ctrl-C that reaches the commands which FreeFEM waits for, and not itself: exit code 130, no results claimed, none half in place."""
+    (tmp_path / "mv").write_text("#!/bin/sh\nkill -INT 0\n")
+    (tmp_path / "mv").chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
+    code, said, _ = call(*COARSE, "-out", "out", cwd=tmp_path, process_group=0)
+    assert code == 130 and "results in" not in said and not (tmp_path / "out/summary.json").exists()
+
+
+def test_an_earlier_run_that_cannot_be_put_aside(tmp_path):
+    """On a mount point, which cannot be renamed, a second run is refused with 14 before it begins, and through Python any run."""
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    if subprocess.run(["mount", "-t", "tmpfs", "none", disk], capture_output=True).returncode:
+        pytest.skip("nothing can be mounted here")
+    try:
+        assert call(*COARSE, "-out", "disk", cwd=tmp_path)[0] == 0
+        code, said, error = call(*COARSE, "-speed", "3", "-out", "disk", cwd=tmp_path)
+        assert code == 14 and "cannot be put aside" in error and "progress" not in said and names(disk) == RESULTS
+        with pytest.raises(Unreadable, match="cannot be put aside"):
+            folder.finished_in(disk, force=False)
+    finally:
+        subprocess.run(["umount", disk], check=True)
 
 
 def test_earlier_runs(tmp_path):

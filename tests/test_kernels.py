@@ -12,9 +12,10 @@ from verification.measure import disc, measure, prepared
 
 @pytest.fixture
 def copy(tmp_path, monkeypatch):
-    """A folder of its own for what is built."""
-    monkeypatch.setattr(kernels, "BUILT", tmp_path / "dev")
-    return tmp_path / "dev"
+    """A folder of its own for what is built, of a name that shells have to be told apart."""
+    monkeypatch.setattr(kernels, "BUILT", tmp_path / "it's new" / "dev")
+    kernels.BUILT.parent.mkdir()
+    return kernels.BUILT
 
 
 def write(folder, name: str) -> None:
@@ -22,9 +23,9 @@ def write(folder, name: str) -> None:
     (folder / "kernels.cpp").write_text(f'#include "ff++.hpp"\nstatic void {name}() {{}}\nLOADFUNC({name})\n')
 
 
-def test_they_are_built_once_and_again_for_other_sources(copy, monkeypatch, tmp_path):
-    """What loads the plugin names the one of these very sources; that of other sources takes its place."""
-    monkeypatch.setattr(kernels, "SOURCES", tmp_path / "sources")
+def test_they_are_built_once_and_again_for_other_sources(copy, monkeypatch):
+    """What loads the plugin names the one of these very sources; that of other sources takes its place. The folder may have any name."""
+    monkeypatch.setattr(kernels, "SOURCES", copy.with_name("sources"))
     write(kernels.SOURCES, "one")
     program = freefem.find()
     if not kernels.build(program.command, program.version, program.environment):

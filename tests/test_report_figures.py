@@ -2,6 +2,7 @@
 
 import itertools
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -9,7 +10,7 @@ import pytest
 from matplotlib.transforms import Bbox
 
 from orchestrate.output import results, vtu
-from orchestrate.report import figures, impacts
+from orchestrate.report import compare, figures, impacts
 from orchestrate.sweeps import sweep, sweep_figures
 
 SCENE = dict(script="disc-plane", law="svk", young=7e6, nu=0.45, density=1722, radius=0.05, speed=8, angle=90, spin=0, gravity=0, body_force_x=0,
@@ -57,6 +58,18 @@ def test_nothing_overlaps_and_nothing_is_cut():
         boxes = [axes.get_tightbbox() for axes in grid.flat] + [text.get_window_extent() for text in figure.texts]
         boxes[1] = Bbox.union([boxes[1], second.get_tightbbox()])
     assert all(0 <= box.x0 and box.x1 <= figure.bbox.x1 and 0 <= box.y0 and box.y1 <= figure.bbox.y1 for box in boxes)
+    assert not [pair for pair in itertools.combinations(boxes, 2) if Bbox.intersection(*pair)]
+
+
+def test_the_key_of_a_comparison_stands_above_its_panels(tmp_path, monkeypatch):
+    """The names of the runs, with their warnings, cover no panel and are in the picture."""
+    summary = dict(dofs=294, warnings=["ellipticity: lost", "peak force: scatters"], reach=0.05, energy_initial=432.8)
+    run = SimpleNamespace(history=history(max_penetration=np.full(100, 1e-4)), scene=SCENE | {"exponent": 1}, summary=summary)
+    monkeypatch.setattr(compare.plt, "close", lambda figure: None)
+    compare.draw({"disc-normal": run, "disc-normal-neohookean": run}, tmp_path / "both.png")
+    figure = compare.plt.gcf()
+    boxes = [one.get_tightbbox() for one in (*figure.legends, *figure.axes)]
+    assert all(0 <= box.y0 and box.y1 <= figure.bbox.y1 for box in boxes)
     assert not [pair for pair in itertools.combinations(boxes, 2) if Bbox.intersection(*pair)]
 
 

@@ -55,8 +55,9 @@ def _build(command: str, maker: Path, plugin: Path, loading: str, environment: M
     """The plugin, then the file that loads it: whoever starts meanwhile finds the old, nothing or the new, and all of it."""
     if not plugin.exists():
         with tempfile.TemporaryDirectory(dir=BUILT) as folder:
+            source = os.path.relpath((SOURCES / "kernels.cpp").resolve(), Path(folder).resolve())   # ff-c++ lets no ' pass
             for flags in THREADS:
-                made = subprocess.run([maker, *flags, SOURCES / "kernels.cpp", *LIBRARIES], cwd=folder, env=environment, check=not flags,
+                made = subprocess.run([maker, *flags, source, *LIBRARIES], cwd=folder, env=environment, check=not flags,
                                       timeout=300, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
                 if made.returncode == 0:
                     break

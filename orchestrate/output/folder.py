@@ -34,6 +34,8 @@ def result_folder(out: Path) -> Path:
         folder = out.resolve()
     except (OSError, RuntimeError) as error:   # a loop of links
         raise Unreadable(f"{out} cannot be made: {getattr(error, 'strerror', None) or error}; choose another --out") from None
+    if "run.part" in folder.parts:
+        raise Unreadable(f"{out} is in a folder run.part, which runs write and take away; choose another --out")
     if not folder.name:
         raise Unreadable(f"{out} cannot be the folder of a run; choose another --out")
     return folder
@@ -50,6 +52,8 @@ def finished_in(folder: Path, force: bool) -> dict | None:
             raise Unreadable(f"{path} is a file; choose another --out")
         if path.exists() and any(path.iterdir()) and not OURS & set(os.listdir(path)):
             raise Unreadable(f"{path} has files of others in it and no scene.toml; choose another --out")
+    if folder.is_mount():
+        raise Unreadable(f"{folder} is a mount point, which cannot be put aside; choose another --out, such as a folder in it")
     if not (folder / "summary.json").exists():
         return None
     try:

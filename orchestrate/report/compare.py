@@ -55,7 +55,7 @@ def draw(results: dict[str, RunResult], path: Path) -> None:
     mixed = len({per_metre(result.scene) for result in results.values()}) > 1
     rubs = any(result.history["friction_force"].any() for result in results.values())
     with plt.rc_context(STYLE):
-        figure, grid = plt.subplots(2, 2, figsize=(8.2, 5.6), sharex=True)
+        figure, grid = plt.subplots(2, 2, figsize=(8.2, 5.6), sharex=True, layout="constrained")
         (force, drag), (energy, velocity) = grid
         for k, ((name, result), colour) in enumerate(zip(results.items(), (BLUE, ORANGE, GREEN, PURPLE) * len(results))):
             h, used = result.history, result.scene
