@@ -42,6 +42,11 @@ def winding(x: np.ndarray, nodes: np.ndarray) -> float:
     return (angle[-1] - angle[0]).sum() / (2 * np.pi)
 
 
+def kernel_is_the_scripts(found: dict) -> None:
+    """Of all steps: the compiled gap (edp/kernels/pairs.hpp) has the same slots and unknowns as the scripts that define it, and their numbers to round-off."""
+    assert not found["built"] or found["slotsOff"] == 0 and max(found[name] for name in ("gapsOff", "rowsOff", "springsOff")) < 1e-12
+
+
 CASES = [(2, 0.02, 0.05, 0), (1, 0.02, 0.05, 0.7), (2, 0.1, 0.1, 2.5), (1, 0.1, 0.1, 0.4), (2, 0, 0, 0)]
 
 
@@ -57,6 +62,8 @@ def test_rows_conserve(measure, degree, depth, noise, tilt, without):
         assert found[name + "Exact"] < ROUND_OFF and found[name + "Force"] < ROUND_OFF and found[name + "Moment"] < ROUND_OFF
         assert 0.1 < found[name + "Largest"] < 1.2
     assert max(found["turnChange"], found["slideExact"], found["slideJump"]) < ROUND_OFF and found["turnSlots"] == found["randomSlots"]
+    kernel_is_the_scripts(found)
+    assert not found["built"] or found["springs"] > 0 or noise == 0
 
 
 @pytest.mark.parametrize("degree, depth, noise, tilt", CASES)
