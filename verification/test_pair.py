@@ -42,33 +42,28 @@ def winding(x: np.ndarray, nodes: np.ndarray) -> float:
     return (angle[-1] - angle[0]).sum() / (2 * np.pi)
 
 
+def kernel_is_the_scripts(found: dict) -> None:
+    """Of all steps: the compiled gap (edp/kernels/pairs.hpp) has the same slots and unknowns as the scripts that define it, and their numbers to round-off."""
+    assert not found["built"] or found["slotsOff"] == 0 and max(found[name] for name in ("gapsOff", "rowsOff", "springsOff")) < 1e-12
+
+
 CASES = [(2, 0.02, 0.05, 0), (1, 0.02, 0.05, 0.7), (2, 0.1, 0.1, 2.5), (1, 0.1, 0.1, 0.4), (2, 0, 0, 0)]
 
 
 @pytest.mark.parametrize("without", ["none", "kernels"])
 @pytest.mark.parametrize("degree, depth, noise, tilt", CASES)
 def test_rows_conserve(measure, degree, depth, noise, tilt, without):
-    """By the kernel and by the scripts: B d = q1 - q0; no row carries a force or a moment about the middle configuration, at vertices and kinks as on edges."""
+    """By the kernel and by the scripts: B d = q1 - q0, also when the step turns the pair by a radian, which changes no gap, or goes along the block by a third of an edge, forty times;
+    no row carries a force or a moment about the middle configuration, at vertices and kinks as on edges; a step begins with the penetrations the last ended with."""
     found = measure("pair", degree=degree, depth=depth, noise=noise, tilt=tilt, without=without)
     assert found["randomInside"] > 10 and found["vertices"] > 0 or noise == 0
     assert found["cornerGap"] < ROUND_OFF        # a point on a corner of the other body, exactly
     for name in ("random", "turn", "corner"):
         assert found[name + "Exact"] < ROUND_OFF and found[name + "Force"] < ROUND_OFF and found[name + "Moment"] < ROUND_OFF
         assert 0.1 < found[name + "Largest"] < 1.2
-
-
-@pytest.mark.parametrize("degree, depth, noise, tilt", CASES)
-def test_turning_the_pair_changes_no_gap(measure, degree, depth, noise, tilt):
-    """A rotation of both bodies by one radian in one step."""
-    found = measure("pair", degree=degree, depth=depth, noise=noise, tilt=tilt)
-    assert found["turnChange"] < ROUND_OFF and found["turnSlots"] == found["randomSlots"]
-
-
-@pytest.mark.parametrize("degree, depth, noise, tilt", CASES)
-def test_sliding_across_edges(measure, degree, depth, noise, tilt):
-    """Forty steps of a third of an edge: exact in each, and a step begins with the penetrations that the last one ended with."""
-    found = measure("pair", degree=degree, depth=depth, noise=noise, tilt=tilt)
-    assert found["slideExact"] < ROUND_OFF and found["slideJump"] < ROUND_OFF
+    assert max(found["turnChange"], found["slideExact"], found["slideJump"]) < ROUND_OFF and found["turnSlots"] == found["randomSlots"]
+    kernel_is_the_scripts(found)
+    assert not found["built"] or found["springs"] > 0 or noise == 0
 
 
 @pytest.mark.parametrize("degree, depth, noise, tilt", CASES)
