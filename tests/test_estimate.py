@@ -121,6 +121,26 @@ def test_steps_count_where_the_force_is_high():
     assert estimate.resolved(run._replace(history={"normal_force": 0 * force})) == 1 / 36
 
 
+@pytest.mark.parametrize("coarser, share", [(1.0, 1.0), (1.2, 0.56), (ROOT2, 0.0), (2.0, 0.0)])
+def test_steps_that_a_pair_has_alike_do_not_show_in_it(coarser, share):
+    """Of an error quadratic in the step: all of it where the coarser run takes the same steps in the height of the force, none of it from 1.4 times larger ones on."""
+    fine = on_its_way(steps=81)
+    coarse = fine._replace(history=fine.history | {"dt": coarser * fine.history["dt"]})
+    assert estimate.alike(fine, coarse) == pytest.approx(share, abs=1e-12)
+
+
+def test_what_does_not_show_is_stated():
+    """A pair whose elements alone differ, by nearly nothing, is stated what its steps make; one whose steps differ states what it did; half of it lies between."""
+    small, way = usual(1e-3), usual(1e-3)
+    stated = [estimate.errors(small, way, 1e-2, hidden) for hidden in (0.0, 0.5, 1.0)]
+    assert stated[0] == estimate.errors(small, way, 1e-2)
+    for name in estimate.BOUND:
+        none, half, whole = (found[name] for found in stated)
+        assert none < half < whole and whole > 2 * none, name
+    none = dict.fromkeys(way, 0.0)
+    assert estimate.errors(none, none, 1e-2, 1.0) == none
+
+
 def test_friction_work_of_itself_is_stated_as_friction_work_is():
     """Both are one error over two scales."""
     found = estimate.errors(usual(1.0), usual(1.0) | {"friction_work": 0.01, estimate.OF_ITSELF: 0.03}, STEPS)

@@ -1,6 +1,7 @@
 """Scenes drawn at random, the same ones for the same seed: what promises and robustness are tried on."""
 
 import random
+from collections.abc import Sequence
 
 from orchestrate.sweeps.study import Point
 
@@ -12,6 +13,7 @@ MATERIALS = {"gel": (3e4, 1050.0, 0.45), "soft rubber": (1e5, 1000.0, 0.4), "foa
 # Of a mixture of all dimensions: the share of each scene in sixty, and accuracies that are asked for; bodies and three dimensions are dear.
 MIXTURE = {"disc-normal": (24, (0.005, 0.01, 0.02)), "disc-block": (10, (0.01, 0.02, 0.05)), "ball-axisymmetric": (12, (0.005, 0.01, 0.02)),
            "two-discs": (10, (0.01, 0.02, 0.05)), "ball": (4, (0.1,))}
+COARSE = (0.03, 0.05, 0.1)  # accuracies of scenes where stated errors are tried at few elements and steps
 SLOWEST, FASTEST = 5e-4, {"svk": 0.1, "neohookean": 0.18}   # speeds, over sqrt(E/density); svk breaks down above
 
 
@@ -42,6 +44,18 @@ def mixture(seed: int, count: int) -> list[tuple[str, Point]]:
             point = SCENES[scene](chance, _scene(chance, False))
             found.append(((k + 0.5) / many, scene, point | {"accuracy": chance.choice(accuracies)}))
     return [(scene, point) for _, scene, point in sorted(found, key=lambda one: one[0])]
+
+
+def coarse(seed: int, count: int, asked: Sequence[float] = COARSE) -> list[tuple[str, Point]]:
+    """`count` discs and balls of revolution in turn at each accuracy `asked` for, as draw() has them, a fifth nearly incompressible."""
+    chance, found = random.Random(f"{seed} coarse"), []
+    for k in range(count):
+        scene = ("disc-normal", "ball-axisymmetric")[k % 2]
+        point = SCENES[scene](chance, _scene(chance, False))
+        if chance.random() < 0.2:
+            point["nu"] = chance.choice([0.48, 0.49, 0.499, 0.4999])
+        found.append((scene, point | {"accuracy": asked[k // 2 % len(asked)]}))
+    return found
 
 
 def _on_plane(chance: random.Random, point: Point) -> Point:
