@@ -21,11 +21,6 @@ static void setLaw(double exponent, double slipVelocity, double bridge, double s
   problem.sticksBelow = sticksBelow;
 }
 
-static void normal(Reals qa, Reals qb, Reals k, long where, Reals t, Reals stiff) {
-  law.where = where;
-  for (int i = 0; i < qa.n; i++) law.normal(qa[i], qb[i], k[i], t[i], stiff[i]);
-}
-
 static void tractions(Reals qa, Reals place, Reals k, Ints of, Ints sticks, Reals muStatic, Reals muDynamic, double dt, long where,
                       Reals t, Reals stiff, Reals drag, Reals coupling) {
   const int n = qa.n, kinds = 1 + law.slips;
@@ -123,7 +118,6 @@ static long solve(Ints slots, Reals q, Reals place, Reals ahead, double dt, long
 
 static void addContact() {
   ::add("kernelLaw", setLaw);
-  ::add("kernelNormal", normal);
   ::add("kernelTractions", tractions);
   ::add("kernelSoft", +[](Table C, Ints at) {
     softAt = &at;

@@ -7,7 +7,6 @@
 #include "contact.hpp"
 #include "pairs.hpp"
 #include "numbers.hpp"
-#include "secant.hpp"
 
 static bodies::Bodies body;
 static bodies::Deformation deformation;
@@ -75,7 +74,6 @@ static void addKernels() {
   addFactor();
   contact::addContact();
   pairs::addPairs();
-  secant::addSecant();
   add("kernelRows", numbers::write);
 }
 

@@ -203,10 +203,13 @@ public:
     this->reach = reach;
     low.assign(s.cells, {});
     high.assign(s.cells, {});
-    std::vector<std::vector<int>> own(s.bodies);
-    for (int c = 0; c < s.cells; c++) { box(x, c);  own[s.body[c]].push_back(c); }
     std::vector<std::pair<long, int>> found;   // slot, cell
-    for (int a = 0; a < s.bodies; a++) for (int b = s.touchesItself[a] ? a : a + 1; b < s.bodies; b++) sweep(x, own[a], own[b], found);
+    for (int c = 0; c < s.cells; c++) box(x, c);
+    for (int c = 0; c < s.cells; c++) for (int e = c + 1; e < s.cells; e++)
+      if (meet(c, e) && (s.body[c] != s.body[e] || (s.touchesItself[s.body[c]] && sightOf(c, e) > 0))) {
+        join(x, c, e, found);
+        join(x, e, c, found);
+      }
     std::sort(found.begin(), found.end());
     slot.clear();  first.clear();  cell.clear();
     for (const auto &one : found) {
@@ -338,6 +341,11 @@ private:
     }
   }
 
+  bool meet(int c, int e) const {
+    for (int i = 0; i < A; i++) if (low[c][i] > high[e][i] || high[c][i] < low[e][i]) return false;
+    return true;
+  }
+
   // Of cells of one body: 0 neighbours, 1 partners, 2 that see each other, (a) of pair.idp.
   int sightOf(int c, int e) const {
     const Surface &s = surface;
@@ -371,38 +379,6 @@ private:
       apart = plus(apart, -N, nodePlace(s.reference.data(), c, a));
     }
     return -place.gap <= std::min(reach, 0.1 * length(apart)) ? place.gap : -place.gap;
-  }
-
-  // Points and cells of two bodies, or of one and itself, near each other: only those in the overlap of the bodies' boxes, sorted along its
-  // longest side.
-  void sweep(const double *x, const std::vector<int> &bodyA, const std::vector<int> &bodyB,
-             std::vector<std::pair<long, int>> &found) const {
-    Vector<A> from, to;
-    int axis = 0;
-    for (int i = 0; i < A; i++) {
-      double lowest[2] = {1e300, 1e300}, highest[2] = {-1e300, -1e300};
-      for (int c : bodyA) { lowest[0] = std::min(lowest[0], low[c][i]);  highest[0] = std::max(highest[0], high[c][i]); }
-      for (int c : bodyB) { lowest[1] = std::min(lowest[1], low[c][i]);  highest[1] = std::max(highest[1], high[c][i]); }
-      from[i] = std::max(lowest[0], lowest[1]);
-      to[i] = std::min(highest[0], highest[1]);
-      if (to[i] < from[i]) return;
-      if (to[i] - from[i] > to[axis] - from[axis]) axis = i;
-    }
-    const bool itself = &bodyA == &bodyB;
-    const auto meet = [&](int c, const Vector<A> &l, const Vector<A> &h) {
-      for (int i = 0; i < A; i++) if (low[c][i] > h[i] || high[c][i] < l[i]) return false;
-      return true;
-    };
-    std::vector<int> nearB;
-    double widest = 0;
-    for (int c : bodyB) if (meet(c, from, to)) { nearB.push_back(c);  widest = std::max(widest, high[c][axis] - low[c][axis]); }
-    std::sort(nearB.begin(), nearB.end(), [&](int c, int e) { return low[c][axis] < low[e][axis]; });
-    for (int c : bodyA) if (meet(c, from, to)) {
-      auto e = std::lower_bound(nearB.begin(), nearB.end(), low[c][axis] - widest,
-                                [&](int f, double least) { return low[f][axis] < least; });
-      for (; e != nearB.end() && low[*e][axis] <= high[c][axis]; ++e)
-        if (meet(*e, low[c], high[c]) && (!itself || (c < *e && sightOf(c, *e) > 0))) { join(x, c, *e, found);  join(x, *e, c, found); }
-    }
   }
 
   // Points of a cell within reach of the box of another.

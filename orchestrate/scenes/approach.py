@@ -1,6 +1,6 @@
 """Where bodies of a scene first touch: they fly as rigid bodies, r = r0 + v t + b t^2 / 2, angle = angle0 + spin t, until the gap closes.
 
-While the spheres around them are apart time is skipped at once, between roots of polynomials (as edp/core/run/reach.idp has it)."""
+While the spheres around them are apart time is skipped at once, between roots of polynomials."""
 
 import itertools
 import math
