@@ -12,7 +12,6 @@ import numpy as np
 from matplotlib.cm import ScalarMappable
 
 from ..output import vtu
-from ..scenes.obstacles import Obstacle
 from ..input.parameters import Value
 from ..places import shown
 from .bodies import obstacles_of
@@ -27,7 +26,6 @@ FINE = 4                   # parts of the side of a face
 PIXELS = (700, 620)        # of a view
 COLOURS = {"stress": "viridis", "pressure": "YlOrRd"}
 GROUND = "#d0d0d0"
-PLANE = Obstacle("plane", "plane", (0.0, 0.0, 0.0, 0.0, 1.0, 0.0), np.zeros(3))      # y = 0, of a scene of one body
 GRID = 60                  # points along each side of the box in which an obstacle's surface is looked for
 AXES = {"quarter": (0, 2), "half": (2,)}       # of a symmetric body: along which the computed part has a mirror image
 
@@ -167,7 +165,7 @@ class Views:
         points, tetrahedra = solids[0].points, solids[0].tetrahedra
         self.cut, self.outside = skin(points, tetrahedra[~in_front(solids[0], axes)]), skin(points, tetrahedra)
         self.times = np.array([t for t, _ in series])
-        self.rigid = [PLANE] if scene.get("script") == "ball-plane" else obstacles_of(scene)
+        self.rigid = obstacles_of(scene)
         pressure = Pressure(table, axes, self.outside.at(points))
         self.sights = [self._sight(t, solid, pressure.at(t)) for t, solid in zip(self.times, solids)]
         self.stress = float(np.quantile([sight.stress for sight in self.sights], 0.999)) or 1.0    # one spot does not darken all the rest
