@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..geometry.outlines import cross
 from .results import Contents, content, reading
 
 TRIANGLE, QUADRATIC_TRIANGLE, QUADRATIC_TETRAHEDRON = 5, 22, 24   # VTK's cell types
@@ -40,6 +41,20 @@ class Solid:
     points: np.ndarray
     tetrahedra: np.ndarray
     fields: Contents
+
+
+@dataclass(frozen=True)
+class Skin:
+    """Quadratic triangles as straight ones (t, 3) between vertices, each of them `shape` (m, 6) of the nodes (m, 6) of a quadratic one:
+    corners, then the middles of 01, 12, 20."""
+
+    nodes: np.ndarray
+    shape: np.ndarray
+    triangles: np.ndarray
+
+    def at(self, field: np.ndarray) -> np.ndarray:
+        """The field (nodes, ...) at the vertices (m, ...)."""
+        return np.einsum("ma,ma...->m...", self.shape, field[self.nodes])
 
 
 def read(path: Path) -> Snapshot:
@@ -83,28 +98,23 @@ def _parts(path: Path) -> tuple[np.ndarray, int, np.ndarray, dict[str, np.ndarra
 
 
 def _straight(curved: Snapshot) -> Snapshot:
-    """Its quadratic triangles (t, 6: corners, then the middles of 01, 12, 20) as n * n straight ones each, on points where the quadratic
-    functions are."""
-    cells = curved.triangles
-    values, first, triangles = _split(cells.tobytes(), len(cells))
-    at = lambda field: np.tensordot(field[cells], values, axes=(1, 1)).swapaxes(1, -1).reshape(-1, *field.shape[1:])[first]   # noqa: E731
-    return Snapshot(at(curved.points), triangles, Contents({name: at(field) for name, field in curved.fields.items()}, curved.fields.path))
+    """Its quadratic triangles as straight ones."""
+    cells, fields = curved.triangles, curved.fields
+    skin = split(cells.tobytes(), int(np.clip(np.sqrt(MOST / max(1, len(cells))), 2, FINEST)))
+    return Snapshot(skin.at(curved.points), skin.triangles, Contents({name: skin.at(field) for name, field in fields.items()}, fields.path))
 
 
 @lru_cache(1)          # snapshots of a run have the same triangles
-def _split(cells: bytes, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Of so many quadratic triangles the functions (points of a cell, 6), the row of each point among those of all cells, and the straight
-    triangles."""
-    corners = np.frombuffer(cells, dtype=int).reshape(count, 6)[:, :3]
-    n = int(np.clip(np.sqrt(MOST / max(1, count)), 2, FINEST))
+def split(cells: bytes, n: int) -> Skin:
+    """Quadratic triangles (t, 6) as n * n straight ones each; a vertex where they meet is one: known by its corners and their shares."""
+    nodes = np.frombuffer(cells, dtype=int).reshape(-1, 6)
     places, values, triangles = lattice(n)
-    # a point of a side is one for both neighbours: it is known by its corners and their shares
-    shares = np.rint(n * places).astype(int)[None].repeat(count, axis=0)                          # (cells, points, 3)
-    owners = np.where(shares > 0, corners[:, None, :], -1)
+    shares = np.rint(n * places).astype(int)[None].repeat(len(nodes), axis=0)                          # (cells, points, 3)
+    owners = np.where(shares > 0, nodes[:, None, :3], -1)
     order = np.argsort(owners, axis=2)
     known = np.concatenate([np.take_along_axis(each, order, axis=2) for each in (owners, shares)], axis=2).reshape(-1, 6)
     _, first, which = np.unique(known, axis=0, return_index=True, return_inverse=True)
-    return values, first, which.reshape(count, -1)[:, triangles].reshape(-1, 3)
+    return Skin(nodes[first // len(values)], values[first % len(values)], which.reshape(len(nodes), -1)[:, triangles].reshape(-1, 3))
 
 
 def lattice(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -125,9 +135,8 @@ def _in_plane(tetrahedra: np.ndarray, on_plane: np.ndarray, points: np.ndarray) 
     faces = tetrahedra[:, FACES].reshape(-1, 6)
     faces = faces[on_plane[faces].all(axis=1)]
     faces = faces[np.unique(np.sort(faces[:, :3], axis=1), axis=0, return_index=True)[1]]
-    (ax, ay), (bx, by), (cx, cy) = (points[faces[:, k], :2].T for k in range(3))
-    clockwise = (bx - ax) * (cy - ay) < (by - ay) * (cx - ax)
-    return np.where(clockwise[:, None], faces[:, [0, 2, 1, 5, 4, 3]], faces)
+    a, b, c = (points[faces[:, k], :2] for k in range(3))
+    return np.where((cross(b - a, c - a) < 0)[:, None], faces[:, [0, 2, 1, 5, 4, 3]], faces)
 
 
 def _cut(solid: Solid, on_plane: np.ndarray) -> Snapshot:
@@ -143,8 +152,8 @@ def _cut(solid: Solid, on_plane: np.ndarray) -> Snapshot:
     (first, second), triangles = different.T, which.reshape(-1, 3)
     share = np.divide(z[first], z[first] - z[second], out=np.zeros(len(first)), where=first != second)
     at = lambda field: (field[first].T * (1 - share) + field[second].T * share).T   # noqa: E731
-    (ax, ay), (bx, by), (cx, cy) = (at(solid.points)[triangles[:, k], :2].T for k in range(3))
-    area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+    a, b, c = (at(solid.points)[triangles[:, k], :2] for k in range(3))
+    area = cross(b - a, c - a)
     triangles = np.where((area < 0)[:, None], triangles[:, ::-1], triangles)[area != 0]
     return Snapshot(at(solid.points)[:, :2], triangles,
                     Contents({name: at(field) for name, field in solid.fields.items()}, solid.fields.path))
