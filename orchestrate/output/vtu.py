@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 
-from ..geometry.outlines import cross
 from .results import Contents, content, reading
 
 TRIANGLE, QUADRATIC_TRIANGLE, QUADRATIC_TETRAHEDRON = 5, 22, 24   # VTK's cell types
@@ -135,8 +134,9 @@ def _in_plane(tetrahedra: np.ndarray, on_plane: np.ndarray, points: np.ndarray) 
     faces = tetrahedra[:, FACES].reshape(-1, 6)
     faces = faces[on_plane[faces].all(axis=1)]
     faces = faces[np.unique(np.sort(faces[:, :3], axis=1), axis=0, return_index=True)[1]]
-    a, b, c = (points[faces[:, k], :2] for k in range(3))
-    return np.where((cross(b - a, c - a) < 0)[:, None], faces[:, [0, 2, 1, 5, 4, 3]], faces)
+    (ax, ay), (bx, by), (cx, cy) = (points[faces[:, k], :2].T for k in range(3))
+    clockwise = (bx - ax) * (cy - ay) < (by - ay) * (cx - ax)
+    return np.where(clockwise[:, None], faces[:, [0, 2, 1, 5, 4, 3]], faces)
 
 
 def _cut(solid: Solid, on_plane: np.ndarray) -> Snapshot:
@@ -152,8 +152,8 @@ def _cut(solid: Solid, on_plane: np.ndarray) -> Snapshot:
     (first, second), triangles = different.T, which.reshape(-1, 3)
     share = np.divide(z[first], z[first] - z[second], out=np.zeros(len(first)), where=first != second)
     at = lambda field: (field[first].T * (1 - share) + field[second].T * share).T   # noqa: E731
-    a, b, c = (at(solid.points)[triangles[:, k], :2] for k in range(3))
-    area = cross(b - a, c - a)
+    (ax, ay), (bx, by), (cx, cy) = (at(solid.points)[triangles[:, k], :2].T for k in range(3))
+    area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
     triangles = np.where((area < 0)[:, None], triangles[:, ::-1], triangles)[area != 0]
     return Snapshot(at(solid.points)[:, :2], triangles,
                     Contents({name: at(field) for name, field in solid.fields.items()}, solid.fields.path))
