@@ -23,6 +23,7 @@ from matplotlib.transforms import ScaledTranslation
 from matplotlib.tri import LinearTriInterpolator, Triangulation
 from PIL import Image
 
+from ..geometry.outlines import rotation
 from ..input import dimension
 from ..input.parameters import Value
 from ..mesh import mesh
@@ -416,10 +417,9 @@ def _fly(pose: Pose, wait: float, row: int, history: dict[str, np.ndarray], scen
     """The pose after another `wait` seconds (before, if negative) of rigid flight with the velocities of history's `row`."""
     velocity = np.array([history["vx"][row], history["vy"][row]])
     pull = np.array([scene.get("body_force_x", 0), scene.get("body_force_y", 0) - scene.get("gravity", 0)])
-    turned = history["spin"][row] * wait
-    rotation = np.array([[np.cos(turned), -np.sin(turned)], [np.sin(turned), np.cos(turned)]])
+    turn = rotation(history["spin"][row] * wait)
     place = pose.centre + velocity * wait + pull * wait**2 / 2
-    outline, diameter = ((points - pose.centre) @ rotation.T + place for points in (pose.outline, pose.diameter))
+    outline, diameter = ((points - pose.centre) @ turn.T + place for points in (pose.outline, pose.diameter))
     return Pose(pose.t + wait, place, outline, diameter)
 
 
@@ -449,7 +449,9 @@ def side_by_side(found: list["Body"], times: list[float], view: tuple[float, flo
     figure, axes = plt.subplots(figsize=(7.5, rows * step[1] / inch + 0.4), subplot_kw=BARE)
     axes.set_axis_off()
     axes.set(xlim=(left, right + (columns - 1) * step[0]), ylim=(low - (rows - 1) * step[1], low + step[1]), aspect="equal")
-    ends = ends_of_stress(found)
+    # 0 or less and more: five in a thousand of all nodes are beyond each, so that one spot does not darken all the rest
+    low_stress, high_stress = np.quantile(np.concatenate([body.stress for body in found]), [0.005, 0.995])
+    ends = min(0.0, low_stress), high_stress or 1.0
     for k, (body, t) in enumerate(zip(found, times)):
         place = step * (k % columns, -(k // columns))
         behind(axes, t, place)
@@ -458,13 +460,6 @@ def side_by_side(found: list["Body"], times: list[float], view: tuple[float, flo
     scale_bar(axes, 0.25 / columns)
     figure.colorbar(picture, cax=axes.inset_axes((1.03, 0.15, 0.025, 0.7)), label=label, extend="both" if ends[0] < 0 else "max")
     return figure
-
-
-def ends_of_stress(bodies: list["Body"]) -> tuple[float, float]:
-    """The ends [MPa] of the colours, 0 or less and more: five in a thousand of all nodes are beyond each, so that one spot does not darken
-    all the rest."""
-    low, high = np.quantile(np.concatenate([body.stress for body in bodies]), [0.005, 0.995])
-    return min(0.0, low), high or 1.0
 
 
 def scale_bar(axes: plt.Axes, share: float = 0.25) -> None:
