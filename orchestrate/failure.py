@@ -1,6 +1,5 @@
 """Expected failures: one line for the user and an exit code (the table in the run contract)."""
 
-
 from pathlib import Path
 
 MOST = 200   # characters of a value that a message repeats
@@ -12,11 +11,12 @@ class Failure(Exception):
     `folder` is where the files of a failed run were kept.
     """
 
+    code = 1
     folder: Path | None = None
 
-    def __init__(self, message: str, code: int = 1):
+    def __init__(self, message: str, code: int | None = None):
         super().__init__(" ".join(message.splitlines()))   # one line, whatever the user's text had in it
-        self.code = code
+        self.code = self.code if code is None else code
 
 
 def brief(value) -> str:
@@ -28,29 +28,25 @@ def brief(value) -> str:
 class TooLong(Failure):
     """A run that its time limit ended: interrupted, not failed. The code is that of timeout(1)."""
 
-    def __init__(self, message: str):
-        super().__init__(message, 124)
+    code = 124
 
 
 class BadInput(Failure):
     """A parameter, scene file or mesh that cannot be used."""
 
-    def __init__(self, message: str):
-        super().__init__(message, 10)
+    code = 10
 
 
 class NotInstalled(Failure):
     """FreeFem++ (or a library) missing, too old or without a plugin it needs."""
 
-    def __init__(self, message: str):
-        super().__init__(message, 13)
+    code = 13
 
 
 class Unreadable(Failure):
     """A result folder that cannot be read or is not ours."""
 
-    def __init__(self, message: str):
-        super().__init__(message, 14)
+    code = 14
 
 
 class Busy(Unreadable):

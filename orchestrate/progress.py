@@ -27,7 +27,7 @@ def in_notebook() -> bool:
     return "ipykernel" in sys.modules
 
 
-class Line:
+class Line(contextlib.AbstractContextManager):
     """Progress of the work `name` in parts of these costs, in any unit. `watched`: whether it is shown; None: on a terminal and in a
     notebook."""
 
@@ -46,13 +46,7 @@ class Line:
                 self.leaving.enter_context(contextlib.redirect_stdout(DummyTqdmFile(sys.stdout)))
             self.bar = tqdm(total=1.0, desc=self._words(words), leave=False, bar_format=FORMAT)
 
-    def __enter__(self) -> "Line":
-        return self
-
     def __exit__(self, *_) -> None:
-        self.close()
-
-    def close(self) -> None:
         if self.bar is not None:
             self.bar.close()
             self.leaving.close()
@@ -89,10 +83,10 @@ class Line:
             self.at(part, 1.0, words)
 
 
-def in_turn(name: str, items: Iterable, watched: bool | None = None) -> Iterator:
+def in_turn(name: str, items: Iterable) -> Iterator:
     """The items, one after another, with a line that says which of how many."""
     items = list(items)
-    with Line(name, dict.fromkeys(range(len(items)), 1.0), watched) as line:
+    with Line(name, dict.fromkeys(range(len(items)), 1.0)) as line:
         for k, item in enumerate(items):
             with line.part(k, f"{k + 1} of {len(items)}"):
                 yield item

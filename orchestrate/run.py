@@ -76,7 +76,7 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | Non
         except Failure as failure:
             if checkpoints(stage):   # a script that comes to its end, good or bad, removes it
                 failure.folder = stage
-            elif failure.code not in {kind("").code for kind in (TooLong, BadInput, Unreadable)}:   # these leave nothing behind
+            elif failure.code not in (TooLong.code, BadInput.code, Unreadable.code):   # these leave nothing behind
                 failure.folder = failed_beside(folder) if finished else folder
                 _keep_failed(stage, failure, scene, provenance | asked_for)
                 _put(stage, failure.folder, scene, mesh_file)

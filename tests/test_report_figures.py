@@ -10,7 +10,7 @@ import pytest
 from matplotlib.transforms import Bbox
 
 from orchestrate.output import results, vtu
-from orchestrate.report import compare, figures, impacts
+from orchestrate.report import bodies, compare, figures, impacts
 from orchestrate.sweeps import sweep, sweep_figures
 
 SCENE = dict(script="disc-plane", law="svk", young=7e6, nu=0.45, density=1722, radius=0.05, speed=8, angle=90, spin=0, gravity=0, body_force_x=0,
@@ -73,7 +73,7 @@ def test_the_key_of_a_comparison_stands_above_its_panels(tmp_path, monkeypatch):
     assert not [pair for pair in itertools.combinations(boxes, 2) if Bbox.intersection(*pair)]
 
 
-@pytest.mark.parametrize("draw", [figures._force, figures._velocity, figures._energies])
+@pytest.mark.parametrize("draw", [bodies.forces, bodies.velocities, bodies.energies])
 def test_time_begins_at_zero_and_the_last_touch_is_marked(draw):
     """A run from the touch on has a tick at t = 0; the end of the contact, inside the last step, is a line with its time, in the legend."""
     figure = draw(history(), SCENE)
@@ -85,28 +85,28 @@ def test_time_begins_at_zero_and_the_last_touch_is_marked(draw):
 def test_a_body_that_goes_on_bouncing_has_no_last_touch():
     """The run ends in the air between two touches: no end of the contact is claimed. A run that begins with a flight begins there."""
     h = history(normal_force=np.where(np.arange(100) % 20 < 10, 1e3, 0.0))
-    assert figures._force(h, SCENE | {"speed": 3, "touched": (0.0, 4.5e-3)}).axes[0].get_legend() is None
-    figure = figures._force(history(t=np.linspace(2e-3, 7e-3, 100)), SCENE)
+    assert bodies.forces(h, SCENE | {"speed": 3, "touched": (0.0, 4.5e-3)}).axes[0].get_legend() is None
+    figure = bodies.forces(history(t=np.linspace(2e-3, 7e-3, 100)), SCENE)
     assert figure.axes[0].get_xlim()[0] == pytest.approx(2)
 
 
 def test_the_papers_contact_time_is_drawn_beside_ours():
     """4.8 ms for the disc at 8 m/s, inside the axis; another law says so; another speed has none."""
-    axes = figures._force(history(), SCENE).axes[0]
+    axes = bodies.forces(history(), SCENE).axes[0]
     assert "paper, section 3.3: 4.8 ms" in labels(axes)
-    other = figures._force(history(), SCENE | {"law": "neohookean"}).axes[0]
+    other = bodies.forces(history(), SCENE | {"law": "neohookean"}).axes[0]
     assert "paper, section 3.3, St. Venant–Kirchhoff: 4.8 ms" in labels(other)
     assert figures.numbers_of_the_paper(SCENE | {"speed": 7}, "contact_time") == []
     assert figures.numbers_of_the_paper(SCENE | {"mesh": "mine.msh"}, "contact_time") == []
     assert figures.numbers_of_the_paper(SCENE | {"speed": 7}, "contact_time", over="speed") == [(8, 0.0048, "paper, section 3.3")]
-    late = figures._force(history(t=np.linspace(5e-5, 4.1e-3, 100)), SCENE).axes[0]
+    late = bodies.forces(history(t=np.linspace(5e-5, 4.1e-3, 100)), SCENE).axes[0]
     assert late.get_xlim()[1] > 4.8
 
 
 def test_no_curve_hides_another():
     """Under gravity the elastic, contact and gravity's energies are all near 0: each line on another is thinner; small ones say how large they get."""
-    axes = figures._energies(history(external_work=np.full(100, 0.5)), SCENE).axes[0]
-    widths = [line.get_linewidth() for line in axes.lines if line.get_label() in ("total", "kinetic", "elastic") or line.get_label().startswith(("contact", "work"))]
+    axes = bodies.energies(history(external_work=np.full(100, 0.5)), SCENE).axes[0]
+    widths = [line.get_linewidth() for line in axes.lines if line.get_label() in ("total", "kinetic", "elastic") or line.get_label().startswith(("contact", "external"))]
     assert len(widths) == 5 and widths == sorted(widths, reverse=True) and len(set(widths)) == 5
     assert "contact (up to 0.001)" in labels(axes)
 
@@ -116,24 +116,24 @@ def test_limits_of_friction_are_not_clipped():
     h = history()
     h["friction_force"] = -0.5 * h["normal_force"]
     scene = SCENE | dict(friction_static=0.7, friction_dynamic=0.5)
-    figure = figures._friction(h, scene)
+    figure = figures.friction_force(h, scene)
     assert len(figure.axes) == 2
     low, high = figure.axes[1].get_ylim()
     assert low < -0.7e-3 * h["normal_force"].max() and all(axes.get_ylabel() for axes in figure.axes)
     h["sliding_fraction"] = np.where(np.arange(100) % 4 < 2, 1.0, 0.0)
-    figure = figures._friction(h, scene)
+    figure = figures.friction_force(h, scene)
     assert len(figure.axes) == 4 and all(axes.get_ylabel() for axes in figure.axes)
 
 
 def test_no_contact_is_in_the_legend_of_rolling():
     h = history(friction_force=np.full(100, -1.0))
-    assert "no contact" in labels(figures._rolling(h, SCENE).axes[1])
+    assert "no contact" in labels(figures.rolling(h, SCENE).axes[1])
 
 
 def test_a_normal_impact_has_no_flight():
     """The way of a body that neither goes along the plane nor turns is a vertical line: no figure of it."""
-    assert not figures._goes_along(history(), SCENE)
-    assert figures._goes_along(history(spin=np.full(100, 5.0)), SCENE) and figures._goes_along(history(vx=np.full(100, 1.0)), SCENE)
+    assert not figures.goes_along(history(), SCENE)
+    assert figures.goes_along(history(spin=np.full(100, 5.0)), SCENE) and figures.goes_along(history(vx=np.full(100, 1.0)), SCENE)
 
 
 @pytest.mark.parametrize("width, words", [(0.12, "20 mm"), (11.0, "2 m"), (4e-4, "100 μm"), (0.4, "100 mm")])

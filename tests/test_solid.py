@@ -38,7 +38,7 @@ def no_pyvista(monkeypatch):
     solid.missing.cache_clear()
 
 
-def area(skin: solid.Skin, points: np.ndarray) -> float:
+def area(skin: vtu.Skin, points: np.ndarray) -> float:
     a, b, c = (skin.at(points)[skin.triangles[:, k]] for k in range(3))
     return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)
 
@@ -48,7 +48,7 @@ def test_surface_of_the_whole_and_of_the_cut_ball(ball, symmetry):
     """Whatever part was computed: 4 pi R^2 of the whole, nothing inside; of the cut one 3/4 of that and two half discs, or half and a disc. To 1 %."""
     axes = solid.AXES.get(symmetry, ())
     body = solid.whole(vtu.read_solid(vtu.series(ball(symmetry).folder / "fields.pvd")[0][1]), axes)
-    every, cut = solid.skin(body.points, body.tetrahedra), solid.skin(body.points, body.tetrahedra[~solid.in_front(body, axes)])
+    every, cut = solid.skin(body.tetrahedra), solid.skin(body.tetrahedra[~solid.in_front(body, axes)])
     assert area(every, body.points) == pytest.approx(4 * np.pi * RADIUS**2, rel=0.01)
     assert np.linalg.norm(every.at(body.points) - (0, RADIUS, 0), axis=1) == pytest.approx(RADIUS, rel=0.01)
     assert area(cut, body.points) == pytest.approx((4 if symmetry == "quarter" else 3) * np.pi * RADIUS**2, rel=0.01)
@@ -73,7 +73,7 @@ def test_pressure_on_the_surface_bears_the_force(ball):
     t = table.t[table.pressure.argmax()]
     axes = (0, 2)
     body = solid.whole(vtu.read_solid(vtu.series(result.folder / "fields.pvd")[0][1]), axes)
-    skin = solid.skin(body.points, body.tetrahedra)
+    skin = solid.skin(body.tetrahedra)
     vertices = skin.at(body.points)
     drawn = solid.Pressure(table, axes, vertices)
     a, b, c = (vertices[skin.triangles[:, k]] for k in range(3))

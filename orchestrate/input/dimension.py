@@ -16,11 +16,6 @@ class Dimension:
     like: str
     cases: tuple[str, ...]
 
-    @property
-    def placeholder(self) -> str:
-        """A point, in the words of messages."""
-        return "[x, y, z]" if self.axes == 3 else "[x, y]"
-
 
 PLANE_STRAIN = Dimension("plane-strain", "bodies", 2, "disc-plane", ("disc-plane", "disc-block"))
 AXISYMMETRIC = Dimension("axisymmetric", "bodies-axisymmetric", 2, "ball-plane", ("ball-axisymmetric",))

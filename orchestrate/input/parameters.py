@@ -96,11 +96,6 @@ def taken(name: str, script: str) -> None:
         raise BadInput(f"{brief(name)}: {script} takes no such parameter (accepted: in {'|'.join(table()[name].scripts)})")
 
 
-def decisive(values: dict[str, Value]) -> dict[str, Value]:
-    """Those of a scene's values that decide its answer: two scenes that agree in them are one run."""
-    return {name: value for name, value in values.items() if name not in NOT_DECISIVE}
-
-
 def check(given: dict[str, Value], script: str = "") -> dict[str, Value]:
     """The given parameters (of one script, or of all), checked and converted; BadInput names the first that is unknown or not accepted."""
     for name in given:

@@ -48,7 +48,7 @@ class Table:
 
     def numbers(self, key: str, low: float, high: float, default: tuple[float, ...] | None = None, count: int = 2) -> np.ndarray:
         """So many numbers, [x, y] or [x, y, z], between two bounds."""
-        self._wanted(key, default, f"{_placeholder(count)}, each {low:g} to {high:g}")
+        self._wanted(key, default, f"{placeholder(count)}, each {low:g} to {high:g}")
         return _vector(self.at(key), self.given.get(key, default), low, high, count)
 
     def points(self, key: str, least: int = 3) -> np.ndarray:
@@ -133,13 +133,14 @@ def _real(low: float, high: float, default: float | None = None) -> Parameter:
     return Parameter("", "real", default, "", "", low, high)
 
 
-def _placeholder(count: int) -> str:
+def placeholder(count: int) -> str:
+    """A point, in the words of messages."""
     return f"[{', '.join('xyz'[:count])}]"
 
 
 def _vector(path: str, given, low: float, high: float, count: int = 2) -> np.ndarray:
     if not isinstance(given, list | tuple) or len(given) != count:
-        raise BadInput(f"{path}: '{brief(given)}' is no {_placeholder(count)} (accepted: {('two', 'three')[count - 2]} numbers, each "
+        raise BadInput(f"{path}: '{brief(given)}' is no {placeholder(count)} (accepted: {('two', 'three')[count - 2]} numbers, each "
                        f"{low:g} to {high:g})")
     return np.array([replace(_real(low, high), name=f"{path}.{k}").check(value) for k, value in enumerate(given, 1)])
 

@@ -143,7 +143,7 @@ def own_process(module: str, path: Path, *words: Path) -> None:
                            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace")
     if child.returncode == 0 and words[0].exists():     # a script in a geometry may end gmsh
         return
-    if child.returncode == BadInput("").code:
+    if child.returncode == BadInput.code:
         raise BadInput(child.stderr.strip().splitlines()[-1].replace(str(path), path.name))
     how = signal.Signals(-child.returncode).name if child.returncode < 0 else f"exit code {child.returncode}"
     raise BadInput(f"gmsh broke down over it ({how})")

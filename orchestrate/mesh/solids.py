@@ -5,6 +5,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from operator import attrgetter
 from pathlib import Path
 
 import numpy as np
@@ -168,21 +169,8 @@ class Solid(outlines.Shape):
     rotation: np.ndarray
     geometry: tuple[Path, np.ndarray] | None = None
 
-    @property
-    def volume(self) -> float:
-        return self.shape.volume
-
-    @property
-    def area_centre(self) -> np.ndarray:
-        return self.centre
-
-    @property
-    def extent(self) -> np.ndarray:
-        return self.shape.extent
-
-    @property
-    def reach(self) -> float:
-        return self.shape.reach
+    volume, extent, reach = (property(attrgetter(f"shape.{name}")) for name in ("volume", "extent", "reach"))
+    area_centre = property(attrgetter("centre"))
 
     @property
     def disc(self) -> tuple[np.ndarray, float] | None:

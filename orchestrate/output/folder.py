@@ -12,7 +12,7 @@ import json
 import os
 import shutil
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from ..failure import Busy, Unreadable
@@ -73,12 +73,12 @@ def staging(folder: Path) -> Iterator[tuple[Path, int]]:
     stage = folder.with_name(folder.name + ".part")
     with ExitStack() as leaving:
         leaving.callback(_take_away, [made for made in (stage, *stage.parents) if not made.exists()])   # a signal may come at any moment
-        lock = leaving.enter_context(_open(_lock(stage, folder)))
+        leaving.callback(os.close, lock := _lock(stage, folder))
         if not folder.exists() and _is_complete(stage):   # killed between the two renames of replace
             os.rename(stage, folder)              # with its lock, which stays
-            lock = leaving.enter_context(_open(_lock(stage, folder)))
+            leaving.callback(os.close, lock := _lock(stage, folder))
         elif folder.exists():
-            leaving.enter_context(_open(_hold(folder, folder)))   # against a run without Python
+            leaving.callback(os.close, _hold(folder, folder))   # against a run without Python
         _refuse_files_of_others(stage)
         try:
             yield stage, lock
@@ -87,21 +87,11 @@ def staging(folder: Path) -> Iterator[tuple[Path, int]]:
                 shutil.rmtree(stage, ignore_errors=True)
 
 
-@contextmanager
-def _open(file: int) -> Iterator[int]:
-    try:
-        yield file
-    finally:
-        os.close(file)
-
-
 def _take_away(folders: list[Path]) -> None:
     """Removes those of the folders that are empty."""
     for folder in folders:
-        try:
+        with suppress(OSError):
             folder.rmdir()
-        except OSError:
-            pass
 
 
 def _is_complete(stage: Path) -> bool:

@@ -42,6 +42,20 @@ class Solid:
     fields: Contents
 
 
+@dataclass(frozen=True)
+class Skin:
+    """Quadratic triangles as straight ones (t, 3) between vertices, each of them `shape` (m, 6) of the nodes (m, 6) of a quadratic one:
+    corners, then the middles of 01, 12, 20."""
+
+    nodes: np.ndarray
+    shape: np.ndarray
+    triangles: np.ndarray
+
+    def at(self, field: np.ndarray) -> np.ndarray:
+        """The field (nodes, ...) at the vertices (m, ...)."""
+        return np.einsum("ma,ma...->m...", self.shape, field[self.nodes])
+
+
 def read(path: Path) -> Snapshot:
     """One snapshot; quadratic triangles, and the faces of quadratic tetrahedra in the plane z = 0, are split into straight ones, so many
     that curved sides look it. Where a body in three dimensions has no such faces, it is cut there. Unreadable where it is not such a
@@ -83,28 +97,23 @@ def _parts(path: Path) -> tuple[np.ndarray, int, np.ndarray, dict[str, np.ndarra
 
 
 def _straight(curved: Snapshot) -> Snapshot:
-    """Its quadratic triangles (t, 6: corners, then the middles of 01, 12, 20) as n * n straight ones each, on points where the quadratic
-    functions are."""
-    cells = curved.triangles
-    values, first, triangles = _split(cells.tobytes(), len(cells))
-    at = lambda field: np.tensordot(field[cells], values, axes=(1, 1)).swapaxes(1, -1).reshape(-1, *field.shape[1:])[first]   # noqa: E731
-    return Snapshot(at(curved.points), triangles, Contents({name: at(field) for name, field in curved.fields.items()}, curved.fields.path))
+    """Its quadratic triangles as straight ones."""
+    cells, fields = curved.triangles, curved.fields
+    skin = split(cells.tobytes(), int(np.clip(np.sqrt(MOST / max(1, len(cells))), 2, FINEST)))
+    return Snapshot(skin.at(curved.points), skin.triangles, Contents({name: skin.at(field) for name, field in fields.items()}, fields.path))
 
 
 @lru_cache(1)          # snapshots of a run have the same triangles
-def _split(cells: bytes, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Of so many quadratic triangles the functions (points of a cell, 6), the row of each point among those of all cells, and the straight
-    triangles."""
-    corners = np.frombuffer(cells, dtype=int).reshape(count, 6)[:, :3]
-    n = int(np.clip(np.sqrt(MOST / max(1, count)), 2, FINEST))
+def split(cells: bytes, n: int) -> Skin:
+    """Quadratic triangles (t, 6) as n * n straight ones each; a vertex where they meet is one: known by its corners and their shares."""
+    nodes = np.frombuffer(cells, dtype=int).reshape(-1, 6)
     places, values, triangles = lattice(n)
-    # a point of a side is one for both neighbours: it is known by its corners and their shares
-    shares = np.rint(n * places).astype(int)[None].repeat(count, axis=0)                          # (cells, points, 3)
-    owners = np.where(shares > 0, corners[:, None, :], -1)
+    shares = np.rint(n * places).astype(int)[None].repeat(len(nodes), axis=0)                          # (cells, points, 3)
+    owners = np.where(shares > 0, nodes[:, None, :3], -1)
     order = np.argsort(owners, axis=2)
     known = np.concatenate([np.take_along_axis(each, order, axis=2) for each in (owners, shares)], axis=2).reshape(-1, 6)
     _, first, which = np.unique(known, axis=0, return_index=True, return_inverse=True)
-    return values, first, which.reshape(count, -1)[:, triangles].reshape(-1, 3)
+    return Skin(nodes[first // len(values)], values[first % len(values)], which.reshape(len(nodes), -1)[:, triangles].reshape(-1, 3))
 
 
 def lattice(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

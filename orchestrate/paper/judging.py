@@ -202,11 +202,6 @@ def bar(rows: pd.DataFrame, column: str, **values) -> tuple[float, float]:
     return float(rows[column][here].iloc[0]), float(sweep_figures.bars(rows, column)[here][0])
 
 
-def within(value: float, paper: float, half_digit: float, error: float = 0.0) -> bool:
-    """Whether the paper's number is met: to half a unit of its last digit, and our error bar."""
-    return abs(value - paper) <= half_digit + error
-
-
 def touching(history: History) -> np.ndarray:
     """The steps from the first to the last touch, as indices."""
     steps = np.flatnonzero(history["normal_force"] > 0)

@@ -86,9 +86,7 @@ def report(rows: pd.DataFrame) -> str:
     """A table of all runs, and how many meet the order, the contact time and both."""
     formats = {"law": "", "angle": "g", "nu": "g", "penalty": ".0e", "slip_velocity": "g", "contact_time": ".5f", "first": ".2f",
                "second": ".2f", "last": ".2f", "work_last": ".2f", "breakdown_time": ".5f", "exit": ".0f"}
-    for name in ("breakdown_time",):
-        if name not in rows:
-            rows[name] = np.nan
+    rows = rows if "breakdown_time" in rows else rows.assign(breakdown_time=np.nan)
     lines = [study.table(rows, formats), "",
              "first, second, last: share of the normal load that slides in each third of the contact; "
              "work_last: share of the friction work in the last third", ""]

@@ -1,5 +1,5 @@
-"""Figures of a run of several bodies, or of obstacles of one's own: energies of each body and of all (figures 9a, 9b of the paper),
-velocities, forces, and deformed shapes among the obstacles."""
+"""Figures of a run: energies of each body and of all (figures 6a, 9a, 9b of the paper), velocities, forces, and deformed shapes among the
+obstacles."""
 
 from pathlib import Path
 from textwrap import wrap
@@ -12,15 +12,17 @@ from ..scenes import obstacles
 from ..scenes.obstacles import Obstacle
 from ..input.parameters import Value
 from ..output.results import body_names, mechanical_energy, suffixes
-from .figures import (BLACK, BLUE, COLOURED, GREEN, GREY, ORANGE, ORIGIN, PURPLE, VISCOUS, Body, as_written, balance_error, coloured,
-                      deformed, instants, is_half, least, material, over_time, per_metre, plt, side_by_side)
+from .figures import (BAND, BLACK, BLUE, COLOURED, GREEN, GREY, ORANGE, ORIGIN, PURPLE, VISCOUS, Body, as_written, balance_error,
+                      coloured, deformed, end_of_contact, flight, friction_force, goes_along, instants, is_half, least, material, over_time,
+                      per_metre, plt, rolling, side_by_side)
 
 ALONE = ("disc-plane", "ball-axisymmetric", "ball-plane")     # scripts of one body on the plane
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, "#56b4e9", "#e69f00")    # of bodies
 ACROSS = 3       # panels side by side
 WIDEST, MOST_LINES = 120, 4       # of each part of a title: letters in a line, lines
 NAMED = 6        # of many bodies the first and the last that titles and legends name
-GRID = 300       # points along the longer side of a picture, at which obstacles are looked for
+PLANE = Obstacle("plane", "plane", (0.0, 0.0, 0.0, 0.0, 1.0, 0.0), np.zeros(3))      # y = 0, of a scene of one body
+GRID = 200       # points along each side of a picture, at which obstacles are looked for
 DOTS = (0, (1, 1.5))
 ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 1), "handlelength": 1.4, "columnspacing": 1.0}
 
@@ -53,11 +55,16 @@ def legend(axes: plt.Axes, ncols: int = 3) -> None:
         axes.legend(ends(lines), ends(words), **ABOVE, ncols=ncols)
 
 
-def draw(history: dict[str, np.ndarray], scene: dict[str, Value], snapshots: list[tuple[float, Path]]) -> dict[str, plt.Figure]:
-    """The figures by name; `history` from the first touch on."""
-    drawn = {"energies": energies(history, scene), "velocity": velocities(history, scene), "force": forces(history, scene)}
+def draw(history: dict[str, np.ndarray], contact: dict[str, np.ndarray], scene: dict[str, Value],
+         snapshots: list[tuple[float, Path]]) -> dict[str, plt.Figure]:
+    """The figures by name; `contact` is the history from the first touch on."""
+    rubs = not are_several(scene) and history["friction_force"].any()
+    drawn = {"energies": energies(contact, scene), "velocity": velocities(contact, scene)}
+    drawn |= {"force": friction_force(contact, scene), "rolling": rolling(contact, scene)} if rubs else {"force": forces(contact, scene)}
     if snapshots and len(vtu.read(snapshots[0][1]).triangles):       # none where no body crosses the plane z = 0
         drawn |= {name: shapes(snapshots, scene, *COLOURED[name]) for name in coloured(history)}
+    if len(snapshots) > 2 and not are_several(scene) and not is_half(scene) and goes_along(history, scene):
+        drawn |= {"flight": flight(history, scene, snapshots)}
     return drawn
 
 
@@ -87,21 +94,23 @@ def columns_of(history: dict[str, np.ndarray], scene: dict[str, Value]) -> dict[
 
 
 def energies(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
-    """Energies [J/m] over time: a panel a body; one of all, with the contact's, which belongs to no body; the error of the balance."""
+    """Energies [J/m] over time: a panel each of several bodies; one of all, with the contact's, which belongs to no body, and the work that
+    friction, viscosity and gravity take and give, so that the dashed sum is constant; the error of this balance."""
     t, unit, bodies = 1e3 * history["t"], f"energy [J{per_metre(scene)}]", columns_of(history, scene)
-    several = len(bodies) > 1
-    figure, (*own, together, balance) = panels(len(bodies) * several + 2)
+    if several := len(bodies) > 1:
+        figure, (*own, together, balance) = panels(len(bodies) + 2)
+    else:
+        figure, (*own, together, balance) = plt.subplots(2, sharex=True, figsize=(5.6, 4.6), height_ratios=[3, 1])
+        balance.set_xlabel("time [ms]")
     for body, (axes, (name, of), colour) in enumerate(zip(own, bodies.items(), COLOURS * len(bodies))):
         kinetic, elastic = history[f"kinetic{of}"], history[f"elastic{of}"]
         axes.plot(t, kinetic + elastic, color=colour, label=name)
         axes.plot(t, kinetic, color=colour, linestyle="--", linewidth=1.0, label="kinetic")
         axes.plot(t, elastic, color=colour, linestyle=DOTS, linewidth=1.0, label="elastic")
         together.plot(t, kinetic + elastic, color=colour, linewidth=width(body), label=name)
-    if not several:
-        together.plot(t, history["kinetic"], color=BLUE, linewidth=2.8, label="kinetic")
-        together.plot(t, history["elastic"], color=ORANGE, linewidth=2.3, label="elastic")
     total, words = mechanical_energy(history), "total"
-    lines = {"contact": (history["contact"], "#56b4e9")}
+    lines = {} if several else {"kinetic": (history["kinetic"], BLUE), "elastic": (history["elastic"], ORANGE)}
+    lines["contact"] = history["contact"], "#56b4e9"
     for name, column, words_of_it, sign, colour in (("lost to friction", "friction_work", "+ lost", 1, "#d4a017"),
                                                     ("lost to viscosity", "viscous_work", "+ lost", 1, VISCOUS),
                                                     ("external work", "external_work", "− work", -1, "#888888")):
@@ -110,17 +119,19 @@ def energies(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fig
             total, words = total + sign * history[column], words if words.endswith(words_of_it) else f"{words} {words_of_it}"
     largest = max(np.abs(values).max() for values in (total, *(values for values, _ in lines.values()), history["kinetic"],
                                                       history["elastic"]))
+    if words != "total":
+        together.plot(t, mechanical_energy(history), color=BAND, linewidth=4.5, zorder=1, label="total")
     for k, (name, (values, colour)) in enumerate(lines.items()):          # thinner and thinner, so that one on another is seen
-        together.plot(t, values, color=colour, linewidth=1.8 - 0.4 * k, label=name + least(values, largest))
+        together.plot(t, values, color=colour, linewidth=2.6 - 0.4 * (k + 2 * several), label=name + least(values, largest))
     together.plot(t, total, color=BLACK, linestyle="--", linewidth=1.0, label=words)
     for axes in (*own, together):
         axes.axhline(0, color=GREY, linewidth=0.6)
         axes.set_ylabel(unit)
-    over_time([balance, together, *own], history, scene)
-    for axes in (*own, together, balance):
-        legend(axes, ncols=2 if axes is together and len(bodies) < 4 else 3)
+    over_time([together, balance, *own], history, scene)
+    for axes in (*own, together):
+        legend(axes, ncols=2 if axes is together and 1 < len(bodies) < 4 else 3)
     balance_error(balance, history, largest or 1.0)              # not of the total alone: bodies at rest under gravity have none
-    balance.set_ylabel("|balance| / largest energy")
+    balance.set_ylabel("|balance| /\nlargest energy")
     return figure
 
 
@@ -160,8 +171,7 @@ def forces(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figur
         for (name, column), colour in zip(columns.items(), COLOURS * len(columns) if len(columns) > 1 else (BLACK,)):
             axes.plot(t, 1e-3 * history[column], color=colour, label=name or None)
         axes.set_ylabel(words)
-    over_time(grid, history, scene)
-    legend(grid[0], ncols=1)
+    end_of_contact(grid, history, scene)
     if len(columns) > 1:               # no forces on bodies where nothing touched
         legend(grid[-1])
     return figure
@@ -181,7 +191,7 @@ def shapes(series: list[tuple[float, Path]], scene: dict[str, Value], field: str
 
 def obstacles_of(scene: dict[str, Value]) -> list[Obstacle]:
     """The rigid obstacles of a scene as used."""
-    return obstacles.read(scene.get("obstacle", []), dimension.of(scene))
+    return obstacles.read(scene.get("obstacle", []), dimension.of(scene)) if are_several(scene) else [PLANE]
 
 
 def limits(found: list[Body]) -> tuple[float, float, float, float]:
@@ -196,11 +206,11 @@ def draw_obstacles(axes: plt.Axes, rigid: list[Obstacle], view: tuple[float, flo
                    place: np.ndarray = ORIGIN) -> list:
     """The obstacles where they are at time t [s], grey, within the limits `view` [m], drawn at a place [m]; what was drawn."""
     left, right, low, high = view
-    step = max(right - left, high - low) / GRID
-    x, y = np.arange(left, right + step, step), np.arange(low, high + step, step)
-    points = np.stack(np.meshgrid(x, y), axis=-1)
     if not rigid:
         return []
+    count = 2 if [one.kind for one in rigid] == ["plane"] else GRID          # whose distance is linear
+    x, y = np.linspace(left, right, count), np.linspace(low, high, count)
+    points = np.stack(np.meshgrid(x, y), axis=-1)
     gap = np.min([one.gap_in_plane(points.reshape(-1, 2), t) for one in rigid], axis=0).reshape(points.shape[:2])
     if not gap.min() < 0 < gap.max():
         return []

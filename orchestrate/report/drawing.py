@@ -11,7 +11,7 @@ from ..output import vtu
 from ..output.results import Contents, body_names, check_files, read_history, read_json, read_scene
 from ..places import COMMAND
 from . import bodies, contact as contacts, impacts, solid, vibration
-from .figures import BODY, STYLE, as_written, footer, is_half, material, on_a_plane, per_metre, plt, save, touched
+from .figures import BODY, STYLE, as_written, footer, is_half, material, per_metre, plt, save, touched
 
 
 def draw(folder: Path, warnings: list[str]) -> list[Path]:
@@ -31,10 +31,7 @@ def draw(folder: Path, warnings: list[str]) -> list[Path]:
     # without the flight
     contact = Contents({name: column[max(0, int(np.argmax(touches)) - 1):] for name, column in history.items()}, history.path)
     with plt.rc_context(STYLE):
-        if several:
-            drawn = bodies.draw(contact, scene, snapshots)
-        else:
-            drawn = on_a_plane(history, contact, scene, snapshots)
+        drawn = bodies.draw(history, contact, scene, snapshots)
         if (folder / "fields/contact.csv").exists():
             table = contacts.read(folder, beside=True)
             along = contacts.draw(table, names, is_half(scene), history["t"][~touches],

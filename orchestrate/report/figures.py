@@ -1,5 +1,5 @@
-"""What figures have in common, and those of a body on the plane: energies, contact force, velocity of the centre of mass, deformed shapes;
-with friction also the friction force, what slides and sticks, and the flight, as figures 4 to 6 of the paper."""
+"""What figures have in common, and those of one body that goes along the plane: friction force, what slides and sticks, and the flight, as
+figures 4 and 5 of the paper."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -23,11 +23,11 @@ from matplotlib.transforms import ScaledTranslation
 from matplotlib.tri import LinearTriInterpolator, Triangulation
 from PIL import Image
 
+from ..geometry.outlines import rotation
 from ..input import dimension
 from ..input.parameters import Value
 from ..mesh import mesh
 from ..output import vtu
-from ..output.results import mechanical_energy
 from . import literature
 
 LAWS = {"svk": "St. Venant–Kirchhoff", "neohookean": "neo-Hookean", "mooney-rivlin": "Mooney–Rivlin", "ogden": "Ogden",
@@ -56,22 +56,6 @@ ORIGIN = np.zeros(2)
 # letters, as is all that pictures say: to parse formulas takes as long as to draw one
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 filterwarnings("ignore", "Glyph .* missing from", UserWarning)    # a letter that the font lacks is an empty box in the title
-
-
-def on_a_plane(history: dict[str, np.ndarray], contact: dict[str, np.ndarray], scene: dict[str, Value],
-                snapshots: list[tuple[float, Path]]) -> dict[str, plt.Figure]:
-    """The figures by name of one body on the plane y = 0; `contact` is the history from the first touch on."""
-    drawn = {"energies": _energies(contact, scene), "velocity": _velocity(contact, scene)}
-    if history["friction_force"].any():
-        drawn |= {"force": _friction(contact, scene), "rolling": _rolling(contact, scene)}
-    else:
-        drawn["force"] = _force(contact, scene)
-    if snapshots:
-        half = is_half(scene)
-        drawn |= {name: _shapes(snapshots, half, *COLOURED[name]) for name in coloured(history)}
-        if len(snapshots) > 2 and not half and _goes_along(history, scene):
-            drawn["flight"] = _flight(history, scene, snapshots)
-    return drawn
 
 
 def save(figure: plt.Figure, path: Path) -> None:
@@ -194,43 +178,6 @@ def numbers_of_the_paper(scene: dict[str, Value], key: str, over: str = "") -> l
     return found
 
 
-def _energies(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
-    """Energies [J/m] over time, and below them the error of their balance, relative to the energy at the start.
-
-    Figure 6a: where friction takes energy or gravity gives it the total is not constant, the dashed balance is. Lines get thinner, so that
-    one on another is seen, and the total is a band.
-    """
-    t = 1e3 * history["t"]
-    total = mechanical_energy(history)
-    start = total[0] or total.max() or 1.0   # at rest: over the largest energy
-    figure, (top, bottom) = plt.subplots(2, sharex=True, figsize=(5.6, 4.6), height_ratios=[3, 1])
-    lines = {"kinetic": (history["kinetic"], BLUE), "elastic": (history["elastic"], ORANGE),
-             "contact": (history["contact"], GREEN)}
-    balance, words = total, "total"
-    for name, taken, colour in (("lost to friction", history["friction_work"], PURPLE),
-                                ("lost to viscosity", history.get("viscous_work", 0 * t), VISCOUS)):
-        if taken.any():
-            lines[name] = taken, colour
-            balance, words = balance + taken, words + (" + lost" if "lost" not in words else "")
-    if history["external_work"].any():
-        lines["work of gravity"] = history["external_work"], "#e69f00"
-        balance, words = balance - history["external_work"], words + " − work"
-    largest = max(np.abs(values).max() for values in (total, balance))
-    if words != "total":
-        top.plot(t, total, color=BAND, linewidth=4.5, label="total")
-    for k, (name, (values, colour)) in enumerate(lines.items()):
-        top.plot(t, values, color=colour, linewidth=2.6 - 0.4 * k, label=name + least(values, largest))
-    top.plot(t, balance, color=BLACK, linestyle="--", linewidth=1.0, label=words)
-    lowest = min(values.min() for values, _ in lines.values())
-    top.set(ylabel=f"energy [J{per_metre(scene)}]", ylim=(min(0, 1.05 * lowest) - 0.015 * largest, 1.05 * largest))
-    balance_error(bottom, history, start)
-    bottom.set(xlabel="time [ms]", ylabel="|balance| / E₀")
-    bottom.margins(y=0.15)
-    over_time([top, bottom], history, scene)
-    top.legend(**ABOVE, ncols=3)
-    return figure
-
-
 def balance_error(axes: plt.Axes, history: dict[str, np.ndarray], energy: float) -> None:
     """The error of the balance over time [ms], relative to `energy` [J/m]."""
     error = np.abs(history["balance"]) / energy
@@ -245,16 +192,7 @@ def least(values: np.ndarray, largest: float) -> str:
     return f" (up to {float(f'{most:.1g}'):g})" if 0 < most < 0.01 * largest else ""
 
 
-def _force(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
-    """Normal force [kN/m] over time."""
-    figure, axes = plt.subplots(figsize=(5.6, 3.4))
-    axes.plot(1e3 * history["t"], 1e-3 * history["normal_force"], color=BLUE)
-    axes.set(xlabel="time [ms]", ylabel=f"normal force [kN{per_metre(scene)}]", ylim=(0, None))
-    _end_of_contact([axes], history, scene)
-    return figure
-
-
-def _end_of_contact(panels: list[plt.Axes], history: dict[str, np.ndarray], scene: dict[str, Value]) -> None:
+def end_of_contact(panels: list[plt.Axes], history: dict[str, np.ndarray], scene: dict[str, Value]) -> None:
     """The time of panels over the same time, with the end of the contact and the paper's contact time named above the first."""
     over_time(panels, history, scene)
     published(panels[0], scene)
@@ -262,7 +200,7 @@ def _end_of_contact(panels: list[plt.Axes], history: dict[str, np.ndarray], scen
         panels[0].legend(**ABOVE, ncols=2)
 
 
-def _friction(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
+def friction_force(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
     """Figure 5: normal and friction force [kN/m] over time; beside them, enlarged, where stick and slip alternate most, if they do.
 
     The broken lines are the coefficients times the normal force: a body of which all points slide one way is on the dynamic one.
@@ -286,7 +224,7 @@ def _friction(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fi
     drag.plot(t, friction, color=ORANGE, linewidth=1.2)
     drag.set_ylabel(f"friction force [kN{per}]")
     drag.legend(**ABOVE, ncols=2)
-    _end_of_contact([force, drag], history, scene)
+    end_of_contact([force, drag], history, scene)
     if window:
         _enlarge(grid, history, window, per)
     return figure
@@ -334,21 +272,7 @@ def _liveliest(history: dict[str, np.ndarray]) -> tuple[int, int] | None:
     return (first, int(ends[first])) if lively[first] > 0.05 * force.max() and ends[first] > first else None
 
 
-def _velocity(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
-    """Velocity of the centre of mass [m/s] over time, a line a component."""
-    t = 1e3 * history["t"]
-    figure, axes = plt.subplots(figsize=(5.6, 3.4))
-    axes.axhline(0, color=GREY, linewidth=0.6)
-    moving = [name for name in ("vx", "vy", "vz") if name in history and history[name].any()]
-    for name, colour in zip(moving, (BLUE, ORANGE, GREEN)):
-        axes.plot(t, history[name], color=colour, label=f"along {name[1]}")
-    axes.set(xlabel="time [ms]", ylabel="velocity of the centre of mass [m/s]")
-    over_time([axes], history, scene)
-    axes.legend(**ABOVE, ncols=4)
-    return figure
-
-
-def _rolling(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
+def rolling(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
     """Velocity of the centre and of the rim [m/s], which are equal in rolling, and which share of the load sticks, slides on
     and slides back. A disc that is set down on the plane: the velocities of a rigid one beside them."""
     t = 1e3 * history["t"]
@@ -404,13 +328,13 @@ class Pose:
     diameter: np.ndarray
 
 
-def _goes_along(history: dict[str, np.ndarray], scene: dict[str, Value]) -> bool:
+def goes_along(history: dict[str, np.ndarray], scene: dict[str, Value]) -> bool:
     """Whether the body goes along the plane or turns, so that its way shows more than its shapes do."""
     along = max(np.abs(history["vx"]).max(), scene["radius"] * np.abs(history["spin"]).max())
     return along > 1e-3 * max(np.abs(history["vy"]).max(), along)
 
 
-def _flight(history: dict[str, np.ndarray], scene: dict[str, Value], series: list[tuple[float, Path]]) -> plt.Figure:
+def flight(history: dict[str, np.ndarray], scene: dict[str, Value], series: list[tuple[float, Path]]) -> plt.Figure:
     """Figure 4b: the body along its flight with a material diameter that shows how it turns, and the way of its centre.
 
     A run begins at the touch and ends soon after the contact: before and after it the motion is continued as that of a
@@ -493,10 +417,9 @@ def _fly(pose: Pose, wait: float, row: int, history: dict[str, np.ndarray], scen
     """The pose after another `wait` seconds (before, if negative) of rigid flight with the velocities of history's `row`."""
     velocity = np.array([history["vx"][row], history["vy"][row]])
     pull = np.array([scene.get("body_force_x", 0), scene.get("body_force_y", 0) - scene.get("gravity", 0)])
-    turned = history["spin"][row] * wait
-    rotation = np.array([[np.cos(turned), -np.sin(turned)], [np.sin(turned), np.cos(turned)]])
+    turn = rotation(history["spin"][row] * wait)
     place = pose.centre + velocity * wait + pull * wait**2 / 2
-    outline, diameter = ((points - pose.centre) @ rotation.T + place for points in (pose.outline, pose.diameter))
+    outline, diameter = ((points - pose.centre) @ turn.T + place for points in (pose.outline, pose.diameter))
     return Pose(pose.t + wait, place, outline, diameter)
 
 
@@ -509,14 +432,6 @@ def _draw_pose(axes: plt.Axes, pose: Pose, colour, line, label: str | None) -> N
 def coloured(history: dict[str, np.ndarray]) -> list[str]:
     """The pictures of shapes of a run: of the pressure where the elements of a body hold it."""
     return ["shapes", *["pressure"] * ("hydrostatic_pressure" in history)]
-
-
-def _shapes(series: list[tuple[float, Path]], half: bool, field: str, label: str) -> plt.Figure:
-    """The body at up to SHAPES instants above the plane y = 0, coloured by a field [MPa]."""
-    picked = instants(series)
-    found = [deformed(vtu.read(path), half, field) for _, path in picked]
-    view = limits(found)
-    return side_by_side(found, [t for t, _ in picked], view, min(3, len(found)), lambda axes, _, at: draw_ground(axes, view, at), label)
 
 
 def instants(series: list[tuple[float, Path]]) -> list[tuple[float, Path]]:
@@ -534,7 +449,9 @@ def side_by_side(found: list["Body"], times: list[float], view: tuple[float, flo
     figure, axes = plt.subplots(figsize=(7.5, rows * step[1] / inch + 0.4), subplot_kw=BARE)
     axes.set_axis_off()
     axes.set(xlim=(left, right + (columns - 1) * step[0]), ylim=(low - (rows - 1) * step[1], low + step[1]), aspect="equal")
-    ends = ends_of_stress(found)
+    # 0 or less and more: five in a thousand of all nodes are beyond each, so that one spot does not darken all the rest
+    low_stress, high_stress = np.quantile(np.concatenate([body.stress for body in found]), [0.005, 0.995])
+    ends = min(0.0, low_stress), high_stress or 1.0
     for k, (body, t) in enumerate(zip(found, times)):
         place = step * (k % columns, -(k // columns))
         behind(axes, t, place)
@@ -543,13 +460,6 @@ def side_by_side(found: list["Body"], times: list[float], view: tuple[float, flo
     scale_bar(axes, 0.25 / columns)
     figure.colorbar(picture, cax=axes.inset_axes((1.03, 0.15, 0.025, 0.7)), label=label, extend="both" if ends[0] < 0 else "max")
     return figure
-
-
-def ends_of_stress(bodies: list["Body"]) -> tuple[float, float]:
-    """The ends [MPa] of the colours, 0 or less and more: five in a thousand of all nodes are beyond each, so that one spot does not darken
-    all the rest."""
-    low, high = np.quantile(np.concatenate([body.stress for body in bodies]), [0.005, 0.995])
-    return min(0.0, low), high or 1.0
 
 
 def scale_bar(axes: plt.Axes, share: float = 0.25) -> None:
@@ -589,22 +499,6 @@ def deformed(snapshot: vtu.Snapshot, half: bool, field: str = "von_mises") -> Bo
         triangles = np.vstack([triangles, triangles + len(points)])
         points, stress = np.vstack([points, points * (-1, 1) + (2 * snapshot.points[:, 0].min(), 0)]), np.concatenate([stress, stress])
     return Body(points, triangles, stress)
-
-
-def limits(bodies: list[Body]) -> tuple[float, float, float, float]:
-    """Left, right, floor and top [m] of a picture that has room for all bodies and for the ground below y = 0."""
-    low, high = (np.array([end(body.points, axis=0) for body in bodies]) for end in (np.min, np.max))
-    left, right, top = low[:, 0].min(), high[:, 0].max(), 1.04 * high[:, 1].max()
-    margin = 0.03 * (right - left)
-    return left - margin, right + margin, min(low[:, 1].min(), 0) - 0.08 * top, top
-
-
-def draw_ground(axes: plt.Axes, view: tuple[float, float, float, float], place: np.ndarray = ORIGIN) -> None:
-    """The ground below y = 0 within the limits `view` [m], drawn at a place [m]."""
-    left, right, floor, _ = view
-    x, y = place
-    axes.fill_between([left + x, right + x], floor + y, y, color="#d0d0d0", linewidth=0)
-    axes.plot([left + x, right + x], [y, y], color=BLACK, linewidth=0.8)
 
 
 def draw_body(axes: plt.Axes, body: Body, ends: tuple[float, float], place: np.ndarray = ORIGIN) -> TriMesh:

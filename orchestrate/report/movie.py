@@ -24,7 +24,7 @@ from ..output.results import RunResult, suffixes
 from ..run import run
 from . import bodies, contact, solid
 from .drawing import title
-from .figures import BLACK, BLUE, GREY, ORANGE, STRESS, STYLE, Body, deformed, diameter, draw_body, draw_ground, is_half, limits, per_metre
+from .figures import BLACK, BLUE, GREY, ORANGE, STRESS, STYLE, Body, deformed, diameter, draw_body, is_half, per_metre
 
 SECONDS = 8.0     # of the film
 MOST = 400        # frames, 50 a second: players show a faster GIF slower
@@ -185,15 +185,11 @@ class PlaneStage(Stage):
 
     def __init__(self, result: RunResult, motion: Motion):
         self.motion, self.times, self.colours = motion, motion.times, plane_colours()
-        among = bodies.are_several(result.scene)
-        view = left, right, floor, top = (bodies.limits if among else limits)(motion.bodies)
+        view = left, right, floor, top = bodies.limits(motion.bodies)
         width = min(6.0, 4.8 * (right - left) / (top - floor))      # [inch]
         _, bar = self._lay_out(result, width, width * (top - floor) / (right - left))
-        self.view, self.rigid, self.drawn = view, bodies.obstacles_of(result.scene), []
-        if among:
-            self.drawn = bodies.draw_obstacles(self.above, self.rigid, view, motion.times[0])
-        else:
-            draw_ground(self.above, view)
+        self.view, self.rigid = view, bodies.obstacles_of(result.scene)
+        self.drawn = bodies.draw_obstacles(self.above, self.rigid, view, motion.times[0])
         self.above.set(xlim=(left, right), ylim=(floor, top), aspect="equal", xlabel="x [m]", ylabel="y [m]")
         self.largest = np.quantile([body.stress for body in motion.bodies], 0.999) or 1.0   # one spot does not darken all the rest
         self.picture = draw_body(self.above, motion.bodies[0], (0, self.largest))

@@ -12,7 +12,6 @@ import numpy as np
 from matplotlib.cm import ScalarMappable
 
 from ..output import vtu
-from ..scenes.obstacles import Obstacle
 from ..input.parameters import Value
 from ..places import shown
 from .bodies import obstacles_of
@@ -27,7 +26,6 @@ FINE = 4                   # parts of the side of a face
 PIXELS = (700, 620)        # of a view
 COLOURS = {"stress": "viridis", "pressure": "YlOrRd"}
 GROUND = "#d0d0d0"
-PLANE = Obstacle("plane", "plane", (0.0, 0.0, 0.0, 0.0, 1.0, 0.0), np.zeros(3))      # y = 0, of a scene of one body
 GRID = 60                  # points along each side of the box in which an obstacle's surface is looked for
 AXES = {"quarter": (0, 2), "half": (2,)}       # of a symmetric body: along which the computed part has a mirror image
 
@@ -48,30 +46,11 @@ def missing() -> str:
 
 # ---- the surface
 
-@dataclass(frozen=True)
-class Skin:
-    """A surface in triangles (t, 3) between its vertices; each vertex is `shape` (m, 6) of the nodes (m, 6) of a quadratic face."""
-
-    nodes: np.ndarray
-    shape: np.ndarray
-    triangles: np.ndarray
-
-    def at(self, field: np.ndarray) -> np.ndarray:
-        """The field (nodes, ...) at the vertices (m, ...)."""
-        return np.einsum("ma,ma...->m...", self.shape, field[self.nodes])
-
-
-def skin(points: np.ndarray, tetrahedra: np.ndarray) -> Skin:
-    """The faces that bound quadratic tetrahedra, each in FINE x FINE straight triangles; a vertex where faces meet is one."""
+def skin(tetrahedra: np.ndarray) -> vtu.Skin:
+    """The faces that bound quadratic tetrahedra."""
     faces = tetrahedra[:, vtu.FACES].reshape(-1, 6)
     _, first, count = np.unique(np.sort(faces[:, :3], axis=1), axis=0, return_index=True, return_counts=True)
-    faces = faces[first[count == 1]]
-    _, shape, pieces = vtu.lattice(FINE)
-    triangles = (pieces + len(shape) * np.arange(len(faces))[:, None, None]).reshape(-1, 3)
-    every = Skin(np.repeat(faces, len(shape), axis=0), np.tile(shape, (len(faces), 1)), triangles)
-    rounded = np.round(every.at(points) / (1e-7 * np.ptp(points, axis=0).max())).astype(np.int64)
-    _, kept, row = np.unique(rounded, axis=0, return_index=True, return_inverse=True)
-    return Skin(every.nodes[kept], every.shape[kept], row.reshape(-1)[triangles])
+    return vtu.split(faces[first[count == 1]].tobytes(), FINE)
 
 
 def mirrored(solid: vtu.Solid, axis: int) -> tuple[vtu.Solid, np.ndarray]:
@@ -165,9 +144,9 @@ class Views:
         axes = AXES.get(scene.get("symmetry"), ())
         solids = [whole(vtu.read_solid(path), axes) for _, path in series]
         points, tetrahedra = solids[0].points, solids[0].tetrahedra
-        self.cut, self.outside = skin(points, tetrahedra[~in_front(solids[0], axes)]), skin(points, tetrahedra)
+        self.cut, self.outside = skin(tetrahedra[~in_front(solids[0], axes)]), skin(tetrahedra)
         self.times = np.array([t for t, _ in series])
-        self.rigid = [PLANE] if scene.get("script") == "ball-plane" else obstacles_of(scene)
+        self.rigid = obstacles_of(scene)
         pressure = Pressure(table, axes, self.outside.at(points))
         self.sights = [self._sight(t, solid, pressure.at(t)) for t, solid in zip(self.times, solids)]
         self.stress = float(np.quantile([sight.stress for sight in self.sights], 0.999)) or 1.0    # one spot does not darken all the rest

@@ -4,7 +4,7 @@ import multiprocessing
 import shutil
 import signal
 from collections.abc import Mapping
-from contextlib import ExitStack, suppress
+from contextlib import AbstractContextManager, ExitStack, suppress
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +22,7 @@ from .told import Told
 FAILURES = {10: "bad input", 11: "step failed", 12: "material broke down", 13: "not installed", 14: "unreadable"}
 
 
-class Solver:
+class Solver(AbstractContextManager):
     """Runs the scene with some values in a folder, one run after the other, but the coarser one beside the main one where `pair` says that
     it will be wanted and a core is free: a study has a run on every core already."""
 
@@ -35,9 +35,6 @@ class Solver:
         self.number = 0
         self.beside: tuple[Path, dict[str, Value], freefem.Process, str] | None = None
         self.leaving = ExitStack()
-
-    def __enter__(self) -> "Solver":
-        return self
 
     def __exit__(self, *_) -> None:
         """Ends a run beside; of a main one that is lost nothing else is of use."""

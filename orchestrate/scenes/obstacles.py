@@ -10,7 +10,7 @@ from .bodies import checked_name
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
 from ..failure import BadInput, brief
 from ..mesh.revolution import mirrored, on_axis
-from ..input.tables import LONGEST, SHORTEST, Table
+from ..input.tables import LONGEST, SHORTEST, Table, placeholder
 
 KINDS = {
     PLANE_STRAIN: {"plane": ("point", "normal"), "circle": ("centre", "radius"), "bowl": ("centre", "radius"),
@@ -108,7 +108,7 @@ def _velocity(table: Table, dimension: Dimension) -> np.ndarray:
 def _plane(table: Table, dimension: Dimension) -> tuple[float, ...]:
     point, normal = (table.numbers(key, -LONGEST, LONGEST, count=dimension.axes) for key in ("point", "normal"))
     if not normal.any():
-        raise BadInput(f"{table.path}.normal: '{brief(table.given['normal'])}' has no direction (accepted: {dimension.placeholder} "
+        raise BadInput(f"{table.path}.normal: '{brief(table.given['normal'])}' has no direction (accepted: {placeholder(dimension.axes)} "
                        f"other than 0)")
     if dimension is AXISYMMETRIC and normal[0] != 0:
         raise BadInput(f"{table.path}.normal: '{brief(table.given['normal'])}' is not along the axis of revolution (accepted: [0, 1] or "

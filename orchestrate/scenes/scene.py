@@ -86,8 +86,8 @@ class Scene:
         """What decides the answer beside the script: two scenes that agree in it are one run."""
         files = [str(given["file"]) for given in self.given.get("body", []) if "file" in given]
         meshes = {name: hashlib.sha256((self.folder / name).read_bytes()).hexdigest() for name in files}
-        return parameters.decisive({name: value for name, value in self.given.items() if name not in ("title", "script")}) | {
-            "files": meshes}
+        harmless = ("title", "script", *parameters.NOT_DECISIVE)
+        return {name: value for name, value in self.given.items() if name not in harmless} | {"files": meshes}
 
     @property
     def numbers(self) -> list[str]:

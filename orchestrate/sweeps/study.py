@@ -84,39 +84,37 @@ def side_by_side(acts: dict[Key, Callable], cores: int, name: str, before: int =
     """
     context = multiprocessing.get_context("fork")
     waiting, running, done = deque(acts), {}, before
-    line = Line(name, dict.fromkeys(acts, 1.0), words=f"{done} of {before + len(acts)} done")
     try:
-        while waiting or running:
-            while waiting and len(running) < cores:
-                key = waiting.popleft()
-                receiver, sender = context.Pipe(duplex=False)
-                process = context.Process(target=_work, args=(sender, os.getpid(), acts[key]))
-                signal.pthread_sigmask(signal.SIG_BLOCK, STOPS)      # a handler inside the fork would be lost
-                process.start()
-                signal.pthread_sigmask(signal.SIG_UNBLOCK, STOPS)
-                sender.close()
-                running[receiver] = key, process
-            for receiver in wait(running):
-                key, process = running[receiver]
-                try:
-                    ended, outcome = receiver.recv()
-                except EOFError:
-                    process.join()
-                    ended, outcome = True, Failure(f"its process ended with exit code {process.exitcode}")
-                said = f"{done} of {before + len(acts)} done"
-                if not ended:         # how far it is
-                    line.at(key, outcome, said)
-                    continue
-                del running[receiver]
-                if outcome is None:   # another study is at it: see later what came of it
-                    waiting.append(key)
-                    time.sleep(0.3)
-                else:
-                    done += 1
-                    line.at(key, 1.0, f"{done} of {before + len(acts)} done")
-                    yield key, outcome
+        with Line(name, dict.fromkeys(acts, 1.0), words=f"{done} of {before + len(acts)} done") as line:
+            while waiting or running:
+                while waiting and len(running) < cores:
+                    key = waiting.popleft()
+                    receiver, sender = context.Pipe(duplex=False)
+                    process = context.Process(target=_work, args=(sender, os.getpid(), acts[key]))
+                    signal.pthread_sigmask(signal.SIG_BLOCK, STOPS)      # a handler inside the fork would be lost
+                    process.start()
+                    signal.pthread_sigmask(signal.SIG_UNBLOCK, STOPS)
+                    sender.close()
+                    running[receiver] = key, process
+                for receiver in wait(running):
+                    key, process = running[receiver]
+                    try:
+                        ended, outcome = receiver.recv()
+                    except EOFError:
+                        process.join()
+                        ended, outcome = True, Failure(f"its process ended with exit code {process.exitcode}")
+                    if not ended:         # how far it is
+                        line.at(key, outcome, f"{done} of {before + len(acts)} done")
+                        continue
+                    del running[receiver]
+                    if outcome is None:   # another study is at it: see later what came of it
+                        waiting.append(key)
+                        time.sleep(0.3)
+                    else:
+                        done += 1
+                        line.at(key, 1.0, f"{done} of {before + len(acts)} done")
+                        yield key, outcome
     finally:
-        line.close()
         for _, process in running.values():
             process.terminate()
         for _, process in running.values():
@@ -175,7 +173,7 @@ def _outcome(folder: Path, wanted: scene.Scene, estimate: bool) -> dict | None:
         record = read_json(failure.folder / "failure.json") if failure.folder else {}
         return _row(failure.code, str(failure), False, record)
     except OSError as error:                             # a full disk
-        return _row(Unreadable("").code, f"{error.filename or folder}: {error.strerror}", False, {})
+        return _row(Unreadable.code, f"{error.filename or folder}: {error.strerror}", False, {})
 
 
 def _row(code: int, message: str, reused: bool, summary: dict) -> dict:

@@ -128,14 +128,19 @@ def findings(sweep, rows: pd.DataFrame, out: Path) -> list[str]:
 
 def label(name: str, per: str = "/m") -> str:
     """The words and the unit of a parameter or a number of the summary, for an axis; per: "/m" in plane strain, "" of a ball."""
-    parameter, words = _parameter(name), WORDS.get(name, name.replace("_", " "))
-    unit = _unit(name, per).strip() or (parameter.unit if parameter and not _quantity(name) else "")
-    return words if unit in ("-", "", "of the start") else f"{words} [{unit}]"
+    parameter, unit = _parameter(name), _quantity(name, per).unit
+    unit = unit or (parameter.unit if parameter else "")
+    return _words(name) if unit in ("-", "", "of the start") else f"{_words(name)} [{unit}]"
 
 
-def _quantity(name: str, per: str = "/m") -> report.Quantity | None:
-    """The row of the report, also of one of several bodies."""
-    return {quantity.key: quantity for quantity in report.rows(per_metre=bool(per))}.get(re.sub("_[0-9]+$", "", name))
+def _words(name: str) -> str:
+    return WORDS.get(name, name.replace("_", " "))
+
+
+def _quantity(name: str, per: str = "/m") -> report.Quantity:
+    """The row of the report, also of one of several bodies; of what is in none one without a unit."""
+    key = re.sub("_[0-9]+$", "", name)
+    return next((quantity for quantity in report.rows(per_metre=bool(per)) if quantity.key == key), report.Quantity(key, key))
 
 
 def _parameter(name: str) -> parameters.Parameter | None:
@@ -143,16 +148,9 @@ def _parameter(name: str) -> parameters.Parameter | None:
     return parameters.table().get(name.rpartition(".")[2])
 
 
-def _factor(name: str) -> float:
-    """From SI to the unit that `_unit` gives."""
-    quantity = _quantity(name)
-    return quantity.factor if quantity else 1.0
-
-
-def _unit(name: str, per: str = "/m") -> str:
+def _unit(name: str, per: str) -> str:
     """The unit of a number of the summary, with a space in front."""
-    quantity = _quantity(name, per)
-    return f" {quantity.unit}" if quantity and quantity.unit else ""
+    return f" {_quantity(name, per).unit}".rstrip()
 
 
 def _value(name: str, value) -> str:
@@ -160,9 +158,9 @@ def _value(name: str, value) -> str:
     if isinstance(value, str) and value != "auto":
         return LAWS.get(value, value)
     if value == "auto":
-        return f"{WORDS.get(name, name.replace('_', ' '))} auto"
+        return f"{_words(name)} auto"
     unit = parameter.unit if (parameter := _parameter(name)) else "-"
-    return f"{WORDS.get(name, name.replace('_', ' '))} = {value:g}" + f" {unit}" * (unit != "-")
+    return f"{_words(name)} = {value:g}" + f" {unit}" * (unit != "-")
 
 
 def _groups(sweep, rows: pd.DataFrame, key: str) -> Iterator[tuple[str, pd.DataFrame]]:
@@ -185,8 +183,8 @@ def _lines(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
                 marker) in enumerate(zip(_groups(sweep, rows, "by"), itertools.cycle(COLOURS), itertools.cycle(MARKERS))):
             group = group.sort_values(x)
             there = group.exit == 0
-            errors = _factor(y) * bars(group[there], y)
-            axes.errorbar(group[x][there], _factor(y) * group[y][there], None if np.isnan(errors).all() else errors, color=colour,
+            errors = _quantity(y).factor * bars(group[there], y)
+            axes.errorbar(group[x][there], _quantity(y).factor * group[y][there], None if np.isnan(errors).all() else errors, color=colour,
                           marker=marker, markersize=3, linewidth=1.1, elinewidth=0.9, capsize=1.5, label=words or None)
             if not there.all():
                 why = "broke down (det F ≤ 0), no value" if (group.exit[~there] == 12).all() else "failed, no value"
@@ -215,11 +213,11 @@ def _published(axes: plt.Axes, sweep, x: str, y: str) -> None:
     """The numbers of the paper for y, whose contact time is that while the force is not zero: a star at its x, or a line over all x where
     it states none."""
     for at, value, words in numbers_of_the_paper(sweep.sample.given, y.removeprefix("thresholded_"), over=x):
-        words = f"{words}: {_factor(y) * value:.3g}{_unit(y, sweep.figure['per'])}"
+        words = f"{words}: {_quantity(y).factor * value:.3g}{_unit(y, sweep.figure['per'])}"
         if at is None:
-            axes.axhline(_factor(y) * value, color=BLACK, linestyle="-.", linewidth=0.9, label=words)
+            axes.axhline(_quantity(y).factor * value, color=BLACK, linestyle="-.", linewidth=0.9, label=words)
         else:
-            axes.plot(at, _factor(y) * value, color=BLACK, marker="*", linestyle="", markersize=8, zorder=10, label=words)
+            axes.plot(at, _quantity(y).factor * value, color=BLACK, marker="*", linestyle="", markersize=8, zorder=10, label=words)
 
 
 def _is_logarithmic(values: pd.Series) -> bool:
@@ -280,7 +278,7 @@ def steps_against(group: pd.DataFrame, x: str, y: str) -> Trend | None:
 def trend(group: pd.DataFrame, x: str, y: str, words: str, per: str = "/m") -> str:
     """The same in words."""
     name = f"{words}: " * bool(words) + f"{y.replace('_', ' ')} over {x.replace('_', ' ')}"
-    found, factor, unit = steps_against(group, x, y), _factor(y), _unit(y, per)
+    found, factor, unit = steps_against(group, x, y), _quantity(y).factor, _unit(y, per)
     if not found:
         return f"{name}: too few points for a trend"
     size = abs(group[group.exit == 0][y]).mean()
@@ -303,11 +301,11 @@ def _map(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
     widths = [max(2.5, group[x].nunique()) for _, group in parts[0][1]]        # a panel has the values of x that its runs have
     figure, grid = plt.subplots(len(parts), len(widths), figsize=(1.2 + 3.4 * sum(widths) / max(widths), 0.8 + 2.8 * len(parts)),
                                 sharex="col", sharey=True, squeeze=False, width_ratios=widths, layout="constrained")
-    values = _factor(colour) * rows[colour]
+    values = _quantity(colour).factor * rows[colour]
     low, high = values.min(), values.max()
     for axes, (words, group) in zip(grid.flat, [(", ".join(filter(None, (panel, words))), group) for panel, groups in parts
                                                 for words, group in groups]):
-        table = group.pivot(index=y, columns=x, values=colour) * _factor(colour)
+        table = group.pivot(index=y, columns=x, values=colour) * _quantity(colour).factor
         cells = np.where(group.pivot(index=y, columns=x, values="exit") == 0, table, np.nan)   # evenly spaced, whatever the values
         picture = axes.imshow(cells, origin="lower", aspect="auto", cmap="viridis", vmin=low, vmax=high)
         for (row, column), value in np.ndenumerate(cells):
@@ -316,7 +314,7 @@ def _map(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
                       color="black" if np.isnan(value) or share > 0.5 else "white", zorder=5,       # above the lines of the level
                       bbox=dict(facecolor="white" if np.isnan(value) else plt.get_cmap("viridis")(share), edgecolor="none", pad=1.2))
         if wanted["level"] is not None:
-            level, band = (_factor(colour) * wanted[key] for key in ("level", "band"))
+            level, band = (_quantity(colour).factor * wanted[key] for key in ("level", "band"))
             alone = cells.shape[1] == 1                                          # its level runs across all of the column
             across = [-0.5, 0.5] if alone else np.arange(cells.shape[1])
             drawn = across, np.arange(len(cells)), cells.repeat(2, axis=1) if alone else cells
@@ -372,10 +370,9 @@ def _set(figure: dict, words: str, group: pd.DataFrame) -> list[str]:
     if figure["level"] is None:
         return []
     x, y, colour = (figure[key] for key in ("x", "y", "colour"))
-    unit = _unit(colour, figure.get("per", "/m"))
-    lines = [f"{words}: " * bool(words) + f"{colour.replace('_', ' ')} = {_factor(colour) * figure['level']:g} ± "
-             f"{_factor(colour) * figure['band']:g}{unit} is met, within an error bar of {_factor(colour) * _typical(group, colour):.2g}"
-             f"{unit}, for"]
+    unit, factor = _unit(colour, figure.get("per", "/m")), _quantity(colour).factor
+    lines = [f"{words}: " * bool(words) + f"{colour.replace('_', ' ')} = {factor * figure['level']:g} ± {factor * figure['band']:g}{unit} "
+             f"is met, within an error bar of {factor * _typical(group, colour):.2g}{unit}, for"]
     for value, met in level_set(figure, group).items():
         lines.append(f"  {_value(x, value)}: " + (f"{label(y)} " + spans(met) if met else f"no {label(y)}"))
     return lines
