@@ -105,14 +105,13 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
         summary, used = answers.summary, answers.used
         refinements += 1
         sentences = []
-    excludes = [*REGULARISED, *([] if own_mesh else ["mesh"])]
     if estimated and not own_mesh:
         sentences.append("estimated errors are those of the step: what the mesh of the file is good for they do not say: run a finer one "
                          "beside it")
     for folder in (coarser, finer):
         shutil.rmtree(folder, ignore_errors=True)
-    return {"estimated_error": estimated, "estimated_error_excludes": excludes, "estimate_cpu_seconds": seconds, "refinements": refinements,
-            "warnings": sentences}
+    return {"estimated_error": estimated, "estimated_error_excludes": [*REGULARISED, *([] if own_mesh else ["mesh"])],
+            "estimate_cpu_seconds": seconds, "refinements": refinements, "warnings": sentences}
 
 
 def _ended(solve: Solve, values: dict[str, Value], where: Path) -> Failure | None:
