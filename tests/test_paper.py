@@ -421,7 +421,7 @@ def test_text_of_all_pictures_has_one_size(tmp_path):
 def test_pictures_say_what_they_show():
     """Of a run its scene's title, of a sweep its title; no picture of the page is left with its file's name."""
     results = paper_judging.Results(ROOT / "results")
-    pictures = [*(results.picture(name, kind) for name, kinds in paper.RUNS.items() for kind in kinds), *(results.drawn(name)[0] for name in sweep.built_in()),
+    pictures = [*(results.drawn(f"{name}/{kind}")[0] for name, kinds in paper.RUNS.items() for kind in kinds), *(results.drawn(name)[0] for name in sweep.built_in()),
                 results.folder / "stick-slip/stick-slip.png", results.folder / "friction-laws/friction-laws.png", results.folder / paper_bodies.ACCELERATIONS]
     assert not [path for path in pictures if len(paper_page.caption(path)) < 30]
 

@@ -77,7 +77,6 @@ def nearest(points: np.ndarray, others: np.ndarray, chunk: int = 500, most: int 
 
 @cache
 def gmsh_version() -> str:
-    """The version of the gmsh package."""
     return metadata.version("gmsh")
 
 

@@ -39,46 +39,36 @@ class Finding:
 
 
 class Results:
-    """The finished cases in a folder of results."""
+    """The finished cases in a folder of results, by the names of runs and sweeps; histories, summaries and modes of the runs of pair()."""
 
     def __init__(self, folder: Path):
         self.folder = folder
 
     def run(self, name: str) -> Path:
-        """The folder of a run."""
         return self.folder / name
 
-    def picture(self, name: str, kind: str) -> Path:
-        """A picture of a run."""
-        return self.run(name) / f"figures/{kind}.png"
-
     def summary(self, name: str) -> dict:
-        """The summary of a run."""
         return read_summary(self.run(name))
 
     def history(self, name: str) -> History:
-        """The history of a run."""
         return read_history(self.run(name))
 
     def scene(self, name: str) -> dict:
-        """The parameters of a run."""
         return read_scene(self.run(name))
 
     def sweep(self, name: str) -> Path:
-        """The folder of a sweep."""
         return self.folder / "sweeps" / name
 
     def drawn(self, *names: str) -> list[Path]:
         """The pictures of sweeps, of runs ("run/kind"), and those that have a place of their own (with .png)."""
         return [self.folder / name if name.endswith(".png") else self.sweep(name) / "sweep.png" if name in sweep.built_in()
-                else self.picture(*name.split("/")) for name in names]
+                else self.folder / f"{name.replace('/', '/figures/')}.png" for name in names]
 
     def table(self, name: str) -> pd.DataFrame:
         """The points of a sweep, from its runs."""
         return sweep.table(loaded(name), self.sweep(name))
 
     def sweep_runs(self, name: str) -> list[Path]:
-        """The folders of the runs of a sweep."""
         return [study.place(self.sweep(name), point) for point in loaded(name).runs]
 
     def folders(self, *names: str) -> list[Path]:
@@ -92,15 +82,12 @@ class Results:
         return [study.place(self.sweep(name), point | more) for more in ([{}, wanted.refine] if wanted.refine else [{}])]
 
     def histories(self, name: str, **values) -> list[History]:
-        """The histories of `pair`."""
         return [read_history(folder) for folder in self.pair(name, **values)]
 
     def summaries(self, name: str, **values) -> list[dict]:
-        """The summaries of `pair`."""
         return [read_summary(folder) for folder in self.pair(name, **values)]
 
     def modes(self, name: str, **values) -> list[np.recarray]:
-        """The natural modes of `pair`."""
         return [vibration.read(folder) for folder in self.pair(name, **values)]
 
     def friction_laws(self) -> pd.DataFrame:
@@ -114,7 +101,6 @@ class Results:
 
 @cache
 def loaded(name: str) -> sweep.Sweep:
-    """A built-in sweep."""
     return sweep.load(name)
 
 

@@ -67,7 +67,7 @@ def _needed(results: judging.Results) -> Iterator[tuple[str, list[Path], Callabl
     """(target, files that it leaves, whether what else it leaves is there) of all that the statements read."""
     for name, pictures in RUNS.items():
         runs = [(results.run(name), scene.load(name))]
-        yield TARGETS.get(name, name), [results.picture(name, picture) for picture in pictures], partial(_hold, runs)
+        yield TARGETS.get(name, name), results.drawn(*(f"{name}/{picture}" for picture in pictures)), partial(_hold, runs)
     yield "ball-comparison", results.drawn(bodies.ACCELERATIONS, bodies.LIKE_FOR_LIKE), lambda: True
     for name in sweep.built_in():
         wanted = judging.loaded(name)

@@ -236,7 +236,6 @@ class SolidStage(Stage):
 
 
 def of(result: RunResult) -> Stage:
-    """The stage for a run."""
     series = vtu.series(result.folder / "fields.pvd")
     if series and vtu.read_solid(series[0][1]) and (result.folder / "fields/contact.csv").exists() and not solid.missing():
         return SolidStage(result, solid.Views(series, contact.read(result.folder), result.scene))

@@ -248,7 +248,6 @@ class Trend:
 
     @property
     def falls(self) -> bool:
-        """Whether y falls with x."""
         return self.last < self.first
 
 
