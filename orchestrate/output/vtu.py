@@ -1,6 +1,7 @@
 """Reads the field snapshots of a run: ASCII .vtu files of triangles or tetrahedra, and the .pvd list of their times."""
 
 import xml.etree.ElementTree as xml
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -167,6 +168,13 @@ def series(pvd: Path) -> list[tuple[float, Path]]:
     with reading(pvd):
         sets = xml.fromstring(text).iterfind("Collection/DataSet")
         return sorted((float(each.get("timestep")), pvd.parent / each.get("file")) for each in sets)
+
+
+def between(times: np.ndarray, values: Sequence[np.ndarray], t: float) -> np.ndarray:
+    """What is at t, of values at times: linear between them, beyond the ends the first and the last."""
+    place = np.interp(t, times, np.arange(len(times)))
+    low, share = int(place), place % 1
+    return (1 - share) * values[low] + share * values[min(low + 1, len(values) - 1)]
 
 
 def _array(element: xml.Element) -> np.ndarray:

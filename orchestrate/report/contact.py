@@ -214,17 +214,15 @@ def _profiles(axes: plt.Axes, own: np.recarray, words: str, line: str) -> None:
 def _over_radius(axes: plt.Axes, table: np.recarray, ball: dict[str, Value]) -> None:
     """Pressure [MPa] at the points over their present distance [mm] from the axis, at up to INSTANTS times; in a slow impact Hertz' of the
     same force."""
-    slow = ball["speed"] <= SLOW * np.sqrt(ball["young"] / ball["density"])
-    for t, now, colour in _instants(table):
-        away = np.hypot(now.x, now.z) if "z" in now.dtype.names else now.x
-        axes.plot(1e3 * away, 1e-6 * now.pressure, color=colour, linestyle="", marker=".", markersize=3.5, label=f"{1e3 * t:.3g} ms")
-        if slow:
+    away = np.hypot(table.x, table.z) if "z" in table.dtype.names else table.x
+    _profiles(axes, _columns(t=table.t, s=away, pressure=table.pressure), "distance from the axis", "")
+    if ball["speed"] <= SLOW * np.sqrt(ball["young"] / ball["density"]):
+        for _, now, colour in _instants(table):
             r, pressure = hertz((now.pressure * now.weight).sum(), ball)
             axes.plot(1e3 * r, 1e-6 * pressure, color=colour, linewidth=0.9)
-    if slow:
         axes.plot([], [], color=BLACK, linewidth=0.9, label="Hertz, same force")
-    axes.set(xlabel="distance from the axis [mm]", ylabel=PRESSURE, xlim=(0, None), ylim=(0, None))
-    axes.legend(**ABOVE)
+        axes.legend(**ABOVE)
+    axes.set_xlim(0, None)
 
 
 def hertz(force: float, ball: dict[str, Value]) -> tuple[np.ndarray, np.ndarray]:

@@ -117,14 +117,9 @@ class Motion:
 
     def at(self, t: float) -> tuple[Body, np.ndarray | None]:
         """The body and its diameter (m, 2) at time t [s]."""
-        place = np.interp(t, self.times, np.arange(len(self.times)))
-        low, high, share = int(np.floor(place)), int(np.ceil(place)), place % 1
-        before, after = self.bodies[low], self.bodies[high]
-        body = Body((1 - share) * before.points + share * after.points, before.triangles, (1 - share) * before.stress
-                    + share * after.stress)
-        if self.diameters is None:
-            return body, None
-        return body, (1 - share) * self.diameters[low] + share * self.diameters[high]
+        points, stress = (vtu.between(self.times, [getattr(body, name) for body in self.bodies], t) for name in ("points", "stress"))
+        line = None if self.diameters is None else vtu.between(self.times, self.diameters, t)
+        return Body(points, self.bodies[0].triangles, stress), line
 
 
 class Stage:

@@ -131,10 +131,6 @@ class Sight:
     outside: np.ndarray
     pressure: np.ndarray
 
-    def between(self, other: "Sight", share: float) -> "Sight":
-        """A share of the way to another instant."""
-        return Sight(*((1 - share) * getattr(self, name) + share * getattr(other, name) for name in self.__dataclass_fields__))
-
 
 class Views:
     """The snapshots `series` of a body in three dimensions, rendered. `times` [s]; `stress`, `pressure`: the largest that is drawn [MPa];
@@ -162,8 +158,7 @@ class Views:
 
     def at(self, t: float) -> Sight:
         """What is seen at the time t [s], between two snapshots linear in time."""
-        place = np.interp(t, self.times, np.arange(len(self.times)))
-        return self.sights[int(np.floor(place))].between(self.sights[int(np.ceil(place))], place % 1)
+        return Sight(*(vtu.between(self.times, [getattr(sight, name) for sight in self.sights], t) for name in Sight.__dataclass_fields__))
 
     def render(self, sight: Sight) -> tuple[np.ndarray, np.ndarray]:
         """Both views as images (height, width, 3): the cut body from the front, all of it from below, through the obstacles."""
