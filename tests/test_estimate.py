@@ -139,6 +139,8 @@ def test_what_does_not_show_is_stated():
         assert none < half < whole and whole > 2 * none, name
     none = dict.fromkeys(way, 0.0)
     assert estimate.errors(none, none, 1e-2, 1.0) == none
+    smooth = way | {"friction_work": 0.0}       # spin without friction is the mesh's: steps say nothing of it but through the other answers
+    assert estimate.errors(small, smooth, 1e-2, 1.0)["rebound_spin"] < 0.3 * stated[2]["rebound_spin"]
 
 
 def test_friction_work_of_itself_is_stated_as_friction_work_is():

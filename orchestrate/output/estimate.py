@@ -226,12 +226,13 @@ def alike(fine: Answers, coarse: Answers) -> float:
     return float(np.clip(COARSER**2 - q**2, 0, 1))
 
 
-def errors(apart: Mapping[str, float], way: Mapping[str, float], steps: float, hidden: float = 0.0) -> dict[str, float]:
+def errors(apart: Mapping[str, float], way: dict[str, float], steps: float, hidden: float = 0.0) -> dict[str, float]:
     """The error that is stated of every answer, from the differences of a pair at the end and on its way (course()), in the same units,
     from resolved(), and from alike()."""
     shares = [apart[name] / USUAL[name] for name in PROMISED if apart[name] > NONE]
     measures = {"D": sum(shares) / len(shares) + ALIKE["D"] * hidden * steps if shares else 0.0, "A": steps}
-    seen = {name: way[name] + (ALIKE[COURSE.get(name, name)] * hidden * steps if way[name] > NONE else 0.0) for name in BOUND}
+    moved = [name for name in BOUND if way[name] > NONE and (name != "rebound_spin" or way["friction_work"] > NONE)]   # spin by friction
+    seen = way | {name: way[name] + ALIKE[COURSE.get(name, name)] * hidden * steps for name in moved}
 
     def mean(name: str) -> float:
         return math.prod((measures | {"d": seen[name]})[each] for each in MEASURES.get(name, "DdA")) ** (1 / ROOT.get(name, 3))
