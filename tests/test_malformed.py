@@ -235,7 +235,7 @@ FLAGS = {   # what FreeFem++ gets, what the line names
     ("speed=8",): "'speed=8'", ("8",): "'8'", ("-",): "'-'", ("",): "''", ("--", "-speed", "8"): "'8'", ("-speed", "8", "9"): "'9'", ("-8",): "'-8'", ("=",): "'='",
     ("-speed",): "speed: a value is missing", ("-law",): "law: a value is missing", ("-speed", ""): "speed: the value is empty", ("-out", ""): "out: the value is empty",
     ("-speed", "8", "-speed", "8"): "speed: given twice", ("-out", "a", "-out", "b"): "out: given twice", ("-speed", "-nu", "0.4"): "'0.4'",
-    ("-out", "-speed"): "out: a value is missing", ("--speed", "8"): "--speed: no such", ("-Speed", "8"): "-Speed: no such", ("-speed=8",): "speed=8: a value is missing",
+    ("-out", "-speed"): "out: a value is missing", ("--speed", "8"): "--speed: no such", ("-Speed", "8"): "-Speed: no such", ("-speed=8",): "'-speed=8'", ("-speed=8", "-nu", "0.4"): "'-speed=8'",
     ("-", "speed", "8"): "'-'", ("-speed", "8", "\n"): "' '", ("'; touch pwned; '",): "touch pwned", ("-$(touch pwned)", "8"): "touch pwned",
     ("-speed", "8", "-\x07", "8"): "no such"}
 
