@@ -9,7 +9,7 @@ from math import pi, sqrt
 
 import numpy as np
 
-STEPS = 2000                  # of the trapezoidal rule, which is exact to round-off for these arguments
+STEPS = 100                   # of the trapezoidal rule, which is exact to round-off for these arguments
 
 
 def bessel(n: int, x: np.ndarray) -> np.ndarray:
