@@ -23,15 +23,6 @@ def test_homogeneous_strain_is_exact(measure, tmp_path, law, degree):
 
 
 @pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize("degree", [1, 2])
-def test_tangent_is_the_derivative_of_the_residual(measure, law, degree):
-    """On curved elements at large strain, hoops included, and it is the matrix that is factorised."""
-    found = measure("tangent-ball", law=law, degree=degree, integrator="newmark", accuracy=0.1)
-    assert found["state"] == 0 and found["strain"] > 1
-    assert found["tangent"] < 1e-6 and found["solve"] < 1e-10 and found["stray"] < 1e-12
-
-
-@pytest.mark.parametrize("law", LAWS)
 def test_order_in_space(law):
     """The L2 error of a motion with sines falls with h^3 up to the axis, and is no more than a twentieth above that on the disc."""
     coarse, fine = (manufactured.disc(law, h, "axisymmetric") for h in (0.25, 0.125))

@@ -23,20 +23,18 @@ def test_residual_is_the_one_of_the_equations(measure, law, integrator, exponent
 
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("degree", [1, 2])
-@pytest.mark.parametrize("integrator", ["newmark", "midpoint"])
-@pytest.mark.parametrize("body", ["block", "disc"])
+@pytest.mark.parametrize("body, integrator", [("block", "newmark"), ("block", "midpoint"), ("disc", "newmark"), ("disc", "midpoint"), ("ball", "newmark"), ("3d", "midpoint")])
 def test_tangent_is_the_derivative_of_the_residual(measure, body, law, degree, integrator):
-    """Moduli and mass give the derivative of the residual at large strain, on straight and curved elements."""
-    found = measure(f"tangent-{body}", law=law, degree=degree, integrator=integrator, accuracy=0.1)
-    assert found["state"] == 0 and found["smallest"] < 0.6
+    """Moduli and mass give the derivative of the residual at large strain, on straight and curved elements in the plane, of revolution, hoops included, and in space; its
+    symmetric factorisation solves the system, and constrained unknowns stay where they are."""
+    sizes = dict(nu=0.3, mesh_size=0.025, contact_mesh_size=0.015) if body == "3d" else dict(accuracy=0.1)
+    found = measure(f"tangent-{body}", law=law, degree=degree, integrator=integrator, **sizes)
+    assert found["state"] == 0 and (found["strain"] > {"ball": 1, "3d": 0.5}[body] if body in ("ball", "3d") else found["smallest"] < 0.6)
     assert found["tangent"] < 1e-6
-
-
-@pytest.mark.parametrize("law", LAWS)
-def test_factorised_matrix_solves_and_holds_the_constraints(measure, law):
-    """The symmetric factorisation solves the tangent system; constrained unknowns stay where they are."""
-    found = measure("tangent-disc", law=law, degree=2, integrator="newmark", accuracy=0.1)
-    assert found["solve"] < 1e-11 and found["stray"] < 1e-15
+    if body in ("disc", "ball"):
+        assert found["solve"] < {"disc": 1e-11, "ball": 1e-10}[body] and found["stray"] < {"disc": 1e-15, "ball": 1e-12}[body]
+    if body == "3d":
+        assert found["area"] == pytest.approx(4 / 3 * math.pi * 0.05**3, rel=3e-3 if degree == 2 else 0.15)
 
 
 def test_curved_outline_has_the_area_of_the_disc(measure):
@@ -71,9 +69,9 @@ def test_friction_force_is_the_one_of_the_equations(measure, integrator, transit
 @pytest.mark.parametrize("transition", TRANSITIONS)
 @pytest.mark.parametrize("coefficients", [(0.7, 0.5), (0.9, 0.2), (0.4, 0.4)])
 def test_friction_derivatives(measure, coefficients, transition, regularization):
-    """t_T is the printed law on the side of the jump that the velocity is on; stiffness, drag and coupling are the
-    derivatives of t_N and t_T on either side, for three exponents, wherever in the step the law is evaluated."""
-    found = measure("friction-law", friction_static=coefficients[0], friction_dynamic=coefficients[1])
+    """t_T is the printed law on the side of the jump that the velocity is on; stiffness, drag and coupling are the derivatives of t_N and t_T on
+    either side, for three exponents, wherever in the step the law is evaluated; by the scripts, against which the compiled law is held."""
+    found = measure("friction-law", without="kernels", friction_static=coefficients[0], friction_dynamic=coefficients[1])
     kind = f"{regularization.removeprefix('linear-')}_{transition}"
     assert found[f"law_{kind}"] < 1e-13 and found[f"normal_{kind}"] == 0
     assert found[f"stiff_{kind}"] < 1e-6 and found[f"drag_{kind}"] < 1e-6 and found[f"coupling_{kind}"] < 1e-6
