@@ -18,9 +18,6 @@ void ssymv_(const char *, const int *, const float *, const float *, const int *
     const int *);
 void dsymv_(const char *, const int *, const double *, const double *, const int *, const double *, const int *, const double *,
     double *, const int *);
-void dgemm_(const char *, const char *, const int *, const int *, const int *, const double *, const double *, const int *,
-    const double *, const int *,
-            const double *, double *, const int *);
 void dgetrf_(const int *, const int *, double *, const int *, int *, int *);
 void dgetrs_(const char *, const int *, const int *, const double *, const int *, const int *, double *, const int *, int *);
 void dpotrf_(const char *, const int *, double *, const int *, int *);
@@ -55,12 +52,6 @@ inline void symmetric(const std::vector<float> &A, const Vector &x, Vector &y) {
   if (n > 0) ssymv_("L", &n, &one, A.data(), &n, from.data(), &step, &zero, to.data(), &step);
   y.assign(to.begin(), to.end());
 }
-// C = scale A B + keep C, C (m x n), k summed over, columns so far apart; `which`: "N" or "T", transposed, for A and B.
-inline void product(const char *which, int m, int n, int k, double scale, const double *A, int apartA, const double *B, int apartB,
-                    double keep, double *C, int apart) {
-  if (m > 0 && n > 0) dgemm_(which, which + 1, &m, &n, &k, &scale, A, &apartA, B, &apartB, &keep, C, &apart);
-}
-
 // The points of the window, its springs behind them, and their rows B on its n unknowns: a block of `kinds` values for each unknown of a
 // point.
 struct Rows {
@@ -226,22 +217,8 @@ class Problem {
   Vector start, tau, force;                                        // x_w; tau; B^T tau: what pushes the unknowns
   double enough = 0, sticksBelow = 0;
   int inverses = 0, mostTurns = 4, agreeingFrom = 20;              // inverses, before plain Newton with a line search takes over
-  Indices grown;                                                   // orders that S was made at, of columns that came, to the last bit
 
-  void compliance(int n, const double *given, const Indices &asBefore) {
-    // asBefore: `grown` at the checkpoint that a run goes on from
-    const int before = order(C);
-    bool grows = n >= before;                                      // the same columns, and more
-    for (int j = 0; j < before && grows; j++)
-      grows = std::equal(&C[(size_t)before * j], &C[(size_t)before * j] + before, given + (size_t)n * j);
-    if (!grows) { S.clear();  grown.clear(); }
-    if (before == 0) for (int m : asBefore) {
-      C.resize((size_t)m * m);
-      for (int j = 0; j < m; j++) std::copy(given + (size_t)n * j, given + (size_t)n * j + m, &C[(size_t)m * j]);
-      stiffen();
-    }
-    C.assign(given, given + (size_t)n * n);
-  }
+  void compliance(int n, const double *given) { C.assign(given, given + (size_t)n * n);  S.clear(); }
   void looseness(int n, const double *given) { C.assign(given, given + n);  S.clear(); }   // diagonal
 
   int solve(long mostInverses, long &inversesOfStep) {
@@ -283,32 +260,15 @@ class Problem {
   Vector C, S, x, t, slopes, unbalance, step, move, sigma;
 
   static int order(const Vector &A) { return std::lround(std::sqrt((double)A.size())); }
-  void stiffen() {
-    // S = C^-1. Where C has only got columns: of S_0 = C_0^-1 and C = [C_0 b; b^T c] with q = S_0 b, s = (c - b^T q)^-1
-    //   S = [S_0 + q s q^T, -q s; -s q^T, s]
-    if (isDiagonal(C, B.n)) { S = C;  for (double &s : S) s = 1 / s;  return; }
-    const int n = order(C), m = 3 * order(S) < 2 * n ? 0 : order(S), k = n - m;
+  void stiffen() {                                                 // S = C^-1
+    const int n = order(C);
     int info;
-    if (k == 0) return;
-    if (m == 0) grown.clear();
-    grown.push_back(n);
-    Vector q(m * k), sq(m * k), s(k * k), whole((size_t)n * n);
-    const double *b = &C[(size_t)n * m];
-    for (int j = 0; j < k; j++) std::copy(b + (size_t)n * j + m, b + (size_t)n * (j + 1), &s[k * j]);
-    product("NN", m, k, m, 1, S.data(), m, b, n, 0, q.data(), m);
-    product("TN", k, k, m, -1, b, n, q.data(), m, 1, s.data(), k);
-    dpotrf_("L", &k, s.data(), &k, &info);
-    dpotri_("L", &k, s.data(), &k, &info);
-    for (int j = 0; j < k; j++) for (int i = j + 1; i < k; i++) s[k * i + j] = s[k * j + i];
-    product("NN", m, k, k, -1, q.data(), m, s.data(), k, 0, sq.data(), m);
-    for (int j = 0; j < m; j++) std::copy(&S[(size_t)m * j], &S[(size_t)m * j] + m, &whole[(size_t)n * j]);
-    product("NT", m, m, k, -1, sq.data(), m, q.data(), m, 1, whole.data(), n);
-    for (int j = 0; j < k; j++) {
-      double *column = &whole[(size_t)n * (m + j)];
-      for (int i = 0; i < m; i++) column[i] = whole[(size_t)n * i + m + j] = sq[m * j + i];
-      std::copy(&s[k * j], &s[k * j] + k, column + m);
-    }
-    S.swap(whole);
+    if (isDiagonal(C, B.n)) { S = C;  for (double &s : S) s = 1 / s;  return; }
+    if (n == 0 || S.size() == C.size()) return;
+    S = C;
+    dpotrf_("L", &n, S.data(), &n, &info);
+    dpotri_("L", &n, S.data(), &n, &info);
+    for (int j = 0; j < n; j++) for (int i = j + 1; i < n; i++) S[(size_t)n * i + j] = S[(size_t)n * j + i];
     newton.stiffened(S);
   }
   void comply(const Vector &f, Vector &way) const {                // B C B^T f

@@ -7,7 +7,6 @@ namespace contact {
 
 static Problem problem;
 static Law &law = problem.law;
-static KN<long> *softAt = nullptr;                                 // the scripts' copy of problem.grown
 
 static void setLaw(double exponent, double slipVelocity, double bridge, double sticksBelow, std::string &regularization, bool jumps,
     long slips) {
@@ -106,7 +105,6 @@ static long solve(Ints slots, Reals q, Reals place, Reals ahead, double dt, long
     for (int c = 0; c < kinds; c++) { p.start[kinds * i + c] = place[s + c * ns];  p.tau[kinds * i + c] = tau[c * points + i]; }
   }
   const long iterations = p.solve(mostInverses, inversesOfStep);
-  if (softAt) { softAt->resize(p.grown.size());  std::copy(p.grown.begin(), p.grown.end(), (long *)*softAt); }
   if (iterations < 0) return -1;
   for (int i = 0; i < points; i++) {
     for (int c = 0; c < kinds; c++) tau[c * points + i] = p.tau[kinds * i + c];
@@ -119,10 +117,7 @@ static long solve(Ints slots, Reals q, Reals place, Reals ahead, double dt, long
 static void addContact() {
   ::add("kernelLaw", setLaw);
   ::add("kernelTractions", tractions);
-  ::add("kernelSoft", +[](Table C, Ints at) {
-    softAt = &at;
-    problem.compliance(C.N(), &C(0, 0), copied<int>(at));
-  });
+  ::add("kernelSoft", +[](Table C) { problem.compliance(C.N(), &C(0, 0)); });
   ::add("kernelLoose", +[](Reals C) { problem.looseness(C.n, &C[0]); });
   ::add("kernelSort", sortRows);
   ::add("kernelTake", take);
