@@ -102,8 +102,8 @@ def test_half_a_run_and_the_rest_are_the_whole(tmp_path, name):
     flags, out = flags | {"checkpoint_every": every}, tmp_path / "out"
     kill_at(direct(flags, out), out / "checkpoint", rows // 2)
     kill_at(direct(flags | {"restart": out / "checkpoint"}, out), out / "checkpoint", rows)
-    knows, there = rows_known(out / "checkpoint"), (out / "run.part/history.csv").read_text()
-    (out / "run.part/history.csv").write_text(there + "rows that were written after the checkpoint\n")
+    knows, there = rows_known(out / "checkpoint"), (out / "unfinished/history.csv").read_text()
+    (out / "unfinished/history.csv").write_text(there + "rows that were written after the checkpoint\n")
     last = direct(flags | {"restart": out / "checkpoint"}, out)
     assert last.communicate(timeout=120) and last.returncode == 0
     assert_same(out, tmp_path / "straight")

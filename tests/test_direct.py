@@ -65,7 +65,7 @@ def test_second_run_on_a_folder_is_refused(tmp_path):
     """The lock is the kernel's: the second run is refused with 14 as long as the first one lives, and no longer, even if it was killed."""
     first = start(*COARSE, "-dt", "1e-6", "-out", "out", cwd=tmp_path)
     end = time.monotonic() + 20
-    while not (tmp_path / "out/run.part/history.csv").exists() and time.monotonic() < end:
+    while not (tmp_path / "out/unfinished/history.csv").exists() and time.monotonic() < end:
         time.sleep(0.01)
     code, _, error = call(*COARSE, "-out", str(tmp_path / "out/"), cwd=tmp_path)
     assert code == 14 and error.startswith("ffimpact: out: ") and "another run" in error and error.count("\n") == 1
@@ -93,14 +93,19 @@ def test_files_of_others_are_left_alone(tmp_path):
     (tmp_path / "out/thesis.tex").write_text("years of work")
     code, _, error = call(*COARSE, "-out", "out", cwd=tmp_path)
     assert code == 14 and "files of others" in error and error.count("\n") == 1 and names(tmp_path) == {"out/thesis.tex"}
+    (tmp_path / "out").rename(tmp_path / "unfinished")
+    assert call(*COARSE, "-out", "out", cwd=tmp_path)[0] == 0
+    (tmp_path / "unfinished").rename(tmp_path / "out/unfinished")
+    code, _, error = call(*COARSE, "-out", "out", cwd=tmp_path)
+    assert code == 14 and "files of others" in error and (tmp_path / "out/unfinished/thesis.tex").exists()
 
 
-@pytest.mark.parametrize("name", ["out/run.part", "run.part/", "run.part/deeper"])
+@pytest.mark.parametrize("name", ["out/unfinished", "unfinished/", "unfinished/deeper"])
 def test_the_folder_of_a_run_under_way_is_no_folder_of_results(tmp_path, name):
-    """What a run in DIR would take away, DIR/run.part, is refused as -out and --out with 14: a finished run there would be lost."""
+    """What a run in DIR would take away, DIR/unfinished, is refused as -out and --out with 14: a finished run there would be lost."""
     code, _, error = call(*COARSE, "-out", name, cwd=tmp_path)
-    assert code == 14 and "is in a folder run.part" in error and error.count("\n") == 1 and not names(tmp_path)
-    with pytest.raises(Unreadable, match="is in a folder run.part"):
+    assert code == 14 and "is in a folder unfinished" in error and error.count("\n") == 1 and not names(tmp_path)
+    with pytest.raises(Unreadable, match="is in a folder unfinished"):
         folder.result_folder(tmp_path / name)
 
 

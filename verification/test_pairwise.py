@@ -89,7 +89,7 @@ def test_a_killed_run_goes_on_to_the_same_answer(tmp_path):
         return subprocess.Popen(program.words("edp/disc-block.edp", *flags, *more), cwd=ROOT, env=program.environment, stdout=subprocess.DEVNULL)
     assert start(tmp_path / "whole").wait(120) == 0
     killed = start(tmp_path / "killed")
-    part = tmp_path / "killed/run.part/history.csv"
+    part = tmp_path / "killed/unfinished/history.csv"
     for _ in range(6000):
         if killed.poll() is not None or (tmp_path / "killed/checkpoint").exists() and part.exists() and len(part.read_text().splitlines()) > 25:
             break

@@ -23,9 +23,9 @@ from .results import read_summary, why
 RECORDS = ("scene.toml", "history.csv", "contacts.csv", "modes.csv", "summary.json")
 FIELDS = [f"fields/{name}" for name in ("[0-9][0-9][0-9][0-9].vtu", "contact.csv", "contact.pvd", "contact-[0-9][0-9][0-9][0-9].vtp")]
 FIGURES = ("energies", "velocity", "force", "rolling", "shapes", "pressure", "flight", "contact", "bounces", "height", "vibration", "solid")
-OWN = (*RECORDS, "run.part/*", "failure.json", "log.txt", "mesh.msh", "mesh.mesh", "scene.dat", "summary.json.part", "checkpoint",
+OWN = (*RECORDS, "unfinished/*", "failure.json", "log.txt", "mesh.msh", "mesh.mesh", "scene.dat", "summary.json.part", "checkpoint",
        "checkpoint.json", "fields.pvd", *FIELDS, *(f"figures/{name}.png" for name in FIGURES))
-OURS = {"scene.toml", "failure.json", "run.part", "checkpoint.json"}   # a folder with one of these is the program's
+OURS = {"scene.toml", "failure.json", "unfinished", "checkpoint.json"}   # a folder with one of these is the program's
 
 
 def result_folder(out: Path) -> Path:
@@ -34,8 +34,8 @@ def result_folder(out: Path) -> Path:
         folder = out.resolve()
     except (OSError, RuntimeError) as error:   # a loop of links
         raise Unreadable(f"{out} cannot be made: {getattr(error, 'strerror', None) or error}; choose another --out") from None
-    if "run.part" in folder.parts:
-        raise Unreadable(f"{out} is in a folder run.part, which runs write and take away; choose another --out")
+    if "unfinished" in folder.parts:
+        raise Unreadable(f"{out} is in a folder unfinished, which runs write and take away; choose another --out")
     if not folder.name:
         raise Unreadable(f"{out} cannot be the folder of a run; choose another --out")
     return folder
