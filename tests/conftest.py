@@ -1,10 +1,13 @@
 """Shared by the tests: a stand-in for FreeFem++, and finished-looking folders made without it."""
 
+import signal
 import sys
 
 import pytest
 
 import fake_freefem
+
+signal.signal(signal.SIGINT, signal.default_int_handler)   # a shell lets what it starts in the background ignore Ctrl-C, which tests send
 
 
 @pytest.fixture
