@@ -94,7 +94,8 @@ def test_an_expression_of_a_plane_or_circle_is_one(march, position, kind, distan
     expression = {key: value for key, value in kind.items() if key == "velocity"} | {"kind": "implicit", "distance": distance}
     one, other = (march(falling(obstacle, position=position)) for obstacle in (kind, expression))
     for column in set(one.history) - {"balance", "newton_iterations", "sliding_fraction", "max_penetration"}:
-        ours, theirs = (np.asarray(run.history[column])[2 if column.startswith("contact_") else 0:] for run in (other, one))   # at the touch that is round-off
+        pressed = one.history["normal_force"] > (1e-6 * max(one.history["normal_force"]) if column.startswith("contact_") else -1)   # points under round-off count, too
+        ours, theirs = (np.asarray(run.history[column])[pressed] for run in (other, one))
         assert ours == pytest.approx(theirs, rel=1e-6, abs=1e-6 * abs(theirs).max()), column
 
 
