@@ -49,7 +49,7 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | Non
     folder = result_folder(out or RESULTS / scene.name)
     mesh_file = mesh_file and _mesh_path(mesh_file)
     foreign = gmsh_file.load(mesh_file) if mesh_file else None
-    scene.description(foreign)   # BadInput before anything is made
+    scene.description(foreign, mesh_file)   # BadInput before anything is made
     finished = finished_in(folder, force)
     if not force and (there := reusable(scene, folder, mesh_file, estimate)):
         return there

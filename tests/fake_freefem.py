@@ -1,7 +1,7 @@
 """Stands in for FreeFem++ in the tests: same flags, same files, same exit codes, no physics.
 
 FAKE decides what happens: ok (default), silent (exit 0, no summary), nan, step (11), material (12), crash, plugin,
-slow (a minute), brief (half a second), old, noplugin. Every start for a run adds a line to the file FAKE_COUNT.
+slow (a minute), brief (half a second), old, ten, noplugin. Every start for a run adds a line to the file FAKE_COUNT.
 """
 
 import json
@@ -16,6 +16,7 @@ from pathlib import Path
 COLUMNS = ("t dt normal_force friction_force kinetic elastic contact friction_work external_work balance momentum_x momentum_y "
            "angular_momentum vx vy spin max_penetration contact_size sliding_fraction min_jacobian min_stretch newton_iterations min_ellipticity")
 REAL = os.environ.get("FAKE_REAL") or shutil.which("FreeFem++")   # what scenes are made of is no physics: it says that
+BANNERS = {"old": '{"version": "4.6"}', "ten": '-- FreeFem++ v4.10 (date - git no git)\n{"version": "4.1"}'}
 ENERGY, MASS, SPEED, CONTACT = 432.8, 13.525, 8.0, 4.67e-3
 
 
@@ -108,8 +109,8 @@ def main(arguments: list[str]) -> int:
         if mode == "noplugin":
             print("Load error: Element_QF")
             return 2
-        if mode == "old":
-            print('{"version": "4.6"}')
+        if mode in BANNERS:
+            print(BANNERS[mode])
             return 0
         os.execv(REAL, [REAL, *arguments])
     if count := os.environ.get("FAKE_COUNT"):

@@ -128,6 +128,20 @@ def test_a_pull_to_the_side_is_one(tmp_path):
     assert found.summary["ended"] == "rest" and not any(said.startswith("not over") for said in found.summary["warnings"])
 
 
+@pytest.mark.parametrize("shape, friction, said", [
+    ({"shape": "rectangle", "width": 0.06, "height": 0.04, "angle": -30.0}, 0.3, "30 degrees to the pull: friction_static 0.3 holds up to 17"),
+    ({"shape": "disc", "radius": 0.02}, 0.7, "30 degrees to the pull: what is round rolls down any")], ids=["slides", "rolls"])
+def test_what_a_slope_does_not_hold_is_refused(tmp_path, shape, friction, said):
+    """Before the first step: a block beyond its angle of friction, a disc on any slope; not within it, where the block comes to rest, nor with an end_time."""
+    up = [math.sin(math.radians(30)), math.cos(math.radians(30))]
+    tables = pulled(shape | {"position": [0.0201 * each for each in up]}, up, gravity=9.81, contact={"friction_static": friction})
+    with pytest.raises(Failure, match=f"exit code 10.*until: no rest in sight on a plane at {said}; give an end_time > 0"):
+        bodies(tmp_path, tables)
+    if "width" in shape:
+        assert bodies(tmp_path, tables | {"contact": {"friction_static": 0.8}}).summary["ended"] == "rest"
+    assert bodies(tmp_path, tables | {"end_time": 0.02}).summary["ended"] == "end_time"
+
+
 def test_what_creeps_on_a_slope_is_refused(tmp_path):
     """A block whose points stick, but creep below slip_velocity for ever, as friction takes what gravity gives: one line says so."""
     down, up = math.radians(10), [math.sin(math.radians(10)), math.cos(math.radians(10))]

@@ -171,6 +171,12 @@ def test_unusable_freefem_says_how_to_install(fake, tmp_path, mode, words):
     assert error.value.code == 13 and not (tmp_path / "out").exists()
 
 
+def test_versions_are_numbers_between_points(fake):
+    """4.10 is newer than 4.9, though scripts see it as the number 4.1."""
+    fake("ten")
+    assert freefem.find().version == "4.10"
+
+
 def test_progress_arrives(fake, tmp_path):
     """The progress lines of the script arrive with their fraction, time and number of steps; the log keeps them too."""
     seen = []

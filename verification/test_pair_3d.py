@@ -26,15 +26,15 @@ def march(tmp_path):
 @pytest.mark.parametrize("case", CASES)
 def test_rows_conserve(measure, case, without):
     """By the kernel and by the scripts: B d = q1 - q0, also when the step turns the pair by a radian or goes along the block; no row of B, S_1, S_2 carries a force or a moment about the
-    middle configuration, inside faces as on edges and vertices; a turn of the pair changes no gap; a step begins with the penetrations the last ended with."""
+    middle configuration, inside faces as on edges and vertices; a turn of the pair changes no gap; a step begins with the penetrations the last ended with. Which of the faces that meet there is told, and that
+    they do, is not left to where Newton stops on each (tilt 2.5)."""
     found = measure("pair-3d", **case, without=without)
     assert found["randomInside"] > 10 and (found["edges"] > 8 or case.get("noise") == 0)
     for name in ("random", "turn"):
         assert max(found[name + "Exact"], found[name + "Force"], found[name + "Moment"]) < ROUND_OFF
         assert 0.1 < found[name + "Largest"] < 3
     assert max(found["turnChange"], found["slideExact"], found["slideJump"]) < ROUND_OFF
-    if case.get("noise") != 0 and case.get("tilt") != 2.5:   # those have points about as near to two faces: either may be told
-        kernel_is_the_scripts(found)
+    kernel_is_the_scripts(found)
 
 
 def shapes(r, s):

@@ -308,6 +308,7 @@ private:
   std::vector<Place> now;                  // in the middle configuration
   std::vector<Before> before;
   std::vector<Foot<A>> feet;               // of the slot at hand
+  std::vector<bool> tied;                  // which of them meet where the closest is
 
   int node(int c, int i, int a) const { return surface.unknown[(i * surface.nodes + a) * surface.cells + c]; }
   Vector<A> nodePlace(const double *x, int c, int a) const {
@@ -411,21 +412,20 @@ private:
   // (9): the closest of the candidates of slot k.
   Place project(const std::vector<Patch<A>> &patch, int k) {
     const int m = first[k + 1] - first[k];
+    const double nearer = A == 3 ? 1 - 2e-13 : 1;   // of faces that are as near to round-off the first
     int pick = 0;
     feet.resize(m);
     for (int e = 0; e < m; e++) {
       closest(patch[first[k] + e], feet[e]);
-      const double off = dot(feet[e].arm, feet[e].arm) - dot(feet[pick].arm, feet[pick].arm);
+      const double off = dot(feet[e].arm, feet[e].arm) - nearer * dot(feet[pick].arm, feet[pick].arm);
       if (off < 0 || (A == 2 && off == 0)) pick = e;
     }
-    const Vector<A> arm = feet[pick].arm;
-    const auto tied = [&](int e) { return farthest(feet[e].arm, arm) <= 1e4 * roundOff; };
     Vector<A - 1> r = feet[pick].r;
     // of several cells that meet there the edge that ends in the vertex, the first face: which of them turns with the rows is not left to
     // round-off
     if (onBoundary(r)) {
-      if (A == 2) toVertex(patch, k, node(cell[first[k] + pick], 0, r[0] == 0 ? 0 : 1));
-      for (int e = m - 1; e >= 0; e--) if (tied(e) && (A == 3 ? e < pick : feet[e].r[0] == 1)) pick = e;
+      meetAt(patch, k, cell[first[k] + pick], r);
+      for (int e = m - 1; e >= 0; e--) if (tied[e] && (A == 3 ? e < pick : feet[e].r[0] == 1)) pick = e;
       r = feet[pick].r;
     }
     Place place;
@@ -442,11 +442,24 @@ private:
     return place;
   }
 
-  // The feet of slot k on the edges that meet in a vertex, there.
-  void toVertex(const std::vector<Patch<A>> &patch, int k, int vertex) {
-    for (int e = first[k]; e < first[k + 1]; e++) for (int end = 0; end < 2; end++) if (node(cell[e], 0, end) == vertex) {
-      feet[e - first[k]].r[0] = end;
-      patch[e].at(feet[e - first[k]]);
+  // The candidates of slot k that have the vertex or the edge of a cell in common on which r is: tied, with their feet there (Newton leaves
+  // each its own).
+  void meetAt(const std::vector<Patch<A>> &patch, int k, int c, const Vector<A - 1> &r) {
+    Vector<A> weight = {1};                // of the corners
+    for (int l = 1; l < A; l++) { weight[l] = r[l - 1];  weight[0] -= r[l - 1]; }
+    tied.assign(feet.size(), false);
+    for (int e = first[k]; e < first[k + 1]; e++) {
+      Vector<A> there = {};
+      int missing = 0;
+      for (int a = 0; a < A; a++) if (weight[a] > 1e-12) {
+        missing++;
+        for (int b = 0; b < A; b++) if (node(c, 0, a) == node(cell[e], 0, b)) { missing--;  there[b] = weight[a]; }
+      }
+      if (missing > 0) continue;
+      Foot<A> &foot = feet[e - first[k]];
+      tied[e - first[k]] = true;
+      for (int l = 1; l < A; l++) foot.r[l - 1] = there[l];
+      patch[e].at(foot);
     }
   }
 
@@ -456,8 +469,7 @@ private:
     Vector<A> mean = {};
     int count = 0;
     for (int e = first[k]; e < first[k + 1]; e++) {
-      const Foot<A> &foot = feet[e - first[k]];
-      if (farthest(foot.arm, arm) <= 1e4 * roundOff) { mean = plus(mean, 1, normalOf(foot, surface.side[cell[e]]));  count++; }
+      if (tied[e - first[k]]) { mean = plus(mean, 1, normalOf(feet[e - first[k]], surface.side[cell[e]]));  count++; }
     }
     mean = times(1 / std::max(1e-300, length(mean)), mean);
     const double distance = length(arm), side = -dot(arm, mean);

@@ -24,6 +24,7 @@ OLDEST = (4, 9)                          # the version in the banner; Debian's 4
 DEBIAN_PLUGINS = "/usr/lib/freefem++"    # where Debian puts the plugins, and its FreeFem++ does not look
 DESCRIBE = "edp/describe.edp"
 CLOCK = ROOT / "edp/clock.c"
+BANNER = re.compile(r"FreeFem\+\+ v(\d+\.\d\d?)\b")
 SAYS = re.compile(r"progress (\S+) t=(\S+) steps=(\S+)(?: unknowns=(\S+) apart=(\S+))?$")
 UNREAD = 2**20                           # bytes that a process can say while nobody reads; then it waits
 WAYS = ("apt-get install freefem++ libfreefem++; conda install -c conda-forge freefem; a package of "
@@ -142,9 +143,12 @@ def _quick_clock(environment: Mapping[str, str]) -> dict[str, str]:
 
 
 def _probe(command: str, environment: dict[str, str]) -> dict | None:
-    """What edp/describe.edp says without a scene, if it starts and finds the plugins that the scenes load."""
+    """What edp/describe.edp says without a scene, if it starts and finds the plugins that the scenes load. The version is the banner's: to
+    scripts it is a number, that of 4.10 the same as that of 4.1."""
     try:
-        return json.loads(FreeFem(command, "", environment, {}).call(DESCRIBE, timeout=60).stdout)
+        said = FreeFem(command, "", environment, {}).call(DESCRIBE, "-v", "1", timeout=60).stdout
+        banner = BANNER.search(said)
+        return json.loads(said[said.index("{"):]) | ({"version": banner[1]} if banner else {})
     except (OSError, subprocess.TimeoutExpired, ValueError):
         return None
 

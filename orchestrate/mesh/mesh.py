@@ -264,6 +264,6 @@ def read(path: Path) -> Mesh:
         points, triangles, edges = points.reshape(n, 3), triangles.reshape(t, 4), edges.reshape(e, 3)
     except OSError as error:
         raise BadInput(f"mesh: {path} cannot be read: {error.strerror}") from None
-    except ValueError as error:
-        raise BadInput(f"mesh: {path} is not a 2D mesh of FreeFEM: {error}") from None
+    except ValueError:
+        raise BadInput(f"mesh: {path} is no mesh (accepted: a 2D mesh as FreeFEM's savemesh or gmsh writes it, .msh)") from None
     return Mesh(points[:, :2], triangles[:, :3].astype(int) - 1, edges[:, :2].astype(int) - 1, edges[:, 2].astype(int))

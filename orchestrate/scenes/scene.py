@@ -136,9 +136,9 @@ class Scene:
         """The largest mesh sizes that bodies give, 0 where none does, beside `values`."""
         return {name: max(getattr(body, name) for body in self.bodies) for name in SIZES} if self.bodies else {}
 
-    def description(self, foreign: bytes | None = None) -> dict:
-        """What the script says of one of the paper's scenes, on the mesh `foreign` (FreeFEM's .msh) where there is one; BadInput where it
-        refuses it. Of others nothing more than was read."""
+    def description(self, foreign: bytes | None = None, path: Path | None = None) -> dict:
+        """What the script says of one of the paper's scenes, on the mesh `foreign` (FreeFEM's .msh, of the file `path`) where there is one;
+        BadInput where it refuses it. Of others nothing more than was read."""
         if self.bodies:
             if foreign is not None:
                 raise BadInput("mesh: is of one body (accepted: in a table [[body]], shape = \"mesh\" with file)")
@@ -149,7 +149,10 @@ class Scene:
         with tempfile.NamedTemporaryFile(suffix=".msh") as file:
             file.write(foreign)
             file.flush()
-            return describe(self.values | {"mesh": file.name}, self.script)
+            try:
+                return describe(self.values | {"mesh": file.name}, self.script)
+            except BadInput as error:
+                raise BadInput(str(error).replace(file.name, str(path))) from None
 
     def scaled(self, values: dict, used: dict, factor: float, own_mesh: bool = True) -> dict[str, Value | list]:
         """What the scene, run as the tables `used`, is overridden by for `factor` times the elements and steps; the contact's own
@@ -174,7 +177,7 @@ def read(given: dict, folder: Path, name: str) -> Scene:
         return _of_tables(given, folder, name)
     if not given:
         raise BadInput("says nothing (accepted: a scene, as the built-in ones in orchestrate/scenes)")
-    script, title = given.get("script", "disc-plane"), given.get("title", name)
+    script, title = given.get("script", "disc-plane"), Table("", given, tuple(given)).text("title", name)
     if script in dimension.SCRIPTS:
         raise BadInput(f"body: is missing, which script = '{brief(script)}' needs (accepted: one table [[body]] or more)")
     scripts = [word for word in describe()["scripts"].split("|") if word not in dimension.SCRIPTS]
