@@ -6,11 +6,13 @@ the FreeFEM side curves the boundary. The lowest point of the disc touches the p
 
 import atexit
 import math
+import pickle
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cache
@@ -135,17 +137,29 @@ def start_gmsh() -> ModuleType:
     return gmsh
 
 
-def own_process(module: str, path: Path, *words: Path) -> None:
-    """Runs `python -m module path words`, which lets gmsh read a file: some broken files kill it. BadInput with what it said, or how it
+def in_own_process(read: Callable, path: Path, *given):
+    """read(path, *given) in a process of its own, where gmsh reads the file: some broken files kill it. BadInput as there, or with how it
     ended."""
-    child = subprocess.run([sys.executable, "-m", module, str(path), *map(str, words)], cwd=ROOT, stdin=subprocess.DEVNULL,
-                           stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace")
-    if child.returncode == 0 and words[0].exists():     # a script in a geometry may end gmsh
-        return
-    if child.returncode == BadInput.code:
-        raise BadInput(child.stderr.strip().splitlines()[-1].replace(str(path), path.name))
+    with tempfile.NamedTemporaryFile() as answer:
+        child = subprocess.run([sys.executable, "-c", f"from {__name__} import _answer; _answer()", answer.name], cwd=ROOT,
+                               input=pickle.dumps((read, path, *given)), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        if child.returncode == 0 and (said := answer.read()):     # a script in a geometry may end gmsh
+            found = pickle.loads(said)
+            if isinstance(found, BadInput):
+                raise BadInput(str(found).replace(str(path), path.name))
+            return found
     how = signal.Signals(-child.returncode).name if child.returncode < 0 else f"exit code {child.returncode}"
     raise BadInput(f"gmsh broke down over it ({how})")
+
+
+def _answer() -> None:
+    """In that process: what was found, or why not, into the file."""
+    read, *given = pickle.load(sys.stdin.buffer)
+    try:
+        found = read(*given)
+    except BadInput as error:
+        found = error
+    Path(sys.argv[1]).write_bytes(pickle.dumps(found))
 
 
 @contextmanager
