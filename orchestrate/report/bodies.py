@@ -12,9 +12,9 @@ from ..scenes import obstacles
 from ..scenes.obstacles import Obstacle
 from ..input.parameters import Value
 from ..output.results import body_names, mechanical_energy, suffixes
-from .figures import (BAND, BLACK, BLUE, COLOURED, GREEN, GREY, ORANGE, ORIGIN, PURPLE, VISCOUS, Body, as_written, balance_error,
-                      coloured, deformed, end_of_contact, flight, friction_force, goes_along, instants, is_half, least, material, over_time,
-                      per_metre, plt, rolling, side_by_side)
+from .figures import (BAND, BLACK, BLUE, COLOURED, GREEN, GREY, ORANGE, ORIGIN, PURPLE, SHAPES, VISCOUS, Body, as_written, balance_error,
+                      deformed, end_of_contact, evenly, flight, friction_force, goes_along, is_half, least, material, over_time, per_metre,
+                      plt, rolling, side_by_side)
 
 ALONE = ("disc-plane", "ball-axisymmetric", "ball-plane")     # scripts of one body on the plane
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, "#56b4e9", "#e69f00")    # of bodies
@@ -62,7 +62,8 @@ def draw(history: dict[str, np.ndarray], contact: dict[str, np.ndarray], scene: 
     drawn = {"energies": energies(contact, scene), "velocity": velocities(contact, scene)}
     drawn |= {"force": friction_force(contact, scene), "rolling": rolling(contact, scene)} if rubs else {"force": forces(contact, scene)}
     if snapshots and len(vtu.read(snapshots[0][1]).triangles):       # none where no body crosses the plane z = 0
-        drawn |= {name: shapes(snapshots, scene, *COLOURED[name]) for name in coloured(history)}
+        drawn |= {name: shapes(snapshots, scene, *field) for name, field in COLOURED.items()
+                  if name == "shapes" or "hydrostatic_pressure" in history}
     if len(snapshots) > 2 and not are_several(scene) and not is_half(scene) and goes_along(history, scene):
         drawn |= {"flight": flight(history, scene, snapshots)}
     return drawn
@@ -181,7 +182,7 @@ def forces(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figur
 
 def shapes(series: list[tuple[float, Path]], scene: dict[str, Value], field: str, label: str) -> plt.Figure:
     """All bodies at up to SHAPES instants among the obstacles, coloured by a field [MPa]."""
-    picked = instants(series)
+    picked = evenly(series, SHAPES)
     found = [deformed(vtu.read(path), is_half(scene), field) for _, path in picked]
     left, right, low, high = view = limits(found)
     rigid, columns = obstacles_of(scene), 3 if right - left < 3 * (high - low) else 2

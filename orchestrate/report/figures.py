@@ -1,7 +1,7 @@
 """What figures have in common, and those of one body that goes along the plane: friction force, what slides and sticks, and the flight, as
 figures 4 and 5 of the paper."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from textwrap import wrap
@@ -169,10 +169,9 @@ def numbers_of_the_paper(scene: dict[str, Value], key: str, over: str = "") -> l
     """(value of the parameter `over` there, number, words) of every number `key` (summary.json, SI) that the paper prints of this scene, or
     of it with another value of `over`, or with another law, which the words then say. None of a body of the user's own mesh."""
     found = []
-    for run in literature.published() if not scene.get("mesh") else []:
+    for run in literature.published(scene.get("script"), scene, ("law", over)) if not scene.get("mesh") else []:
         when = run["when"]
-        if (run["source"].startswith("paper") and key in run["numbers"] and run["script"] == scene.get("script")
-                and all(scene.get(name) == value for name, value in when.items() if name not in ("law", over))):
+        if run["source"].startswith("paper") and key in run["numbers"]:
             law = "" if over == "law" or when["law"] == scene.get("law") else f", {LAWS[when['law']]}"
             found.append((when.get(over), run["numbers"][key]["value"], run["source"] + law))
     return found
@@ -346,7 +345,7 @@ def flight(history: dict[str, np.ndarray], scene: dict[str, Value], series: list
         lowest = min(series, key=lambda each: history["y"][row(each[0])])
         picked = [(series[0], "touch", BLUE), (lowest, "lowest", ORANGE), (series[-1], "end of the run", GREEN)]
     else:
-        places = np.linspace(0, len(series) - 1, min(5, len(series))).round().astype(int)
+        places = evenly(range(len(series)), 5)
         picked = [(series[k], "", plt.get_cmap("viridis")(0.85 * k / places[-1])) for k in places]
     figure, axes = plt.subplots(figsize=(6.4, 5.6 if impact else 3.6))
     run = history["t"] >= series[0][0]
@@ -429,14 +428,9 @@ def _draw_pose(axes: plt.Axes, pose: Pose, colour, line, label: str | None) -> N
     axes.plot(*pose.diameter[0], color=colour, marker="o", markersize=4)
 
 
-def coloured(history: dict[str, np.ndarray]) -> list[str]:
-    """The pictures of shapes of a run: of the pressure where the elements of a body hold it."""
-    return ["shapes", *["pressure"] * ("hydrostatic_pressure" in history)]
-
-
-def instants(series: list[tuple[float, Path]]) -> list[tuple[float, Path]]:
-    """Up to SHAPES snapshots of a run, from the first to the last."""
-    return [series[k] for k in np.unique(np.linspace(0, len(series) - 1, SHAPES).round().astype(int))]
+def evenly(items: Sequence, most: int) -> list:
+    """Up to so many of the items, from the first to the last."""
+    return [items[k] for k in np.unique(np.linspace(0, len(items) - 1, most).round().astype(int))]
 
 
 def side_by_side(found: list["Body"], times: list[float], view: tuple[float, float, float, float], columns: int,
