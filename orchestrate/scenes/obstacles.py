@@ -131,6 +131,5 @@ def _polyline(table: Table, dimension: Dimension) -> tuple[float, ...]:
     closed, vertices = table.flag("closed", False), table.points("vertices", least=2)
     if dimension is AXISYMMETRIC:
         vertices, closed = mirrored(f"{table.path}.vertices", vertices)
-    rounding = table.number("rounding", 0, default=0.0)
-    polyline.check(table.path, vertices, closed, rounding)
-    return polyline.numbers(vertices, closed, rounding)
+    polyline.check(table.path, vertices, closed)
+    return polyline.numbers(vertices, closed, table.number("rounding", 0, default=0.0))
