@@ -12,7 +12,7 @@ import pandas as pd
 
 from ..output.results import mechanical_energy
 from ..report.friction_laws import VALUES
-from ..report.vibration import spectrum
+from ..report.impacts import spectrum
 from . import stick_slip
 from ..sweeps import study
 from .judging import CONSTANT, LAWS, OPEN, History, Lost, Results, bar, finished, graded, lost, maxima, of_laws, states, touching

@@ -19,7 +19,7 @@ import pandas as pd
 from ..output.results import read_frame, read_history, read_scene, read_summary
 from ..sweeps import study
 from ..sweeps import sweep, sweep_figures
-from ..report import vibration
+from ..report.impacts import read_modes
 
 AGREES, DIFFERS, PARTLY, OPEN = "agrees", "does not agree", "partly", "not decided"
 CONSTANT = 1e-9             # of the energy at the start: below, an energy is constant
@@ -88,7 +88,7 @@ class Results:
         return [read_summary(folder) for folder in self.pair(name, **values)]
 
     def modes(self, name: str, **values) -> list[np.recarray]:
-        return [vibration.read(folder) for folder in self.pair(name, **values)]
+        return [read_modes(folder) for folder in self.pair(name, **values)]
 
     def friction_laws(self) -> pd.DataFrame:
         """The table that figure 3 is drawn from."""

@@ -10,7 +10,7 @@ from ..input.parameters import Value
 from ..output import vtu
 from ..output.results import Contents, body_names, check_files, read_history, read_json, read_scene
 from ..places import COMMAND
-from . import bodies, contact as contacts, impacts, solid, vibration
+from . import bodies, contact as contacts, impacts, solid
 from .figures import BODY, STYLE, as_written, footer, is_half, material, per_metre, plt, save, touched
 
 
@@ -44,7 +44,7 @@ def draw(folder: Path, warnings: list[str]) -> list[Path]:
             drawn["bounces"] = impacts.draw(bounces, names, rigid)
             drawn["height"] = impacts.heights(history, bounces, names) if scene.get("until") == "rest" else None
         if (folder / "modes.csv").exists():
-            drawn["vibration"] = vibration.draw(vibration.read(folder), history, per_metre(scene))
+            drawn["vibration"] = impacts.vibration(impacts.read_modes(folder), history, per_metre(scene))
         drawn = {name: figure for name, figure in drawn.items() if figure}
         for name, figure in reversed(drawn.items()):
             figure.suptitle(title(scene))

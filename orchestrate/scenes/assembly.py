@@ -20,8 +20,7 @@ from .bodies import DAMPING, MATERIAL, Body
 from ..freefem.describe import describe
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID
 from ..failure import BadInput
-from ..mesh.mesh import AXIS, FREE, Sizes, nearest
-from ..mesh.outline_mesh import Curve, mesh_body
+from ..mesh.mesh import AXIS, FREE, Curve, Sizes, mesh_body, nearest
 from .mirror import COPIES, FOLDED, copies
 from .scene import OWN, SELF_CONTACT, Pair, Scene
 from ..geometry.outlines import Loop
