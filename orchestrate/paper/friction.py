@@ -246,7 +246,7 @@ def sliding_first(results: Results) -> tuple[str, str, Lost]:
         counts |= {angle: (both, len(rows))} if law == "svk" else {}
         told.append(f"{angle:g}°, {LAWS[law]}: {order} of {len(rows)} runs, {both} of them with at most {100 * stick_slip.QUIET:g} % of "
                     f"the friction work in the last third")
-    restitution = {name: results.summary(name)["rebound_vy"] / _normal() for name in ("disc-oblique-svk", "disc-oblique")}
+    restitution = {name: results.summary(name)["rebound_vy"] / (SPEED * np.sin(np.radians(ANGLE))) for name in ("disc-oblique-svk", "disc-oblique")}
     shares = " and ".join(f"{slip_share(e):.2f} with the e = {e:.3f} of {name}" for name, e in restitution.items())
     met = [angle for angle, (both, _) in counts.items() if both]
     explained = "" if ANGLE in met else ", which explains it: the disc sticks long before two thirds, and slips back at the end"
@@ -258,14 +258,10 @@ def sliding_first(results: Results) -> tuple[str, str, Lost]:
     ), list(every[every.law == "svk"].ellipticity_lost_time)
 
 
-def _normal(angle: float = ANGLE) -> float:
-    return SPEED * np.sin(np.radians(angle))
-
-
 def slip_share(e: float, angle: float = ANGLE) -> float:
     """The share of the normal impulse at which a rigid disc stops to slide: with I = m R²/2 each unit of friction impulse takes 3/m of its
     slip."""
-    return SPEED * np.cos(np.radians(angle)) / (3 * DYNAMIC * (1 + e) * _normal(angle))
+    return 1 / (3 * DYNAMIC * (1 + e) * np.tan(np.radians(angle)))
 
 
 @states("Section 3.1, figure 4", "in the last third of the contact the disc rolls without sliding", f"{JUMP} disc-oblique-svk disc-rolling",

@@ -6,8 +6,8 @@ logarithm of k. Runs with det F <= 0 are no answers.
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from itertools import combinations, product
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -145,8 +145,7 @@ def at_once(results: Results) -> tuple[str, str]:
         f"{'. '.join(words)}. Two at once, oblique at {ANGLE:g}° [Pa/m]: {pairs}. Each alone: {alone}.")
 
 
-@dataclass(frozen=True)
-class Together:
+class Together(NamedTuple):
     """Of a ν of all maps: the ranges of k [Pa/m] that meet all numbers; the k that misses them by least, by what share of one, and the
     times there."""
 
