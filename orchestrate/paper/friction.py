@@ -246,7 +246,8 @@ def sliding_first(results: Results) -> tuple[str, str, Lost]:
         counts |= {angle: (both, len(rows))} if law == "svk" else {}
         told.append(f"{angle:g}°, {LAWS[law]}: {order} of {len(rows)} runs, {both} of them with at most {100 * stick_slip.QUIET:g} % of "
                     f"the friction work in the last third")
-    restitution = {name: results.summary(name)["rebound_vy"] / (SPEED * np.sin(np.radians(ANGLE))) for name in ("disc-oblique-svk", "disc-oblique")}
+    normal = SPEED * np.sin(np.radians(ANGLE))
+    restitution = {name: results.summary(name)["rebound_vy"] / normal for name in ("disc-oblique-svk", "disc-oblique")}
     shares = " and ".join(f"{slip_share(e):.2f} with the e = {e:.3f} of {name}" for name, e in restitution.items())
     met = [angle for angle, (both, _) in counts.items() if both]
     explained = "" if ANGLE in met else ", which explains it: the disc sticks long before two thirds, and slips back at the end"
