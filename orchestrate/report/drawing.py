@@ -34,9 +34,8 @@ def draw(folder: Path, warnings: list[str]) -> list[Path]:
         drawn = bodies.draw(history, contact, scene, snapshots)
         if (folder / "fields/contact.csv").exists():
             table = contacts.read(folder, beside=True)
-            ball = scene if scene.get("script") in BODY and is_half(scene) else None
-            drawn["contact"] = contacts.draw(table, names, is_half(scene), history["t"][~touches], ball, scene.get("symmetry", "full"),
-                                             history)
+            ball, free = scene if scene.get("script") in BODY and is_half(scene) else None, history["t"][~touches]
+            drawn["contact"] = contacts.draw(table, names, is_half(scene), free, ball, scene.get("symmetry", "full"), history)
             if snapshots and "Z" in table.dtype.names:
                 drawn["solid"] = solid.draw(snapshots, table[table.pressure > 0], scene)
         if (folder / "contacts.csv").exists():
