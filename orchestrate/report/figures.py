@@ -256,15 +256,9 @@ def _enlarge(grid: np.ndarray, history: dict[str, np.ndarray], window: tuple[int
     zoom.plot(t, friction, color=ORANGE, linewidth=1.0, marker=".", markersize=3)
     # the limits that the force touches, too
     lines = [line.get_ydata()[inside] for line in grid[1, 0].lines if len(line.get_ydata()) == len(t)]
-    near = [values for values in lines if values.mean() * friction[inside].mean() > 0]
-    zoom.set(ylabel=f"friction force [kN{per}]", ylim=_around(np.concatenate([friction[inside], *near]), 0.15))
-
-
-def _around(values: np.ndarray, margin: float) -> tuple[float, float]:
-    """Limits of an axis around the values, with a margin as a share of their range on either side."""
-    low, high = values.min(), values.max()
-    space = margin * ((high - low) or abs(high) or 1.0)
-    return low - space, high + space
+    near = np.concatenate([friction[inside], *(values for values in lines if values.mean() * friction[inside].mean() > 0)])
+    margin = 0.15 * (np.ptp(near) or abs(near[0]) or 1.0)
+    zoom.set(ylabel=f"friction force [kN{per}]", ylim=(near.min() - margin, near.max() + margin))
 
 
 def _liveliest(history: dict[str, np.ndarray]) -> tuple[int, int] | None:
