@@ -1,4 +1,4 @@
-// vectors.hpp: vectors of a few numbers, and their arithmetic as it is written.
+// vectors.hpp: vectors of a few numbers, or of such vectors, and their arithmetic as it is written.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -6,17 +6,17 @@
 
 namespace vectors {
 
-template<size_t n> struct Vector {
-  double a[n];
-  double &operator[](size_t i) { return a[i]; }
-  const double &operator[](size_t i) const { return a[i]; }
+template<size_t n, class T = double> struct Vector {
+  T a[n];
+  T &operator[](size_t i) { return a[i]; }
+  const T &operator[](size_t i) const { return a[i]; }
   Vector &operator+=(const Vector &b) { for (size_t i = 0; i < n; i++) a[i] += b[i];  return *this; }
   Vector &operator-=(const Vector &b) { for (size_t i = 0; i < n; i++) a[i] -= b[i];  return *this; }
-  Vector &operator*=(double s) { for (double &x : a) x *= s;  return *this; }
+  Vector &operator*=(double s) { for (T &x : a) x *= s;  return *this; }
 };
-template<size_t n> Vector<n> operator+(Vector<n> a, const Vector<n> &b) { return a += b; }
-template<size_t n> Vector<n> operator-(Vector<n> a, const Vector<n> &b) { return a -= b; }
-template<size_t n> Vector<n> operator*(double s, Vector<n> a) { return a *= s; }
+template<size_t n, class T> Vector<n, T> operator+(Vector<n, T> a, const Vector<n, T> &b) { return a += b; }
+template<size_t n, class T> Vector<n, T> operator-(Vector<n, T> a, const Vector<n, T> &b) { return a -= b; }
+template<size_t n, class T> Vector<n, T> operator*(double s, Vector<n, T> a) { return a *= s; }
 
 template<size_t n> double dot(const Vector<n> &a, const Vector<n> &b) {
   double sum = 0;
