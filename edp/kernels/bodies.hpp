@@ -59,11 +59,10 @@ public:
   std::vector<int> firstNode, node, firstPoint, point;
   std::vector<size_t> firstShape;
   std::vector<double> shape;
-  // mass: symmetric, one row a node for all components alike
-  std::vector<int> massRow, massColumn;
-  std::vector<double> massValue;           // [kg/m, kg]
-  // pairs of nodes (a >= b) that an element or the mass couples, and their D x D blocks of the tangent
-  std::vector<int> pairA, pairB, firstPair, pairOf, pairOfMass;
+  // pairs of nodes (a >= b) that an element or the mass couples, their mass, alike for all components [kg/m, kg], and their D x D blocks of
+  // the tangent; of every element its pairs
+  std::vector<int> pairA, pairB, firstPair, pairOf;
+  std::vector<double> massOf;
   std::vector<double> block;
   // where volume is that of elements: their numbers in the scripts, sums of weights, slopes, g0 (node, component); whether those are known
   std::vector<int> cell;
@@ -80,58 +79,47 @@ public:
     for (size_t e = 0; e < pick.size; e++) if (pick.value[e] != 0) unknown[pick.row[e] * D + i] = pick.column[e];
   }
 
-  // Elements and shapes from `gradient` (nF nq x ndof): from the rows of F_11, F_12 ... (the first component's), and of F_33 of revolution.
-  void elements(const Triplets &gradient) {
+  // Elements, shapes and pairs from `gradient` (nF nq x ndof) and the mass (ndof x ndof): from the rows of F_11, F_12 ... (the first
+  // component's), and of F_33 of revolution; of the consistent mass, whose components are alike and do not mix, from those of the first.
+  void make(const Triplets &gradient, const Triplets &mass) {
     std::vector<int> nodeOf(ndof, -1);
     for (int a = 0; a < nodes; a++) nodeOf[unknown[a * D]] = a;
     nq = int(weight.size());
     H = gradient.n / nq - D * D;
-    int slots = D + H;
     std::vector<std::map<int, std::vector<double>>> at(nq);
     for (size_t e = 0; e < gradient.size; e++) {
       int k = gradient.row[e] / nq, s = k < D ? k : (k == D * D ? D : -1);
       if (s < 0) continue;
       std::vector<double> &N = at[gradient.row[e] % nq][nodeOf[gradient.column[e]]];
-      N.resize(slots);
+      N.resize(D + H);
       N[s] += gradient.value[e];
     }
-    std::map<std::vector<int>, int> known;
-    std::vector<std::vector<int>> own, points;
+    std::map<std::vector<int>, std::vector<int>> pointsOfNodes;
     for (int q = 0; q < nq; q++) {
       std::vector<int> its;
       for (auto &N : at[q]) its.push_back(N.first);
-      auto found = known.insert({its, int(own.size())});
-      if (found.second) { own.push_back(its);  points.push_back({}); }
-      points[found.first->second].push_back(q);
+      pointsOfNodes[its].push_back(q);
     }
-    firstNode = firstPoint = {0};
+    firstNode = firstPoint = firstPair = {0};
     firstShape = {0};
-    node.clear();  point.clear();  shape.clear();
-    for (size_t g = 0; g < own.size(); g++) {
-      node.insert(node.end(), own[g].begin(), own[g].end());
-      point.insert(point.end(), points[g].begin(), points[g].end());
-      for (int q : points[g]) for (auto &N : at[q]) shape.insert(shape.end(), N.second.begin(), N.second.end());
+    for (auto &element : pointsOfNodes) {
+      const std::vector<int> &its = element.first;
+      for (int q : element.second) {
+        point.push_back(q);
+        for (auto &N : at[q]) shape.insert(shape.end(), N.second.begin(), N.second.end());
+      }
+      node.insert(node.end(), its.begin(), its.end());
+      for (int a : its) for (int b : its) if (b <= a) pairOf.push_back(pair(a, b));
       firstNode.push_back(int(node.size()));
       firstPoint.push_back(int(point.size()));
       firstShape.push_back(shape.size());
+      firstPair.push_back(int(pairOf.size()));
     }
-  }
-
-  // The consistent mass, whose components are alike and do not mix: the rows of the first.
-  void mass(const Triplets &M) {
-    std::vector<int> nodeOf(ndof, -1);
-    for (int a = 0; a < nodes; a++) nodeOf[unknown[a * D]] = a;
-    std::map<std::pair<int, int>, double> entry;
-    for (size_t e = 0; e < M.size; e++)
-      if (nodeOf[M.row[e]] >= 0 && nodeOf[M.column[e]] >= 0) entry[{nodeOf[M.row[e]], nodeOf[M.column[e]]}] += M.value[e];
-    massRow.assign(nodes + 1, 0);
-    massColumn.clear();  massValue.clear();
-    for (auto &e : entry) {
-      massRow[e.first.first + 1]++;
-      massColumn.push_back(e.first.second);
-      massValue.push_back(e.second);
+    for (size_t e = 0; e < mass.size; e++) {
+      const int a = nodeOf[mass.row[e]], b = nodeOf[mass.column[e]];
+      if (b >= 0 && a >= b) massOf[pair(a, b)] += mass.value[e];
     }
-    for (int a = 0; a < nodes; a++) massRow[a + 1] += massRow[a];
+    block.assign(pairA.size() * D * D, 0.);
   }
 
   // Of elements with a volume of their own: cellOfPoint (nq).
@@ -147,25 +135,6 @@ public:
     g0.assign(node.size() * D, 0.);
   }
 
-  // The pattern of the tangent.
-  void pairs() {
-    std::map<std::pair<int, int>, int> known;
-    pairA.clear();  pairB.clear();  pairOf.clear();  pairOfMass.clear();
-    auto pair = [&](int a, int b) {
-      auto found = known.insert({{std::max(a, b), std::min(a, b)}, int(pairA.size())});
-      if (found.second) { pairA.push_back(std::max(a, b));  pairB.push_back(std::min(a, b)); }
-      return found.first->second;
-    };
-    firstPair = {0};
-    for (size_t g = 0; g + 1 < firstNode.size(); g++) {
-      for (int a = firstNode[g]; a < firstNode[g + 1]; a++)
-        for (int b = firstNode[g]; b <= a; b++) pairOf.push_back(pair(node[a], node[b]));   // an element's nodes ascend: a >= b
-      firstPair.push_back(int(pairOf.size()));
-    }
-    for (int a = 0; a < nodes; a++) for (int e = massRow[a]; e < massRow[a + 1]; e++) pairOfMass.push_back(pair(a, massColumn[e]));
-    block.assign(pairA.size() * D * D, 0.);
-  }
-
   // G' (w P) + M (massScale d - history) - deadLoad, 0 at what is held [N/m, N]: the inertia, the inner forces and the dead load of (2) at
   // the increment d, and the deformation that they are taken at.
   int forces(const double *d, const double *history, const double *deadLoad, const Step &step, const Deformation &at, double *residual) {
@@ -176,10 +145,11 @@ public:
     if (ended != fine) return ended;
     if (step.carries) for (int i = 0; i < nodes * D; i++) volume.lag[unknown[i]] = lagging[i] * free[unknown[i]];
     for (int i = 0; i < nodes * D; i++) nodal[i] = step.massScale * nodal[i] - history[unknown[i]];
-    #pragma omp parallel for
-    for (int a = 0; a < nodes; a++)
-      for (int e = massRow[a]; e < massRow[a + 1]; e++)
-        for (int i = 0; i < D; i++) pull[a * D + i] += massValue[e] * nodal[massColumn[e] * D + i];
+    for (size_t p = 0; p < massOf.size(); p++) for (int i = 0; i < D; i++) {
+      const int a = pairA[p] * D + i, b = pairB[p] * D + i;
+      pull[a] += massOf[p] * nodal[b];
+      if (a != b) pull[b] += massOf[p] * nodal[a];
+    }
     for (int i = 0; i < nodes * D; i++) residual[unknown[i]] = (pull[i] - deadLoad[unknown[i]]) * free[unknown[i]];
     return fine;
   }
@@ -188,9 +158,7 @@ public:
   void tangent(const double *F, const double *S, const double *p, double massScale, double stiffnessScale, double rate) {
     std::fill(block.begin(), block.end(), 0.);
     dispatch([&](auto stored) { this->template stiffness<decltype(stored)>(F, S, p, stiffnessScale, rate); });
-    for (int a = 0; a < nodes; a++)
-      for (int e = massRow[a]; e < massRow[a + 1]; e++) if (massColumn[e] <= a)
-        for (int i = 0; i < D; i++) block[size_t(pairOfMass[e]) * D * D + i * D + i] += massScale * massValue[e];
+    for (size_t p = 0; p < massOf.size(); p++) for (int i = 0; i < D; i++) block[p * D * D + i * D + i] += massScale * massOf[p];
   }
 
   // At every point, of C: the energy [J/m3], the smallest stretch of the motions there are, ellipticity; of F: Cauchy's stress (6 nq) and
@@ -240,6 +208,13 @@ public:
   }
 
 private:
+  std::map<std::pair<int, int>, int> knownPairs;
+  int pair(int a, int b) {
+    auto found = knownPairs.insert({{a, b}, int(pairA.size())});
+    if (found.second) { pairA.push_back(a);  pairB.push_back(b);  massOf.push_back(0); }
+    return found.first->second;
+  }
+
   std::vector<double> nodal, pull, way, lagging;   // by node and component; way: d - dBase
   std::vector<double> own, ownLagging;     // pull and lagging, of every element its own
 

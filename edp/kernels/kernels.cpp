@@ -40,9 +40,7 @@ static void addBodies() {
   });
   add("kernelBodies", +[](Sparse gradient, Sparse mass, Reals free) {
     body.free = copied<double>(free);
-    body.elements(entries(gradient));
-    body.mass(entries(mass));
-    body.pairs();
+    body.make(entries(gradient), entries(mass));
     factor.pattern(body);
   });
   add("kernelDeformation", +[](Reals F0, Reals C0, Reals F1, Reals C1, Reals jacobian1, Reals Fs, Reals Ss) {
