@@ -26,9 +26,8 @@ from .places import INSTALLED, PACKAGE, RESULTS, ROOT, shown
 from .progress import Line
 from .output.results import RunResult, check_files, files_of, read_answers, read_json, read_scene, read_summary, write_json
 from .scene import Scene
-from .running.solver import FAILURES, Solver
+from .running.solver import FAILURES, Solver, runs
 from .input.tables import to_toml
-from .running.told import runs
 
 ENTRANCE = "scenes/assembly"           # the module that makes flags, mesh and scene.dat, with all that it imports
 # of these: what asks, starts, says and reads, and does not decide a result

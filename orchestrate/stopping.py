@@ -12,16 +12,12 @@ def obey() -> None:
     for number in (signal.SIGTERM, signal.SIGHUP):
         on(number, leave)
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:   # a shell's background job ignores it
-        on(signal.SIGINT, _interrupt)
+        on(signal.SIGINT, lambda number: signal.default_int_handler(number, None))
 
 
 def leave(number: int) -> None:
     """Out, as if the signal had ended the program, but through every `finally`."""
     sys.exit(128 + number)
-
-
-def _interrupt(number: int) -> None:
-    raise KeyboardInterrupt
 
 
 def on(number: int, act: Callable[[int], None]) -> None:

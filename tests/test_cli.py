@@ -73,7 +73,7 @@ def test_a_run_needs_no_matplotlib(fake, tmp_path, monkeypatch, capsys):
 
 def test_what_a_run_does_not_load():
     """A run that is there is told of without matplotlib; one is drawn without pandas, which takes longer to load than a tenth of the run."""
-    drawing = "from orchestrate.report import bodies, contact, figures, impacts, solid, vibration"
+    drawing = "from orchestrate.report import bodies, contact, figures, impacts, solid"
     for loads, heavy in (("import orchestrate.run", {"matplotlib", "pandas"}), (drawing, {"pandas"})):
         known = subprocess.run([sys.executable, "-c", f"{loads}; import sys; print({heavy} & set(sys.modules))"], cwd=ROOT, capture_output=True, text=True)
         assert known.stdout == "set()\n"

@@ -44,30 +44,26 @@ def test_numbers_are_those_of_the_scripts():
     ([[0, 1], [0, 0], [1, 0], [1, 1]], False),                           # a bucket with parallel walls
     ([[0, 0], [1, 0], [1, 1], [2, 1], [2, 0], [3, 0]], False)])          # a bump on a floor: both ends on one line
 def test_chains_that_are_accepted(vertices, closed):
-    polyline.check("obstacle.1", np.array(vertices, float), closed, 0.0)
+    polyline.check("obstacle.1", np.array(vertices, float), closed)
 
 
-@pytest.mark.parametrize("vertices, closed, rounding, message", [
-    ([[0, 0]], False, 0, "obstacle.1.vertices: 1 given (accepted: 2 or more points [x, y])"),
-    ([[0, 0], [1, 0]], True, 0, "obstacle.1.vertices: 2 given (accepted: 3 or more points [x, y] of a closed chain)"),
-    ([[0, 0], [np.nan, 0]], False, 0, "obstacle.1.vertices.2: is not finite (accepted: numbers [x, y])"),
-    (SQUARE, True, -0.1, "obstacle.1.rounding: -0.1 is out of range (accepted: from 0)"),
-    (SQUARE, True, np.nan, "obstacle.1.rounding: nan is out of range (accepted: from 0)"),
-    ([[0, 0], [1, 0], [1, 0]], False, 0, "obstacle.1.vertices.3: [1, 0] is the vertex before it again (accepted: each vertex once)"),
-    ([[0, 0], [0, 0]], False, 0, "obstacle.1.vertices.2: [0, 0] is the vertex before it again (accepted: each vertex once)"),
-    ([*SQUARE, [0, 0]], True, 0, "obstacle.1.vertices.5: [0, 0] is the first vertex again (accepted: a closed chain without it)"),
-    ([[0, 0], [1, 0], [0.5, 0]], False, 0,
+@pytest.mark.parametrize("vertices, closed, message", [
+    ([[0, 0], [1, 0]], True, "obstacle.1.vertices: 2 given (accepted: 3 or more points [x, y] of a closed chain)"),
+    ([[0, 0], [1, 0], [1, 0]], False, "obstacle.1.vertices.3: [1, 0] is the vertex before it again (accepted: each vertex once)"),
+    ([[0, 0], [0, 0]], False, "obstacle.1.vertices.2: [0, 0] is the vertex before it again (accepted: each vertex once)"),
+    ([*SQUARE, [0, 0]], True, "obstacle.1.vertices.5: [0, 0] is the first vertex again (accepted: a closed chain without it)"),
+    ([[0, 0], [1, 0], [0.5, 0]], False,
      "obstacle.1.vertices.2: the chain turns back on itself at [1, 0] (accepted: corners of less than 180 degrees)"),
-    ([[0, 0], [1, 1], [1, 0], [0, 1]], True, 0,
+    ([[0, 0], [1, 1], [1, 0], [0, 1]], True,
      "obstacle.1.vertices: side 1 and side 3 meet at [0.5, 0.5] (accepted: a chain that does not cross or touch itself)"),
-    ([[0, 0], [0.2, 1], [0.8, 1], [1, 0], [0.8, -0.5]], False, 0,
+    ([[0, 0], [0.2, 1], [0.8, 1], [1, 0], [0.8, -0.5]], False,
      "obstacle.1.vertices: side 1 and side 4 meet at [-1, -5] (accepted: a chain that does not cross or touch itself; "
      "an open one goes straight on beyond its ends)"),
-    ([[0, 0], [1, 0], [1, 1], [0.5, 1], [0.5, 0], [0.2, 0]], False, 0,
+    ([[0, 0], [1, 0], [1, 1], [0.5, 1], [0.5, 0], [0.2, 0]], False,
      "obstacle.1.vertices: side 1 and side 4 meet at [0.5, 0] (accepted: a chain that does not cross or touch itself; "
      "an open one goes straight on beyond its ends)")])
-def test_chains_that_are_not_accepted(vertices, closed, rounding, message):
+def test_chains_that_are_not_accepted(vertices, closed, message):
     """One line that names the table and the key, the value and what is accepted."""
     with pytest.raises(BadInput) as error:
-        polyline.check("obstacle.1", np.array(vertices, float), closed, rounding)
+        polyline.check("obstacle.1", np.array(vertices, float), closed)
     assert str(error.value) == message

@@ -10,10 +10,10 @@ import pytest
 from orchestrate import __main__ as program
 from orchestrate import progress, scene
 from orchestrate.freefem import freefem
-from orchestrate.running import told
+from orchestrate.running import solver as told
 from orchestrate.failure import BadInput
 from orchestrate.input.parameters import ROOT
-from orchestrate.paper import making as paper_making
+from orchestrate.paper import paper as paper_making
 from orchestrate.sweeps import study
 
 

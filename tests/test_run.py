@@ -264,7 +264,7 @@ def test_what_decides_a_result_is_derived():
     """A run is reused only by the same code: every module that assembly.py reaches by imports decides, but those that are named as harmless, and so does a new one."""
     decisive = run.imported(run.ENTRANCE) - run.HARMLESS
     assert run.HARMLESS < run.imported(run.ENTRANCE) and {"scenes/scene", "scenes/entries", "scenes/assembly", "input/parameters", "mesh/mesh", "mesh/solid_mesh", "input/tables", "geometry/tumbling"} <= decisive
-    assert not decisive & {"run", "output/folder", "report/report", "sweeps/study", "running/told"}
+    assert not decisive & {"run", "output/folder", "report/report", "sweeps/study", "running/solver"}
 
 
 def test_an_import_anywhere_is_found(tmp_path):

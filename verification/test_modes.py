@@ -8,7 +8,7 @@ import pytest
 
 from orchestrate import run, scene
 from orchestrate.failure import Unreadable
-from orchestrate.report import vibration
+from orchestrate.report import impacts
 from verification import measure as runs, modes, solids
 
 NU = 0.3
@@ -61,12 +61,12 @@ def test_spectrum_of_a_force(tmp_path):
     t, period = np.linspace(0, 1, 2001)[1:], 1.0
     f = np.array([0.0, 0.8, 2.3])
     exact = 2 / np.pi * abs(np.cos(np.pi * f * period) / (1 - (2 * f * period) ** 2))
-    assert vibration.spectrum(t, np.full(2000, 5e-4), np.sin(np.pi * (t - 2.5e-4)), f) == pytest.approx(exact, rel=1e-5)
+    assert impacts.spectrum(t, np.full(2000, 5e-4), np.sin(np.pi * (t - 2.5e-4)), f) == pytest.approx(exact, rel=1e-5)
     table, found = of(tmp_path, "disc-normal", {"accuracy": 0.3, "modes": 12})
-    assert len(vibration.read(found.folder)) == 12 and (figure := vibration.draw(table, found.history, "/m")) and len(figure.axes) == 2
+    assert len(impacts.read_modes(found.folder)) == 12 and (figure := impacts.vibration(table, found.history, "/m")) and len(figure.axes) == 2
     (found.folder / "modes.csv").write_text("mode\n1\n")
     with pytest.raises(Unreadable, match="modes.csv cannot be read: it is not as the run has written it"):
-        vibration.read(found.folder)
+        impacts.read_modes(found.folder)
 
 
 def test_modes_of_a_body_that_turns_about_any_axis(tmp_path):

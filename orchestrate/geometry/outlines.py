@@ -140,6 +140,11 @@ def ellipse_loop(a: float, b: float) -> Loop:
     return Loop(np.array([[a, 0.0], [0.0, b], [-a, 0.0], [0.0, -b]]), np.array([a, b]))
 
 
+def circle_loop(radius: float) -> Loop:
+    """The circle about the origin."""
+    return ellipse_loop(radius, radius)
+
+
 class Shape:
     """What an outline in the plane and a solid have in common: `points` on them, signed distances `gap` from them, and, of a disc or ball,
     `disc`."""

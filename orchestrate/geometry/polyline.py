@@ -29,16 +29,10 @@ class Sides:
     closed: bool
 
 
-def check(path: str, vertices: np.ndarray, closed: bool, rounding: float) -> None:
-    """BadInput, naming path.key, unless the chain is one that has two sides."""
-    least = 3 if closed else 2
-    if len(vertices) < least:
-        raise BadInput(f"{path}.vertices: {len(vertices)} given (accepted: {least} or more points [x, "
-                       f"y]{' of a closed chain' if closed else ''})")
-    if not np.isfinite(vertices).all():
-        raise BadInput(f"{path}.vertices.{np.argmin(np.isfinite(vertices).all(1)) + 1}: is not finite (accepted: numbers [x, y])")
-    if not 0 <= rounding < np.inf:
-        raise BadInput(f"{path}.rounding: {rounding:g} is out of range (accepted: from 0)")
+def check(path: str, vertices: np.ndarray, closed: bool) -> None:
+    """BadInput, naming path.key, unless the chain of two vertices or more is one that has two sides."""
+    if closed and len(vertices) < 3:
+        raise BadInput(f"{path}.vertices: {len(vertices)} given (accepted: 3 or more points [x, y] of a closed chain)")
     size = np.ptp(vertices, axis=0).max()
     steps = np.linalg.norm(np.diff(vertices, axis=0, append=vertices[:1] if closed else np.empty((0, 2))), axis=1)
     for k in np.flatnonzero(steps <= NEAR * size):

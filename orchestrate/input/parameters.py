@@ -3,7 +3,6 @@
 import difflib
 import math
 import re
-from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 
@@ -106,12 +105,6 @@ def check(given: dict[str, Value], script: str = "") -> dict[str, Value]:
             hint = f"; did you mean {' or '.join(close)}?" if close else ""
             raise BadInput(f"{brief(name)}: no such parameter{hint} (accepted: {', '.join(names(script))})")
     return {name: table()[name].check(value) for name, value in given.items()}
-
-
-def release(name: str, value: Value, causes: Iterable[str]) -> str:
-    """What is said of an entry that is open again."""
-    fixed = f"{value:g}" if isinstance(value, float) else brief(value)
-    return f"{name} is open again: the scene's {fixed} was for its own {', '.join(causes)}"
 
 
 def defaults(script: str = "disc-plane") -> dict[str, Value]:

@@ -41,15 +41,20 @@ class Table:
         """The entry by the rule of a parameter; its default where there is none."""
         return replace(rule, name=self.at(key)).check(self.given[key]) if key in self.given else rule.default
 
-    def number(self, key: str, low: float, high: float, default: float | None = None) -> float:
-        """A number between two bounds; required where there is no default."""
+    def number(self, key: str, low: float = SHORTEST, high: float = LONGEST, default: float | None = None) -> float:
+        """A number between two bounds, a length where they are not given; required where there is no default."""
         self._wanted(key, default, f"{low:g} to {high:g}")
         return self.parameter(key, _real(low, high, default))
 
-    def numbers(self, key: str, low: float, high: float, default: tuple[float, ...] | None = None, count: int = 2) -> np.ndarray:
+    def numbers(self, key: str, default: tuple[float, ...] | None = None, count: int = 2, low: float = -LONGEST,
+                high: float = LONGEST) -> np.ndarray:
         """So many numbers, [x, y] or [x, y, z], between two bounds."""
         self._wanted(key, default, f"{placeholder(count)}, each {low:g} to {high:g}")
         return _vector(self.at(key), self.given.get(key, default), low, high, count)
+
+    def lengths(self, keys: Sequence[str]) -> list[float | np.ndarray]:
+        """The sizes of a shape, of semi_axes two."""
+        return [self.numbers(key, low=SHORTEST) if key == "semi_axes" else self.number(key) for key in keys]
 
     def points(self, key: str, least: int = 3) -> np.ndarray:
         """At least so many points [x, y], (n, 2) in m."""

@@ -11,11 +11,14 @@ from ..input import parameters
 from . import gmsh_file, mesh
 from ..freefem.describe import describe
 from ..failure import BadInput, brief
-from ..geometry.outlines import Loop, Outline, crossing_sides, ellipse_loop, polygon_loop, self_crossing
+from ..geometry.outlines import Loop, Outline, circle_loop, crossing_sides, ellipse_loop, polygon_loop, self_crossing
 from ..input.tables import LONGEST, SHORTEST, Table
 
 SHAPES = {"disc": ("radius",), "ellipse": ("semi_axes",), "rectangle": ("width", "height"), "ring": ("radius", "inner_radius"),
           "polygon": ("vertices", "holes"), "mesh": ("file",)}
+LOOPS = {"disc": lambda radius: (circle_loop(radius),), "ring": lambda radius, inner: (circle_loop(radius), circle_loop(inner)),
+         "ellipse": lambda semi_axes: (ellipse_loop(*semi_axes),),
+         "rectangle": lambda *sides: (Loop(np.array(sides) / 2 * [[-1, -1], [1, -1], [1, 1], [-1, 1]]),)}
 MOTION = ("angle", "speed", "direction", "spin")      # entries beside position and velocity
 
 
@@ -29,7 +32,7 @@ def shape(table: Table, folder: Path) -> tuple[Outline, mesh.Mesh | None]:
 
 def motion(table: Table) -> dict:
     """Where a body is at the start and how it moves: position [m], angle [rad], velocity [m/s], spin [rad/s]."""
-    return {"position": table.numbers("position", -LONGEST, LONGEST), "angle": math.radians(table.number("angle", -36000, 36000, 0.0)),
+    return {"position": table.numbers("position"), "angle": math.radians(table.number("angle", -36000, 36000, 0.0)),
             "velocity": _velocity(table), "spin": float(table.parameter("spin", parameters.table()["spin"]))}
 
 
@@ -41,8 +44,8 @@ def _velocity(table: Table) -> np.ndarray:
         missing = "direction" if "speed" in table else "speed"
         raise BadInput(f"{table.path}.{missing}: is missing (accepted: speed [m/s] with direction [deg], counter-clockwise from x)")
     if "speed" not in table:
-        return table.numbers("velocity", -LONGEST, LONGEST, (0.0, 0.0))
-    speed, degrees = table.number("speed", 0, LONGEST), table.number("direction", -36000, 36000)
+        return table.numbers("velocity", (0.0, 0.0))
+    speed, degrees = table.number("speed", 0), table.number("direction", -36000, 36000)
     return speed * np.array([_sin(degrees + 90), _sin(degrees)])
 
 
@@ -54,21 +57,13 @@ def _sin(degrees: float) -> float:
 # ---- shapes
 
 def _outline(table: Table) -> Outline:
-    shape = table.given["shape"]
-    if shape == "disc":
-        radius = table.number("radius", SHORTEST, LONGEST)
-        return Outline((ellipse_loop(radius, radius),))
-    if shape == "ellipse":
-        return Outline((ellipse_loop(*table.numbers("semi_axes", SHORTEST, LONGEST)),))
-    if shape == "rectangle":
-        half = np.array([table.number("width", SHORTEST, LONGEST), table.number("height", SHORTEST, LONGEST)]) / 2
-        return Outline((Loop(half * [[-1, -1], [1, -1], [1, 1], [-1, 1]]),))
-    if shape == "ring":
-        radius, inner = table.number("radius", SHORTEST, LONGEST), table.number("inner_radius", SHORTEST, LONGEST)
-        if inner >= radius:
-            raise BadInput(f"{table.path}.inner_radius: {inner:g} is not less than the radius {radius:g}")
-        return Outline((ellipse_loop(radius, radius), ellipse_loop(inner, inner)))
-    return _polygon(table)
+    kind = table.given["shape"]
+    if kind == "polygon":
+        return _polygon(table)
+    sizes = table.lengths(SHAPES[kind])
+    if kind == "ring" and sizes[1] >= sizes[0]:
+        raise BadInput(f"{table.path}.inner_radius: {sizes[1]:g} is not less than the radius {sizes[0]:g}")
+    return Outline(LOOPS[kind](*sizes))
 
 
 def _polygon(table: Table) -> Outline:
@@ -148,6 +143,5 @@ def _loop(corners: np.ndarray, hubs: np.ndarray) -> Loop:
     if np.isnan(hubs).all():
         return polygon_loop(corners)
     if (hubs == hubs[0]).all():
-        radius = float(np.linalg.norm(corners[0] - hubs[0]))
-        return ellipse_loop(radius, radius).placed(hubs[0], 0.0)
+        return circle_loop(float(np.linalg.norm(corners[0] - hubs[0]))).placed(hubs[0], 0.0)
     return polygon_loop(corners, hubs)

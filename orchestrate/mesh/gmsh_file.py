@@ -1,10 +1,6 @@
-"""A mesh in gmsh's format as one of ours: its triangles in the plane, its boundary from them, labels from its physical curves.
-
-gmsh reads the file in a process of its own (`python -m orchestrate.mesh.gmsh_file FILE OUT`): some broken files kill it.
-"""
+"""A mesh in gmsh's format as one of ours: its triangles in the plane, its boundary from them, labels from its physical curves."""
 
 import shutil
-import sys
 import tempfile
 from pathlib import Path
 
@@ -37,7 +33,7 @@ def convert(path: Path) -> bytes:
         copy, made = Path(folder) / "mesh.msh", Path(folder) / "freefem.msh"   # gmsh goes by the ending of the name
         shutil.copyfile(path, copy)
         try:
-            mesh.own_process(__name__, copy, made)
+            mesh.write(mesh.in_own_process(read, copy), made)
         except BadInput as error:
             raise BadInput(f"mesh: {path}: {str(error).replace(copy.name, path.name)}") from None
         return made.read_bytes()
@@ -91,11 +87,3 @@ def _physical_curves(model) -> list[tuple[int, int, int]] | None:
 
 def _names(model) -> str:
     return ", ".join(model.getPhysicalName(1, number) or str(number) for _, number in model.getPhysicalGroups(1))
-
-
-if __name__ == "__main__":
-    try:
-        mesh.write(read(Path(sys.argv[1])), Path(sys.argv[2]))
-    except BadInput as failure:
-        print(failure, file=sys.stderr)
-        sys.exit(failure.code)

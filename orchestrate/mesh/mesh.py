@@ -1,16 +1,18 @@
-"""Meshes: a disc (or half of it) graded towards its contact arc, made by gmsh, written as FreeFEM's own .msh.
+"""Meshes by gmsh: a disc (or half of it) graded towards its contact arc, and what is inside closed curves, written as FreeFEM's own .msh.
 
-Boundary labels: 1 = the free outer boundary (the circle), 2 = the symmetry axis x = 0. The triangles are straight;
-the FreeFEM side curves the boundary. The lowest point of the disc touches the plane y = 0.
+Boundary labels: 1 = the free outer boundary, 2 = the symmetry axis x = 0. The triangles are straight; the FreeFEM side curves the
+boundary. The lowest point of the disc touches the plane y = 0.
 """
 
 import atexit
 import math
+import pickle
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cache
@@ -27,11 +29,13 @@ FREE, AXIS = 1, 2          # boundary labels
 # of a triangle; of a tetrahedron, seen from outside
 SIDES = {3: np.array([[0, 1], [1, 2], [2, 0]]), 4: np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])}
 LIBRARIES = "apt-get install libglu1-mesa libxcursor1 libxft2 libxinerama1 libgomp1"   # that gmsh's wheel needs, with what they need
+SAMPLED = 0.25             # a step between points at which an element size is asked for, over that size
 GROWTH = 0.3               # element size gained per length of distance from the contact arc
 # decimals of what gmsh is given, in sizes of the body: round-off settles ties, and the mesh would depend on the unit of length
 DIGITS = 10
 # the region of the triangles of our own discs, whose outline is a circle however long its edges are (edp/core/input/mesh-file.idp)
 OWN = 360
+Curve = Callable[[np.ndarray], np.ndarray]   # points (n, 2) [m] at parameters (n,) in [0, 1]
 
 
 @dataclass(frozen=True)
@@ -89,18 +93,10 @@ def disc(radius: float, mesh_size: float, contact_mesh_size: float, half: bool, 
     # gmsh's tolerances are absolute
     bulk, contact, arc = (round(size, DIGITS) for size in (mesh_size / radius, contact_mesh_size / radius, contact_arc))
     with gmsh_session() as gmsh:
-        gmsh.option.setNumber("Mesh.Algorithm", 6)   # frontal Delaunay: the best triangles
-        for source in ("FromPoints", "FromCurvature", "ExtendFromBoundary"):
-            gmsh.option.setNumber(f"Mesh.MeshSize{source}", 0)
         arcs, axis = _outline(gmsh.model.geo, half, min(arc, 0.99 * math.pi))
-        gmsh.model.geo.addPlaneSurface([gmsh.model.geo.addCurveLoop(arcs + axis)])
-        gmsh.model.geo.synchronize()
         contact_arcs = arcs[:1] if half else [arcs[0], arcs[-1]]
-        field = gmsh.model.mesh.field
-        field.setAsBackgroundMesh(graded(field, "CurvesList", contact_arcs, (contact, bulk), math.ceil(2 * arc / contact)))
-        gmsh.model.mesh.generate(2)
-        # gmsh also keeps the centre of the arcs
-        points, triangles, used = elements_of(gmsh.model, (2,), {2: 3}, "triangle", "triangles")
+        points, triangles, used = _filled(gmsh, [arcs + axis], lambda field: graded(field, "CurvesList", contact_arcs, (contact, bulk),
+                                                                                    math.ceil(2 * arc / contact)))
         pieces = [(label, gmsh.model.mesh.getElementsByType(1, curve)[1].reshape(-1, 2))
                   for label, curves in ((FREE, arcs), (AXIS, axis)) for curve in curves]
 
@@ -114,6 +110,92 @@ def disc(radius: float, mesh_size: float, contact_mesh_size: float, half: bool, 
     points = radius * (points + (0.0, 1.0))
     return Mesh(points, counter_clockwise(points, triangles), edges, labels, region=OWN)
 
+
+def _outline(geo, half: bool, contact_arc: float) -> tuple[list[int], list[int]]:
+    """Arcs of the unit circle, counter-clockwise from its lowest point, and the axis; as curves of gmsh."""
+    def point(angle):   # measured from the lowest point
+        return geo.addPoint(math.sin(angle), -math.cos(angle), 0)
+
+    centre, bottom, top = geo.addPoint(0, 0, 0), point(0.0), point(math.pi)
+    corners = [bottom, point(contact_arc), top]
+    if not half:
+        corners += [point(-contact_arc), bottom]
+    arcs = [geo.addCircleArc(a, centre, b) for a, b in zip(corners, corners[1:])]
+    return arcs, [geo.addLine(top, bottom)] if half else []
+
+
+def mesh_body(boundary: list[list[tuple[Curve, float, int]]], sizes: Sizes, scale: float) -> Mesh:
+    """The mesh inside closed curves, of a body about as large as `scale` [m]: the ends of their pieces are vertices, and all vertices of
+    the boundary lie on them to rounding; boundary edges have the body to their left, and the label of their piece."""
+    pieces = [[nodes_on(curve, largest, sizes) for curve, largest, _ in loop] for loop in boundary]
+    labels = [np.repeat([label for *_, label in loop], [len(nodes) for nodes in each]) for loop, each in zip(boundary, pieces)]
+    loops = [np.vstack(each) for each in pieces]
+    loops = [nodes if k == 0 else nodes[::-1] for k, nodes in enumerate(loops)]     # a hole has one label
+    # gmsh's tolerances are absolute
+    bulk, inside = round(sizes.bulk / scale, DIGITS), [np.round(nodes / scale, DIGITS) for nodes in loops]
+    with gmsh_session() as gmsh:
+        tags, curves = zip(*(_loop(gmsh.model, nodes) for nodes in inside))
+        points, triangles, used = _filled(gmsh, curves, lambda field: _grade(field, inside, curves, bulk))
+        corners = np.searchsorted(used, [gmsh.model.mesh.getNodes(0, tag)[0][0] for tag in np.concatenate(tags)])
+    points = points[:, :2] * scale
+    points[corners] = np.vstack(loops)
+    triangles = counter_clockwise(points, triangles)
+    ends = np.split(corners, np.cumsum([len(nodes) for nodes in loops])[:-1])
+    edges = np.vstack([np.column_stack([each, np.roll(each, -1)]) for each in ends])
+    return Mesh(points, triangles, edges, np.concatenate(labels))
+
+
+def nodes_on(curve: Curve, largest: float, sizes: Sizes) -> np.ndarray:
+    """Vertices (n, 2) on a curve from its first end on, without its last, in steps ds with the integral of ds / size constant."""
+    s, size = np.array([0.0, 1.0]), np.array([])
+    while len(size) < len(s):                    # halved until the size, which is Lipschitz, is known between points too
+        size = np.minimum(sizes.at(curve(s)), largest)
+        step = np.linalg.norm(np.diff(curve(s), axis=0), axis=1)
+        coarse = step > SAMPLED * np.minimum(size[1:], size[:-1])
+        s = np.sort(np.concatenate([s, (s[1:] + s[:-1])[coarse] / 2]))
+    passed = np.concatenate([[0.0], np.cumsum(step * (1 / size[1:] + 1 / size[:-1]) / 2)])
+    count = max(1, round(passed[-1]))
+    return curve(np.interp(passed[-1] * np.arange(count) / count, passed, s))
+
+
+def _loop(model, nodes: np.ndarray) -> tuple[list[int], list[int]]:
+    """Points and lines of gmsh along a loop, one element a line."""
+    points = [model.geo.addPoint(x, y, 0) for x, y in nodes]
+    lines = [model.geo.addLine(a, b) for a, b in zip(points, [*points[1:], points[0]])]
+    for line in lines:
+        model.geo.mesh.setTransfiniteCurve(line, 2)
+    return points, lines
+
+
+def _grade(field, loops: list[np.ndarray], curves: tuple[list[int], ...], bulk: float) -> int:
+    """A field of element sizes inside: those of the edges on the outline, growing linearly with the distance from them up to the bulk's.
+    Edges of about one length are one source."""
+    length = np.concatenate([np.linalg.norm(np.roll(nodes, -1, axis=0) - nodes, axis=1) for nodes in loops])
+    fineness = np.ceil(2 * np.log2(np.maximum(bulk / length, 1)) - 1e-9).astype(int)     # from bulk down in steps of sqrt(1/2)
+    lines, sources = np.concatenate(curves), []
+    for level in np.unique(fineness):
+        size = bulk * np.sqrt(0.5)**level
+        # points on a line; of 2 gmsh makes none
+        sources.append(graded(field, "CurvesList", lines[fineness == level], (size, bulk), sampling=5))
+    least = field.add("Min")
+    field.setNumbers(least, "FieldsList", sources)
+    return least
+
+
+def _filled(gmsh, loops: Sequence[Sequence[int]], sizes: Callable) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """elements_of() the triangles inside loops of curves of gmsh, the outer first, with `sizes` a field that is made of its fields."""
+    gmsh.option.setNumber("Mesh.Algorithm", 6)   # frontal Delaunay: the best triangles
+    for source in ("FromPoints", "FromCurvature", "ExtendFromBoundary"):
+        gmsh.option.setNumber(f"Mesh.MeshSize{source}", 0)
+    gmsh.model.geo.addPlaneSurface([gmsh.model.geo.addCurveLoop(list(lines)) for lines in loops])
+    gmsh.model.geo.synchronize()
+    field = gmsh.model.mesh.field
+    field.setAsBackgroundMesh(sizes(field))
+    gmsh.model.mesh.generate(2)
+    return elements_of(gmsh.model, (2,), {2: 3}, "triangle", "triangles")     # gmsh also keeps centres of arcs
+
+
+# ---- gmsh
 
 @cache
 def start_gmsh() -> ModuleType:
@@ -135,17 +217,29 @@ def start_gmsh() -> ModuleType:
     return gmsh
 
 
-def own_process(module: str, path: Path, *words: Path) -> None:
-    """Runs `python -m module path words`, which lets gmsh read a file: some broken files kill it. BadInput with what it said, or how it
+def in_own_process(read: Callable, path: Path, *given):
+    """read(path, *given) in a process of its own, where gmsh reads the file: some broken files kill it. BadInput as there, or with how it
     ended."""
-    child = subprocess.run([sys.executable, "-m", module, str(path), *map(str, words)], cwd=ROOT, stdin=subprocess.DEVNULL,
-                           stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace")
-    if child.returncode == 0 and words[0].exists():     # a script in a geometry may end gmsh
-        return
-    if child.returncode == BadInput.code:
-        raise BadInput(child.stderr.strip().splitlines()[-1].replace(str(path), path.name))
+    with tempfile.NamedTemporaryFile() as answer:
+        child = subprocess.run([sys.executable, "-c", f"from {__name__} import _answer; _answer()", answer.name], cwd=ROOT,
+                               input=pickle.dumps((read, path, *given)), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        if child.returncode == 0 and (said := answer.read()):     # a script in a geometry may end gmsh
+            found = pickle.loads(said)
+            if isinstance(found, BadInput):
+                raise BadInput(str(found).replace(str(path), path.name))
+            return found
     how = signal.Signals(-child.returncode).name if child.returncode < 0 else f"exit code {child.returncode}"
     raise BadInput(f"gmsh broke down over it ({how})")
+
+
+def _answer() -> None:
+    """In that process: what was found, or why not, into the file."""
+    read, *given = pickle.load(sys.stdin.buffer)
+    try:
+        found = read(*given)
+    except BadInput as error:
+        found = error
+    Path(sys.argv[1]).write_bytes(pickle.dumps(found))
 
 
 @contextmanager
@@ -159,19 +253,6 @@ def gmsh_session() -> Iterator[ModuleType]:
         yield gmsh
     finally:
         gmsh.clear()
-
-
-def _outline(geo, half: bool, contact_arc: float) -> tuple[list[int], list[int]]:
-    """Arcs of the unit circle, counter-clockwise from its lowest point, and the axis; as curves of gmsh."""
-    def point(angle):   # measured from the lowest point
-        return geo.addPoint(math.sin(angle), -math.cos(angle), 0)
-
-    centre, bottom, top = geo.addPoint(0, 0, 0), point(0.0), point(math.pi)
-    corners = [bottom, point(contact_arc), top]
-    if not half:
-        corners += [point(-contact_arc), bottom]
-    arcs = [geo.addCircleArc(a, centre, b) for a, b in zip(corners, corners[1:])]
-    return arcs, [geo.addLine(top, bottom)] if half else []
 
 
 def graded(field, kind: str, sources: Sequence[int], sizes: tuple[float, float], sampling: int = 0, flat: float = 0.0) -> int:

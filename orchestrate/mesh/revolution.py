@@ -12,10 +12,12 @@ import numpy as np
 
 from . import flat, mesh
 from ..failure import BadInput
-from ..geometry.outlines import Loop, Outline, cross, ellipse_loop
-from ..input.tables import LONGEST, SHORTEST, Table
+from ..geometry.outlines import Loop, Outline, circle_loop, cross, ellipse_loop
+from ..input.tables import LONGEST, Table
 
 SHAPES = {"ball": ("radius",), "ellipsoid": ("semi_axes",), "cylinder": ("radius", "height"), "polygon": ("vertices",), "mesh": ("file",)}
+LOOPS = {"ball": circle_loop, "ellipsoid": lambda semi_axes: ellipse_loop(*semi_axes),
+         "cylinder": lambda r, height: Loop(np.array([r, height / 2]) * [[0, -1], [1, -1], [1, 1], [0, 1], [-1, 1], [-1, -1]])}
 MOTION = ()
 
 
@@ -39,8 +41,8 @@ def motion(table: Table) -> dict:
 def on_axis(table: Table, key: str, default: tuple[float, float] | None = None) -> np.ndarray:
     """A place on the axis, or a vector along it, (2,): [0, y], or y alone."""
     if key in table and not isinstance(table.given[key], list):
-        return np.array([0.0, table.number(key, -LONGEST, LONGEST)])
-    found = table.numbers(key, -LONGEST, LONGEST, default)
+        return np.array([0.0, table.number(key, -LONGEST)])
+    found = table.numbers(key, default)
     if found[0] != 0:
         raise BadInput(f"{table.at(key)}: x is {found[0]:g}, off the axis of revolution (accepted: [0, y], or y alone)")
     return found
@@ -49,15 +51,9 @@ def on_axis(table: Table, key: str, default: tuple[float, float] | None = None) 
 def _loop(table: Table) -> Loop:
     """The outline of a section, with corners where it crosses the axis."""
     kind = table.given["shape"]
-    if kind == "ellipsoid":
-        return ellipse_loop(*table.numbers("semi_axes", SHORTEST, LONGEST))
     if kind == "polygon":
         return Loop(closed_over_axis(f"{table.path}.vertices", table.points("vertices")))
-    radius = table.number("radius", SHORTEST, LONGEST)
-    if kind == "ball":
-        return ellipse_loop(radius, radius)
-    half = table.number("height", SHORTEST, LONGEST) / 2
-    return Loop(np.array([[0, -half], [radius, -half], [radius, half], [0, half], [-radius, half], [-radius, -half]]))
+    return LOOPS[kind](*table.lengths(SHAPES[kind]))
 
 
 def closed_over_axis(path: str, right: np.ndarray) -> np.ndarray:

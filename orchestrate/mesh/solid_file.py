@@ -1,11 +1,8 @@
 """A solid in a file: a mesh of tetrahedra (gmsh's .msh, Medit's .mesh) or a geometry that gmsh meshes (.geo, .step, .stp), lengths in m.
 
 Faces of a physical surface named `contact` may touch, others never; without physical surfaces the outer surface may, cavities never.
-gmsh reads the file in a process of its own (`python -m orchestrate.mesh.solid_file FILE OUT [SIZES]`): some broken files kill it.
 """
 
-import sys
-import tempfile
 from functools import cache
 from pathlib import Path
 
@@ -13,7 +10,7 @@ import numpy as np
 
 from . import mesh
 from ..failure import BadInput
-from .mesh import FREE, Sizes, boundary, is_outer, own_process, pieces
+from .mesh import FREE, Sizes, boundary, in_own_process, is_outer, pieces
 from .solid_mesh import NEVER, TURN, SolidMesh, cell_volumes, cells_of, generate
 
 MESHES, GEOMETRIES = (".msh", ".mesh"), (".geo", ".step", ".stp")
@@ -41,27 +38,17 @@ def read(path: Path) -> SolidMesh:
     return _read(path.resolve(), stamp.st_mtime_ns)
 
 
-def meshed(path: Path, sizes: Sizes) -> SolidMesh:
-    """The mesh of a geometry with element sizes, which are of the coordinates in the file."""
-    return _child(path, sizes)
+def meshed(path: Path, sizes: Sizes | None) -> SolidMesh:
+    """The mesh in a file, that of a geometry with element sizes, which are of the coordinates in the file."""
+    try:
+        return in_own_process(_taken, path, sizes)
+    except BadInput as error:
+        raise BadInput(f"'{path.name}': {error}") from None
 
 
 @cache
 def _read(path: Path, changed: int) -> SolidMesh:
-    return _child(path, None)
-
-
-def _child(path: Path, sizes: Sizes | None) -> SolidMesh:
-    with tempfile.TemporaryDirectory() as folder:
-        out, wanted = Path(folder) / "mesh.npz", Path(folder) / "sizes.npz"
-        if sizes:
-            np.savez(wanted, bulk=sizes.bulk, contact=sizes.contact, near=sizes.near, slack=sizes.slack)
-        try:
-            own_process(__name__, path, out, *([wanted] if sizes else []))
-        except BadInput as error:
-            raise BadInput(f"'{path.name}': {error}") from None
-        with np.load(out) as found:
-            return SolidMesh(found["points"], found["cells"], found["faces"], found["labels"])
+    return meshed(path, None)
 
 
 # ---- in the process of its own
@@ -76,7 +63,7 @@ def _taken(path: Path, sizes: Sizes | None) -> SolidMesh:
                     raise BadInput(f"it does not begin with {HEADER.decode()} (accepted: gmsh's .msh)")
         with mesh.gmsh_session() as gmsh:
             gmsh.open(str(path))
-            return _labelled(gmsh.model, *cells_of(gmsh.model))
+            return _labelled(gmsh.model)
     except BadInput:
         raise
     except Exception as error:   # gmsh knows no other
@@ -84,8 +71,6 @@ def _taken(path: Path, sizes: Sizes | None) -> SolidMesh:
 
 
 def _meshed(path: Path, sizes: Sizes | None) -> SolidMesh:
-    found = []
-
     def build(gmsh) -> None:
         gmsh.option.setString("Geometry.OCCTargetUnit", "M")
         gmsh.open(str(path))
@@ -95,15 +80,12 @@ def _meshed(path: Path, sizes: Sizes | None) -> SolidMesh:
             low, high = np.reshape(gmsh.model.getBoundingBox(-1, -1), (2, 3))
             gmsh.option.setNumber("Mesh.MeshSizeMax", float((high - low).max()) / COARSE)
 
-    def label(gmsh, points: np.ndarray, cells: np.ndarray) -> None:
-        found.append(_labelled(gmsh.model, points, cells))
-
-    generate(build, sizes or Sizes(0.0, 0.0, np.empty((0, 3)), 0.0), TURN, label)
-    return found[0]
+    return generate(build, sizes or Sizes(0.0, 0.0, np.empty((0, 3)), 0.0), TURN, _labelled)
 
 
-def _labelled(model, points: np.ndarray, cells: np.ndarray) -> SolidMesh:
-    """With the labels of boundary faces from the physical surfaces of a model."""
+def _labelled(model) -> SolidMesh:
+    """The mesh in a model of gmsh, with the labels of boundary faces from its physical surfaces."""
+    points, cells = cells_of(model)
     volumes = cell_volumes(points, cells)
     if not (volumes > 1e-12 * np.ptp(points, axis=0).max()**3 / len(cells)).all():
         raise BadInput(f"a tetrahedron is flat: its volume is {np.nanmin(volumes):.3g} m3, or it has a corner that is no number")
@@ -161,16 +143,3 @@ def _contact_triangles(model) -> np.ndarray | None:
                for surface in model.getEntitiesForPhysicalGroup(2, number) for kind, _, nodes in zip(*model.mesh.getElements(2, surface))
                if kind in TRIANGLES]
     return coordinates.reshape(-1, 3)[np.vstack(corners or [np.empty((0, 3), dtype=int)])]
-
-
-if __name__ == "__main__":
-    try:
-        wanted = None
-        if len(sys.argv) > 3:
-            with np.load(sys.argv[3]) as given:
-                wanted = Sizes(float(given["bulk"]), float(given["contact"]), given["near"], float(given["slack"]))
-        made = _taken(Path(sys.argv[1]), wanted)
-        np.savez(sys.argv[2], points=made.points, cells=made.cells, faces=made.faces, labels=made.labels)
-    except BadInput as failure:
-        print(failure, file=sys.stderr)
-        sys.exit(failure.code)

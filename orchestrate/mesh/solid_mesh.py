@@ -130,9 +130,15 @@ def mesh_shape(kind: str, lengths: np.ndarray, rotation: np.ndarray, folded: tup
     return SolidMesh(points, cells, faces, labels, (round_one,))
 
 
-def generate(build: Callable, sizes: Sizes, turn: int, look: Callable | None = None) -> tuple[np.ndarray, np.ndarray]:
-    """Points and tetrahedra of what `build` puts into gmsh, also shown to `look`; on curved surfaces `turn` elements a full turn at least.
-    Sizes of 0 are open: `build` sets the largest."""
+def cells_of(model) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices (n, 3) and tetrahedra (t, 4) of a model of gmsh, of those of second order the corners; BadInput for other elements."""
+    points, cells, _ = mesh.elements_of(model, (3,), {4: 4, 11: 10}, "tetrahedron", "tetrahedra")
+    return points, right_handed(points, cells)
+
+
+def generate(build: Callable, sizes: Sizes, turn: int, take: Callable = cells_of):
+    """What `take` makes of the model that `build` puts into gmsh, meshed; on curved surfaces `turn` elements a full turn at least. Sizes of
+    0 are open: `build` sets the largest."""
     with mesh.gmsh_session() as gmsh:
         build(gmsh)
         for name, value in {"FromPoints": 0, "ExtendFromBoundary": 0, "FromCurvature": turn}.items():
@@ -143,10 +149,7 @@ def generate(build: Callable, sizes: Sizes, turn: int, look: Callable | None = N
         gmsh.option.setNumber("Mesh.OptimizeNetgen", 1)
         _grade(gmsh, sizes)
         gmsh.model.mesh.generate(3)
-        found = cells_of(gmsh.model)
-        if look:
-            look(gmsh, *found)
-        return found
+        return take(gmsh.model)
 
 
 def _grade(gmsh, sizes: Sizes) -> None:
@@ -158,12 +161,6 @@ def _grade(gmsh, sizes: Sizes) -> None:
     gmsh.model.geo.synchronize()
     field = gmsh.model.mesh.field
     field.setAsBackgroundMesh(mesh.graded(field, "PointsList", sources, (sizes.contact, sizes.bulk), flat=sizes.slack))
-
-
-def cells_of(model) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices (n, 3) and tetrahedra (t, 4) of a model of gmsh, of those of second order the corners; BadInput for other elements."""
-    points, cells, _ = mesh.elements_of(model, (3,), {4: 4, 11: 10}, "tetrahedron", "tetrahedra")
-    return points, right_handed(points, cells)
 
 
 def expected_cells(volume: float, sizes: Sizes) -> float:

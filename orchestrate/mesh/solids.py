@@ -14,7 +14,7 @@ from ..geometry import outlines, tumbling
 from . import curved, solid_file
 from ..failure import BadInput, brief
 from .solid_mesh import MOST_CELLS, Sizes, SolidMesh, expected_cells, mesh_shape
-from ..input.tables import LONGEST, SHORTEST, Table
+from ..input.tables import Table
 from ..geometry.tumbling import rotation
 
 SHAPES = {"ball": ("radius",), "box": ("width", "height", "depth"), "cylinder": ("radius", "height"), "mesh": ("file",)}
@@ -251,7 +251,7 @@ def shape(table: Table, folder: Path) -> tuple[Solid, SolidMesh | None]:
     kind = table.given["shape"]
     if kind == "mesh":
         return _of_file(table, folder)
-    sizes = [table.number(key, SHORTEST, LONGEST) for key in SHAPES[kind]]
+    sizes = table.lengths(SHAPES[kind])
     made = box(np.array(sizes)) if kind == "box" else {"ball": ball, "cylinder": cylinder}[kind](*sizes)
     return Solid(made, np.zeros(3), np.eye(3)), None
 
@@ -280,8 +280,9 @@ def motion(table: Table) -> dict:
     if "angle" in table and "turn" in table:
         raise BadInput(f"{table.path}.angle: '{brief(table.given['angle'])}' stands beside turn (accepted: angle about z, or turn = "
                        f"[x, y, z])")
-    turn = [0.0, 0.0, table.number("angle", -36000, 36000)] if "angle" in table else table.numbers("turn", -36000, 36000, (0.0,) * 3, 3)
+    none = (0.0,) * 3
+    turn = [0.0, 0.0, table.number("angle", -36000, 36000)] if "angle" in table else table.numbers("turn", none, 3, -36000, 36000)
     about_z = "spin" in table and not isinstance(table.given["spin"], list)
-    spin = [0.0, 0.0, table.number("spin", -1e12, 1e12)] if about_z else table.numbers("spin", -1e12, 1e12, (0.0,) * 3, 3)
-    return {"position": table.numbers("position", -LONGEST, LONGEST, count=3), "angle": np.radians(turn),
-            "velocity": table.numbers("velocity", -LONGEST, LONGEST, (0.0,) * 3, 3), "spin": np.array(spin)}
+    spin = [0.0, 0.0, table.number("spin", -1e12, 1e12)] if about_z else table.numbers("spin", none, 3, -1e12, 1e12)
+    return {"position": table.numbers("position", count=3), "angle": np.radians(turn), "velocity": table.numbers("velocity", none, 3),
+            "spin": np.array(spin)}

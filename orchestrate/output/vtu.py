@@ -69,8 +69,11 @@ def read(path: Path) -> Snapshot:
         if not len(cells):
             return _cut(Solid(points, solid, fields), on_plane)
     row = np.cumsum(on_plane) - 1
-    flat = Snapshot(points[on_plane, :2], row[cells], Contents({name: field[on_plane] for name, field in fields.items()}, path))
-    return flat if kind == TRIANGLE else _straight(flat)
+    points, cells, fields = points[on_plane, :2], row[cells], {name: field[on_plane] for name, field in fields.items()}
+    if kind != TRIANGLE:
+        curved = split(cells.tobytes(), int(np.clip(np.sqrt(MOST / max(1, len(cells))), 2, FINEST)))
+        points, cells, fields = curved.at(points), curved.triangles, {name: curved.at(field) for name, field in fields.items()}
+    return Snapshot(points, cells, Contents(fields, path))
 
 
 def read_solid(path: Path) -> Solid | None:
@@ -95,13 +98,6 @@ def _parts(path: Path) -> tuple[np.ndarray, int, np.ndarray, dict[str, np.ndarra
         if nodes.min() < 0 or nodes.max() >= len(points) or any(len(field) != len(points) for field in fields.values()):
             raise ValueError("a node or a value at one is missing")
         return points, kind, nodes, Contents(fields, path)
-
-
-def _straight(curved: Snapshot) -> Snapshot:
-    """Its quadratic triangles as straight ones."""
-    cells, fields = curved.triangles, curved.fields
-    skin = split(cells.tobytes(), int(np.clip(np.sqrt(MOST / max(1, len(cells))), 2, FINEST)))
-    return Snapshot(skin.at(curved.points), skin.triangles, Contents({name: skin.at(field) for name, field in fields.items()}, fields.path))
 
 
 @lru_cache(1)          # snapshots of a run have the same triangles

@@ -12,10 +12,10 @@ import pandas as pd
 
 from ..output.results import mechanical_energy
 from ..report.friction_laws import VALUES
-from ..report.vibration import spectrum
+from ..report.impacts import spectrum
 from . import stick_slip
 from ..sweeps import study
-from .judging import CONSTANT, LAWS, OPEN, History, Lost, Results, bar, finished, graded, lost, maxima, of_both, states, touching
+from .judging import CONSTANT, LAWS, OPEN, History, Lost, Results, bar, finished, graded, lost, maxima, of_laws, states, touching
 
 JUMP, SPEED, ANGLE = "friction-jump", 12.0, 60.0   # m/s, degrees from the plane: the paper's normal incidence is pi/2
 FLAT = 30.0                 # degrees from the plane, as if the paper's pi/3 were from the normal
@@ -101,7 +101,7 @@ def oscillates(results: Results, law: str) -> tuple[bool, str]:
 
 
 @states("Section 3.1, figure 5a", "the oscillations are due to the multiple reflections of the impact waves on the disc's boundary",
-        JUMP, lost=LOST, svk="{}.")
+        JUMP, lost=LOST, laws="{}.")
 def reflected(results: Results, law: str) -> tuple[str, str, str]:
     """By the spectrum of the force less its slow push, beside the natural modes of the disc (modes.csv): what waves between its boundaries
     make up. With SVK, of the peaks that both meshes have: partly where some, agrees where all lie nearer to a mode with 1 % of the
@@ -138,7 +138,7 @@ def _oscillation(history: History, modes: np.recarray) -> tuple[np.ndarray, np.n
 
 @states("Section 3.1, figure 5b", "an instability born from the alternation of static and dynamic friction", JUMP,
         f"{JUMP} disc-oblique-svk/rolling", LOST,
-        svk="how many times the whole load changes between sliding and sticking, on two meshes; {}.")
+        laws="how many times the whole load changes between sliding and sticking, on two meshes; {}.")
 def alternates(results: Results, law: str) -> tuple[str, str, str]:
     """With SVK: agrees where the whole load changes its coefficient more than twice and, by more than mesh and step change it, more often
     than with equal coefficients, where nothing jumps; partly where it does so no more often than this control."""
@@ -152,7 +152,7 @@ def alternates(results: Results, law: str) -> tuple[str, str, str]:
 
 @states("Section 3.1, figure 5b",
         "the instability is characterised by a discontinuity in the acceleration due to the sudden change in the type of friction",
-        STEPS, lost=LOST_STEPS, svk="largest changes of the acceleration in a step; {}.")
+        STEPS, lost=LOST_STEPS, laws="largest changes of the acceleration in a step; {}.")
 def discontinuous(results: Results, law: str) -> tuple[str, str, str]:
     """With SVK, on the acceleration of the centre along the plane (friction force over mass) with steps of 20 and 5 μs: it jumps where its
     largest changes from step to step (mean of five) fall by less than the square root of the steps, while those of the acceleration across
@@ -204,7 +204,7 @@ def _losses(history: History) -> tuple[float, float, float]:
 
 
 @states("Section 3.1, figure 6a", "the elastic energy is null before the contact and in it fluctuates together with the kinetic energy",
-        JUMP, ENERGIES, LOST, svk="of the total at the start, on two meshes; {}.")
+        JUMP, ENERGIES, LOST, laws="of the total at the start, on two meshes; {}.")
 def elastic(results: Results, law: str) -> tuple[str, str, str]:
     """With SVK, on both meshes: agrees where it is null to 1e-9 of the total at the start, its changes in the contact mirror those of the
     kinetic energy (correlation below -0.9), and it has several maxima that stand out by more than 1 % of the total; partly where it rises
@@ -246,7 +246,8 @@ def sliding_first(results: Results) -> tuple[str, str, Lost]:
         counts |= {angle: (both, len(rows))} if law == "svk" else {}
         told.append(f"{angle:g}°, {LAWS[law]}: {order} of {len(rows)} runs, {both} of them with at most {100 * stick_slip.QUIET:g} % of "
                     f"the friction work in the last third")
-    restitution = {name: results.summary(name)["rebound_vy"] / _normal() for name in ("disc-oblique-svk", "disc-oblique")}
+    normal = SPEED * np.sin(np.radians(ANGLE))
+    restitution = {name: results.summary(name)["rebound_vy"] / normal for name in ("disc-oblique-svk", "disc-oblique")}
     shares = " and ".join(f"{slip_share(e):.2f} with the e = {e:.3f} of {name}" for name, e in restitution.items())
     met = [angle for angle, (both, _) in counts.items() if both]
     explained = "" if ANGLE in met else ", which explains it: the disc sticks long before two thirds, and slips back at the end"
@@ -258,14 +259,10 @@ def sliding_first(results: Results) -> tuple[str, str, Lost]:
     ), list(every[every.law == "svk"].ellipticity_lost_time)
 
 
-def _normal(angle: float = ANGLE) -> float:
-    return SPEED * np.sin(np.radians(angle))
-
-
 def slip_share(e: float, angle: float = ANGLE) -> float:
     """The share of the normal impulse at which a rigid disc stops to slide: with I = m R²/2 each unit of friction impulse takes 3/m of its
     slip."""
-    return SPEED * np.cos(np.radians(angle)) / (3 * DYNAMIC * (1 + e) * _normal(angle))
+    return 1 / (3 * DYNAMIC * (1 + e) * np.tan(np.radians(angle)))
 
 
 @states("Section 3.1, figure 4", "in the last third of the contact the disc rolls without sliding", f"{JUMP} disc-oblique-svk disc-rolling",
@@ -279,7 +276,7 @@ def rolls(results: Results) -> tuple[str, str]:
         return all(abs(rim - centre) < 0.05 * abs(centre) for centre, rim in means), " and ".join(
             f"v_x = {centre:.2f}, −ω R = {rim:.2f} m/s" for centre, rim in means)
     own = results.summary("disc-rolling")["rebound_vx"] / results.scene("disc-rolling")["speed"]
-    return of_both(of, results,
+    return of_laws(of, results,
                    "means over the last third, on two meshes; {}. (Set down on the plane, in a scene of our own that the verdict does not "
                    f"rest on, it comes to roll at {own:.3f} v₀; rigid: 2/3.)")
 

@@ -19,7 +19,7 @@ import pandas as pd
 from ..output.results import read_frame, read_history, read_scene, read_summary
 from ..sweeps import study
 from ..sweeps import sweep, sweep_figures
-from ..report import vibration
+from ..report.impacts import read_modes
 
 AGREES, DIFFERS, PARTLY, OPEN = "agrees", "does not agree", "partly", "not decided"
 CONSTANT = 1e-9             # of the energy at the start: below, an energy is constant
@@ -88,7 +88,7 @@ class Results:
         return [read_summary(folder) for folder in self.pair(name, **values)]
 
     def modes(self, name: str, **values) -> list[np.recarray]:
-        return [vibration.read(folder) for folder in self.pair(name, **values)]
+        return [read_modes(folder) for folder in self.pair(name, **values)]
 
     def friction_laws(self) -> pd.DataFrame:
         """The table that figure 3 is drawn from."""
@@ -111,17 +111,17 @@ Lost = list[float | None]   # when runs with St. Venant-Kirchhoff lost elliptici
 
 
 def states(item: str, text: str, runs: str | Callable[[Results], list[Path]] = "", figures: str | None = None,
-           lost: Callable[[Results], Lost] = lambda results: [], exact: bool = False, laws: str = "", svk: str = "") -> Callable:
+           lost: Callable[[Results], Lost] = lambda results: [], exact: bool = False, laws: str = "") -> Callable:
     """Registers how a statement of the paper is judged. The rule gives the verdict and our number in words, and may give `lost`.
 
     runs: the runs and sweeps that it rests on; figures: as Results.drawn() names them, those of its sweeps where none are given; lost: of
-    the runs that decide; exact: it is about what every step keeps exactly, on any mesh. laws, svk: the rule is about one law, which it
-    takes, and gives words, which stand for {} in these, behind whether it holds (laws: of_both) or its verdict (svk: of_papers).
+    the runs that decide; exact: it is about what every step keeps exactly, on any mesh. laws: the rule is about one law, which it takes,
+    and the words of both stand for {} in these: of_laws().
     """
     def register(rule: Callable) -> Callable[[Results], Finding]:
         @wraps(rule)
         def judged(results: Results) -> Finding:
-            verdict, ours, *more = of_both(rule, results, laws) if laws else of_papers(rule, results, svk) if svk else rule(results)
+            verdict, ours, *more = of_laws(rule, results, laws) if laws else rule(results)
             folders = results.folders(*runs.split()) if isinstance(runs, str) else runs(results)
             shown = [name for name in runs.split() if name in sweep.built_in()] if figures is None else figures.split()
             if verdict == AGREES:
@@ -156,24 +156,13 @@ def graded(agrees: bool, partly: bool = False) -> str:
     return AGREES if agrees else PARTLY if partly else DIFFERS
 
 
-def of_both(rule: Callable[[Results, str], tuple[bool, str]], results: Results, around: str) -> tuple[str, str]:
-    """(verdict, words) of what holds of a law: agrees with both, partly with the paper's alone, not where the paper's does not; `rule`
-    gives (holds, words) of "svk" and "neohookean"."""
+def of_laws(rule: Callable[[Results, str], tuple], results: Results, around: str) -> tuple[str, str]:
+    """(verdict, words) of both laws. The rule gives of each (holds, words): agrees with both, partly with the paper's alone, not where the
+    paper's does not; or (verdict, words, what is said behind them all): the paper's law decides."""
     found = {law: rule(results, law) for law in LAWS}
-    paper, other = (holds for holds, _ in found.values())
-    return graded(paper and other, paper), _each(found, around)
-
-
-def of_papers(rule: Callable[[Results, str], tuple[str, str, str]], results: Results, around: str) -> tuple[str, str]:
-    """The same of what is decided by the paper's law: `rule` gives (verdict, words, what is said behind them all)."""
-    found = {law: rule(results, law) for law in LAWS}
-    verdict, _, said = found["svk"]
-    return verdict, _each(found, around) + said
-
-
-def _each(found: dict[str, tuple], around: str) -> str:
-    """The words of both laws in those around them."""
-    return around.format("; ".join(f"{LAWS[law]}: {words}" for law, (_, words, *_) in found.items()))
+    (paper, _, *said), (other, *_) = found.values()
+    words = around.format("; ".join(f"{LAWS[law]}: {own}" for law, (_, own, *_) in found.items()))
+    return paper if said else graded(paper and other, paper), words + "".join(said)
 
 
 def finished(results: Results, name: str) -> pd.DataFrame:

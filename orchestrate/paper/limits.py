@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 
 from ..sweeps import sweep_figures
-from .judging import Lost, Results, finished, graded, of_both, states
+from .judging import Lost, Results, finished, graded, of_laws, states
 
 STIFFNESS, SLIP = "calibrate", "slip-limit"
 COMPRESSIBLE, INCOMPRESSIBLE = "disc-normal-neohookean", "disc-normal-incompressible"
@@ -46,7 +46,7 @@ def stiff_limit(results: Results) -> tuple[str, str, Lost]:
             f"for {sum(good)} of {len(good)} ν, penetration from up to {1e3 * first:.2g} down to {1e3 * last:.2g} mm, rebound {ends} m/s")
     around = ("largest penetration, and what each larger k still changes of the rebound with the first and the last ν, from k = "
               f"{rows.penalty.min():.0e} to {rows.penalty.max():.0e} Pa/m; {{}}.")
-    return *of_both(of, results, around), list(rows[rows.law == "svk"].ellipticity_lost_time)
+    return *of_laws(of, results, around), list(rows[rows.law == "svk"].ellipticity_lost_time)
 
 
 @states("Section 2.3, equation (12)", "for ε → 0 φ^1, φ^2, φ^3 tend to the step, and a sufficiently small ε serves", SLIP,

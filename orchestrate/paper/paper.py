@@ -6,20 +6,25 @@ its last digit.
 """
 
 import argparse
+import os
+import re
+import shlex
+import subprocess
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from pathlib import Path
 
 from verification import verify
 
-from .. import scene
-from ..failure import Failure, Unreadable
+from .. import __main__ as program, scene
+from ..failure import BadInput, Failure, Unreadable
 from ..output.folder import result_folder
 from ..places import COMMAND, RESULTS, ROOT, shown
+from ..progress import Line
 from . import stick_slip
 from ..sweeps import study
 from ..sweeps import sweep
-from . import judging, making
+from . import judging
 from . import limits, friction, impacts, pairs, bodies, times   # noqa: F401: these register the statements, in this order
 from .page import COLOURS, page, verification
 
@@ -32,6 +37,12 @@ RUNS = {"disc-normal": ("force",), "disc-normal-neohookean": (), "disc-normal-in
 # the make target of a case, where it is not its own name
 TARGETS = {"disc-oblique-svk": "disc-oblique", "disc-block-neohookean": "disc-block", "ball-axisymmetric-svk": "ball-axisymmetric",
            "disc-normal-neohookean": "ball-comparison", "disc-normal-incompressible": "ball-comparison"}
+# about how long each takes on two cores [s], for the time left; whatever is not named: USUAL
+SECONDS = {"disc-normal": 3, "disc-oblique": 40, "disc-rolling": 10, "friction-laws": 3, "oblique": 36, "friction-jump": 6,
+           "friction-steps": 11, "slip-limit": 6, "contact-time-svk": 90, "law-comparison": 6, "contact-time-neohookean": 90, "pairing": 15,
+           "calibrate": 115, "calibrate-oblique": 62, "calibrate-ball": 13, "calibrate-ball-3d": 27, "conservation": 8, "stick-slip": 70,
+           "verify": 200}
+USUAL = 20
 
 
 def main(argv: list[str]) -> int:
@@ -40,7 +51,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--results", metavar="DIR", type=Path, default=RESULTS, help="where the cases are (default: results)")
     parser.add_argument("--make", metavar="TARGET", nargs="+", default=[], help="run these targets of make first")
     options = parser.parse_args(argv)
-    if code := making.make(options.make):
+    if code := make(options.make):
         return code
     results = judging.Results(result_folder(options.results))
     require(results)
@@ -89,3 +100,28 @@ def _runs(folder: Path, given: scene.Scene, base: study.Point, points: list[stud
 def _hold(runs: Iterable[tuple[Path, scene.Scene]]) -> bool:
     """Whether every folder holds the outcome of its scene, by the present code."""
     return all(study.there(folder, wanted) for folder, wanted in runs)
+
+
+# ---- what the statements rest on, made
+
+def make(targets: list[str]) -> int:
+    """Runs what make would run for each, one after another in this process, with one line of progress; the exit code of the first that
+    fails, else 0."""
+    wanted = {target: commands(target) for target in targets}
+    with Line("paper", {target: SECONDS.get(target, USUAL) for target in targets}) as line:
+        for k, (target, each) in enumerate(wanted.items(), 1):
+            with line.part(target, f"{k} of {len(wanted)}"):
+                for words in each:
+                    if code := program.main(words):
+                        return code
+    return 0
+
+
+def commands(target: str) -> list[list[str]]:
+    """The words after `python -m orchestrate` in each line of the recipe of a target."""
+    plain = {name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL")}
+    said = subprocess.run(["make", "-n", "-s", target, "ARGS="], cwd=ROOT, env=plain, capture_output=True, text=True).stdout
+    recipe = re.findall(r" -m orchestrate (.*)$", said, re.MULTILINE)
+    if not recipe:
+        raise BadInput(f"--make: '{target}' is no target that runs the program (accepted: see make)")
+    return [shlex.split(line) for line in recipe]

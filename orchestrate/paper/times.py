@@ -6,8 +6,8 @@ logarithm of k. Runs with det F <= 0 are no answers.
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from itertools import combinations, product
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -31,7 +31,7 @@ Ranges = list[tuple[float, float]]
 def oblique_time(results: Results) -> tuple[str, str]:
     """As the ball's time, at 60 degrees from the plane; 30 degrees stand beside."""
     rows, neo = results.table(OBLIQUE_MAP), finished(results, "oblique")
-    other = _met(_whole(rows[(rows.exit == 0) & (rows.angle == OTHER)]), OBLIQUE_MAP)
+    other = _met(rows[(rows.exit == 0) & (rows.angle == OTHER) & rows.breakdown_time.isna()], OBLIQUE_MAP)
     found = {nu: bar(neo, "contact_time", nu=nu) for nu in neo.nu}
     converged = ", ".join(f"{1e3 * time:.2f} ± {1e3 * error:.2f} ms (ν = {nu:g})" for nu, (time, error) in found.items())
     return _over_meshes(OBLIQUE_MAP, rows[rows.angle == ANGLE], f"At {OTHER:g}° from the plane it is met on {_where(other)}. (The run of "
@@ -73,7 +73,7 @@ def ball_time_3d(results: Results) -> tuple[str, str]:
 def _over_meshes(name: str, every: pd.DataFrame, beside: str) -> tuple[str, str]:
     """A printed time over a map on several meshes, from the rows `every` of it, by the rule of ball_time()."""
     rows, meshes, time = every[every.exit == 0], every.mesh_size.unique(), loaded(name).figure["level"]
-    whole = _whole(rows)
+    whole = rows[rows.breakdown_time.isna()]      # in which no element is inverted
     met, sound = _met(whole, name), _met(whole[whole.ellipticity_lost_time.isna()], name)
     independent = [nu for nu in rows.nu.unique() if _shared(*(sound.get((h, nu), []) for h in meshes))]
     nearest = whole.loc[(whole.contact_time - time).abs().idxmin()] if len(whole) else None
@@ -85,11 +85,6 @@ def _over_meshes(name: str, every: pd.DataFrame, beside: str) -> tuple[str, str]
     return graded(bool(independent), bool(met)), (
         f"of {len(rows)} runs over ν, k and mesh {len(rows) - len(whole)} invert elements (det F ≤ 0). Between the others it is met on "
         f"{_where(met)}; with ellipticity kept on {_where(sound)}; so on all meshes for {everywhere}{same}. {beside}")
-
-
-def _whole(rows: pd.DataFrame) -> pd.DataFrame:
-    """The runs in which no element is inverted."""
-    return rows[rows.breakdown_time.isna()]
 
 
 def _met(rows: pd.DataFrame, name: str) -> dict[tuple[float, float], Ranges]:
@@ -145,8 +140,7 @@ def at_once(results: Results) -> tuple[str, str]:
         f"{'. '.join(words)}. Two at once, oblique at {ANGLE:g}° [Pa/m]: {pairs}. Each alone: {alone}.")
 
 
-@dataclass(frozen=True)
-class Together:
+class Together(NamedTuple):
     """Of a ν of all maps: the ranges of k [Pa/m] that meet all numbers; the k that misses them by least, by what share of one, and the
     times there."""
 
@@ -197,7 +191,7 @@ def _between(results: Results, number: str, angle: float, kept: bool) -> dict[fl
         rows = finished(results, name)
         for column, value in (("law", "svk"), ("angle", angle)):
             rows = rows[rows[column] == value] if column in rows else rows
-        rows = _whole(rows) if "breakdown_time" in rows else rows
+        rows = rows[rows.breakdown_time.isna()] if "breakdown_time" in rows else rows
         rows = rows[rows.ellipticity_lost_time.isna()] if kept else rows
         error = np.nan_to_num(sweep_figures.bars(rows, "contact_time"))
         parts.append(rows.assign(low=rows.contact_time - error, high=rows.contact_time + error))

@@ -1,10 +1,12 @@
 """Figures of a run: energies of each body and of all (figures 6a, 9a, 9b of the paper), velocities, forces, and deformed shapes among the
 obstacles."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from textwrap import wrap
 
 import numpy as np
+from matplotlib.transforms import AffineDeltaTransform
 
 from ..input import dimension
 from ..output import vtu
@@ -12,9 +14,9 @@ from ..scenes import obstacles
 from ..scenes.obstacles import Obstacle
 from ..input.parameters import Value
 from ..output.results import body_names, mechanical_energy, suffixes
-from .figures import (BAND, BLACK, BLUE, COLOURED, GREEN, GREY, ORANGE, ORIGIN, PURPLE, VISCOUS, Body, as_written, balance_error,
-                      coloured, deformed, end_of_contact, flight, friction_force, goes_along, instants, is_half, least, material, over_time,
-                      per_metre, plt, rolling, side_by_side)
+from .figures import (BAND, BLACK, BLUE, COLOURED, GREEN, GREY, ORANGE, ORIGIN, PURPLE, SHAPES, VISCOUS, Body, as_written, balance_error,
+                      deformed, end_of_contact, evenly, flight, friction_force, goes_along, is_half, least, material, over_time, per_metre,
+                      plt, rolling, side_by_side)
 
 ALONE = ("disc-plane", "ball-axisymmetric", "ball-plane")     # scripts of one body on the plane
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, "#56b4e9", "#e69f00")    # of bodies
@@ -62,7 +64,8 @@ def draw(history: dict[str, np.ndarray], contact: dict[str, np.ndarray], scene: 
     drawn = {"energies": energies(contact, scene), "velocity": velocities(contact, scene)}
     drawn |= {"force": friction_force(contact, scene), "rolling": rolling(contact, scene)} if rubs else {"force": forces(contact, scene)}
     if snapshots and len(vtu.read(snapshots[0][1]).triangles):       # none where no body crosses the plane z = 0
-        drawn |= {name: shapes(snapshots, scene, *COLOURED[name]) for name in coloured(history)}
+        drawn |= {name: shapes(snapshots, scene, *field) for name, field in COLOURED.items()
+                  if name == "shapes" or "hydrostatic_pressure" in history}
     if len(snapshots) > 2 and not are_several(scene) and not is_half(scene) and goes_along(history, scene):
         drawn |= {"flight": flight(history, scene, snapshots)}
     return drawn
@@ -181,12 +184,16 @@ def forces(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figur
 
 def shapes(series: list[tuple[float, Path]], scene: dict[str, Value], field: str, label: str) -> plt.Figure:
     """All bodies at up to SHAPES instants among the obstacles, coloured by a field [MPa]."""
-    picked = instants(series)
+    picked = evenly(series, SHAPES)
     found = [deformed(vtu.read(path), is_half(scene), field) for _, path in picked]
     left, right, low, high = view = limits(found)
     rigid, columns = obstacles_of(scene), 3 if right - left < 3 * (high - low) else 2
-    return side_by_side(found, [t for t, _ in picked], view, min(columns, len(found)),
-                        lambda axes, t, place: draw_obstacles(axes, rigid, view, t, place), label)
+    moves = any(one.velocity.any() for one in rigid)
+
+    def behind(axes: plt.Axes, times: list[float], places: list[np.ndarray]) -> None:
+        for t, at in zip(times, [[place] for place in places]) if moves else [(0.0, places)]:
+            draw_obstacles(axes, rigid, view, t, at)
+    return side_by_side(found, [t for t, _ in picked], view, min(columns, len(found)), behind, label)
 
 
 def obstacles_of(scene: dict[str, Value]) -> list[Obstacle]:
@@ -203,8 +210,8 @@ def limits(found: list[Body]) -> tuple[float, float, float, float]:
 
 
 def draw_obstacles(axes: plt.Axes, rigid: list[Obstacle], view: tuple[float, float, float, float], t: float,
-                   place: np.ndarray = ORIGIN) -> list:
-    """The obstacles where they are at time t [s], grey, within the limits `view` [m], drawn at a place [m]; what was drawn."""
+                   places: Sequence[np.ndarray] = (ORIGIN,)) -> list:
+    """The obstacles where they are at time t [s], grey, within the limits `view` [m], drawn at places [m]; what was drawn."""
     left, right, low, high = view
     if not rigid:
         return []
@@ -214,6 +221,8 @@ def draw_obstacles(axes: plt.Axes, rigid: list[Obstacle], view: tuple[float, flo
     gap = np.min([one.gap_in_plane(points.reshape(-1, 2), t) for one in rigid], axis=0).reshape(points.shape[:2])
     if not gap.min() < 0 < gap.max():
         return []
-    x, y = x + place[0], y + place[1]
-    return [axes.contourf(x, y, gap, levels=[gap.min(), 0], colors=["#d0d0d0"]),
-            axes.contour(x, y, gap, levels=[0], colors=[BLACK], linewidths=0.8)]
+    drawn = [axes.contourf(x, y, gap, levels=[gap.min(), 0], colors=["#d0d0d0"]),
+             axes.contour(x, y, gap, levels=[0], colors=[BLACK], linewidths=0.8)]
+    for one in drawn:
+        one.set(offsets=places, offset_transform=AffineDeltaTransform(axes.transData))
+    return drawn

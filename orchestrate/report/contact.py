@@ -3,11 +3,12 @@
 from pathlib import Path
 
 import numpy as np
+from matplotlib.collections import QuadMesh
 from matplotlib.colors import ListedColormap
 
 from ..input.parameters import Value
 from ..output.results import read_table
-from .figures import BLACK, BLUE, ORANGE, plt
+from .figures import BLACK, BLUE, ORANGE, evenly, plt
 
 INSTANTS = 6                     # profiles at most
 SLOW = 0.03                      # speed over sqrt(E/rho) up to which the pressure of a ball is shown beside Hertz'
@@ -65,12 +66,11 @@ def draw(table: np.recarray, names: list[str], half: bool, free: np.ndarray, bal
             _over_radius(panels["profiles"], points, ball)
         else:
             _profiles(panels["profiles"], own if solid else _section(around[around.body == body], half)[0], words, "" if solid else "-")
-        times, places, pressure = _over_time(own, "pressure", instants)
-        picture = panels["pressure"].pcolormesh(1e3 * times, 1e3 * places, 1e-6 * pressure.T, shading="nearest", cmap="viridis", vmin=0,
-                                                rasterized=True)
+        picture = _over_time(panels["pressure"], own, instants, 1e-6 * own.pressure, cmap="viridis", vmin=0)
         figure.colorbar(picture, cax=panels["pressure"].inset_axes((1.04, 0, 0.06, 1)), label=PRESSURE)
         if rubs:
-            _slip(panels["slip"], own, instants, states)
+            _over_time(panels["slip"], own, instants, own.state, **_colours(states))
+            panels["slip"].legend(*_keys(states), **ABOVE)
         for axes in [panels[name] for name in ("pressure", "slip") if name in panels]:
             axes.set(ylabel=f"{words} [mm]", xlabel="time [ms]", ylim=(0, None) if words != ALONG else (None, None))
         if "history" in shown:
@@ -194,7 +194,7 @@ def _in_plane(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def _instants(table: np.recarray, most: int = INSTANTS) -> list[tuple[float, np.recarray, tuple]]:
     """(t, rows, colour) of up to `most` times."""
     times = np.unique(table.t)
-    picked = times[np.unique(np.linspace(0, len(times) - 1, most + 2).round().astype(int)[1:-1])] if len(times) > most else times
+    picked = evenly(times, most + 2)[1:-1] if len(times) > most else times
     return [(t, table[table.t == t], colour) for t, colour in zip(picked, plt.get_cmap("plasma")(np.linspace(0, 0.85, len(picked))))]
 
 
@@ -234,19 +234,12 @@ def hertz(force: float, ball: dict[str, Value]) -> tuple[np.ndarray, np.ndarray]
     return r, 3 * force / (2 * np.pi * a**2) * np.sqrt(np.maximum(1 - (r / a) ** 2, 0))
 
 
-def _over_time(own: np.recarray, column: str, instants: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The instants (n) [s], places (m) [m] and the values (n, m) there; nan where there is no load."""
+def _over_time(axes: plt.Axes, own: np.recarray, instants: np.ndarray, values: np.ndarray, **colours) -> QuadMesh:
+    """The values of the points over the instants [s] and their places, nothing where there is no load."""
     places, place = np.unique(own.s, return_inverse=True)
-    values = np.full((len(instants), len(places)), np.nan)
-    values[np.searchsorted(instants, own.t), place] = own[column]
-    return instants, places, values
-
-
-def _slip(axes: plt.Axes, own: np.recarray, instants: np.ndarray, states: dict[str, str]) -> None:
-    """Where the points under load stick and slide, over place and time."""
-    times, places, values = _over_time(own, "state", instants)
-    axes.pcolormesh(1e3 * times, 1e3 * places, values.T, shading="nearest", rasterized=True, **_colours(states))
-    axes.legend(*_keys(states), **ABOVE)
+    found = np.full((len(places), len(instants)), np.nan)
+    found[place, np.searchsorted(instants, own.t)] = values
+    return axes.pcolormesh(1e3 * instants, 1e3 * places, found, shading="nearest", rasterized=True, **colours)
 
 
 def _colours(states: dict[str, str]) -> dict:

@@ -10,7 +10,7 @@ from ..input.parameters import Value
 from ..output import vtu
 from ..output.results import Contents, body_names, check_files, read_history, read_json, read_scene
 from ..places import COMMAND
-from . import bodies, contact as contacts, impacts, solid, vibration
+from . import bodies, contact as contacts, impacts, solid
 from .figures import BODY, STYLE, as_written, footer, is_half, material, per_metre, plt, save, touched
 
 
@@ -34,19 +34,17 @@ def draw(folder: Path, warnings: list[str]) -> list[Path]:
         drawn = bodies.draw(history, contact, scene, snapshots)
         if (folder / "fields/contact.csv").exists():
             table = contacts.read(folder, beside=True)
-            along = contacts.draw(table, names, is_half(scene), history["t"][~touches],
-                                  scene if scene.get("script") in BODY and is_half(scene) else None, scene.get("symmetry", "full"), history)
-            drawn |= {"contact": along} if along else {}
-            inside = solid.draw(snapshots, table[table.pressure > 0], scene) if snapshots and "Z" in table.dtype.names else None
-            drawn |= {"solid": inside} if inside else {}
+            ball, free = scene if scene.get("script") in BODY and is_half(scene) else None, history["t"][~touches]
+            drawn["contact"] = contacts.draw(table, names, is_half(scene), free, ball, scene.get("symmetry", "full"), history)
+            if snapshots and "Z" in table.dtype.names:
+                drawn["solid"] = solid.draw(snapshots, table[table.pressure > 0], scene)
         if (folder / "contacts.csv").exists():
-            bounces = impacts.draw(impacts.read(folder), names,
-                                   [as_written(one["name"]) for one in scene.get("obstacle", [])] or ["plane"])
-            drawn |= {"bounces": bounces} if bounces else {}
-            drawn |= {"height": impacts.heights(history, impacts.read(folder), names)} if scene.get("until") == "rest" else {}
+            bounces, rigid = impacts.read(folder), [as_written(one["name"]) for one in scene.get("obstacle", [])] or ["plane"]
+            drawn["bounces"] = impacts.draw(bounces, names, rigid)
+            drawn["height"] = impacts.heights(history, bounces, names) if scene.get("until") == "rest" else None
         if (folder / "modes.csv").exists():
-            rings = vibration.draw(vibration.read(folder), history, per_metre(scene))
-            drawn |= {"vibration": rings} if rings else {}
+            drawn["vibration"] = impacts.vibration(impacts.read_modes(folder), history, per_metre(scene))
+        drawn = {name: figure for name, figure in drawn.items() if figure}
         for name, figure in reversed(drawn.items()):
             figure.suptitle(title(scene))
             footer(figure, warnings)

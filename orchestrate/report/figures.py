@@ -1,12 +1,13 @@
 """What figures have in common, and those of one body that goes along the plane: friction force, what slides and sticks, and the flight, as
 figures 4 and 5 of the paper."""
 
-from collections.abc import Callable
+import struct
+import zlib
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from textwrap import wrap
 from warnings import filterwarnings
-from zlib import Z_RLE
 
 import matplotlib
 from matplotlib import artist
@@ -21,7 +22,6 @@ from matplotlib.collections import TriMesh
 from matplotlib.ticker import AutoLocator, MaxNLocator, NullLocator
 from matplotlib.transforms import ScaledTranslation
 from matplotlib.tri import LinearTriInterpolator, Triangulation
-from PIL import Image
 
 from ..geometry.outlines import rotation
 from ..input import dimension
@@ -64,9 +64,22 @@ def save(figure: plt.Figure, path: Path) -> None:
     if not figure.get_layout_engine():
         arrange(figure)
     figure.canvas.draw()
-    Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB").save(path, dpi=(figure.dpi, figure.dpi), compress_level=1,
-                                                                                compress_type=Z_RLE)
+    path.write_bytes(png(np.asarray(figure.canvas.buffer_rgba())[..., :3], figure.dpi))
     plt.close(figure)
+
+
+def png(pixels: np.ndarray, dpi: float) -> bytes:
+    """The picture (height, width, 3) as a file. Of every row the differences from the one above are packed: libraries try all kinds of
+    differences, which takes twice as long."""
+    height, width, _ = pixels.shape
+    flat, rows = pixels.reshape(height, -1), np.full((height, 1 + 3 * width), 2, np.uint8)       # 2: from the row above
+    rows[0, 1:] = flat[0]
+    np.subtract(flat[1:], flat[:-1], out=rows[1:, 1:])
+    packer, per_metre = zlib.compressobj(1, strategy=zlib.Z_RLE), round(dpi / 0.0254)
+    parts = {b"IHDR": struct.pack(">2I5B", width, height, 8, 2, 0, 0, 0), b"pHYs": struct.pack(">2IB", per_metre, per_metre, 1),
+             b"IDAT": packer.compress(rows) + packer.flush(), b"IEND": b""}
+    return b"\x89PNG\r\n\x1a\n" + b"".join(struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+                                           for name, data in parts.items())
 
 
 def arrange(figure: plt.Figure) -> None:
@@ -169,10 +182,9 @@ def numbers_of_the_paper(scene: dict[str, Value], key: str, over: str = "") -> l
     """(value of the parameter `over` there, number, words) of every number `key` (summary.json, SI) that the paper prints of this scene, or
     of it with another value of `over`, or with another law, which the words then say. None of a body of the user's own mesh."""
     found = []
-    for run in literature.published() if not scene.get("mesh") else []:
+    for run in literature.published(scene.get("script"), scene, ("law", over)) if not scene.get("mesh") else []:
         when = run["when"]
-        if (run["source"].startswith("paper") and key in run["numbers"] and run["script"] == scene.get("script")
-                and all(scene.get(name) == value for name, value in when.items() if name not in ("law", over))):
+        if run["source"].startswith("paper") and key in run["numbers"]:
             law = "" if over == "law" or when["law"] == scene.get("law") else f", {LAWS[when['law']]}"
             found.append((when.get(over), run["numbers"][key]["value"], run["source"] + law))
     return found
@@ -244,15 +256,9 @@ def _enlarge(grid: np.ndarray, history: dict[str, np.ndarray], window: tuple[int
     zoom.plot(t, friction, color=ORANGE, linewidth=1.0, marker=".", markersize=3)
     # the limits that the force touches, too
     lines = [line.get_ydata()[inside] for line in grid[1, 0].lines if len(line.get_ydata()) == len(t)]
-    near = [values for values in lines if values.mean() * friction[inside].mean() > 0]
-    zoom.set(ylabel=f"friction force [kN{per}]", ylim=_around(np.concatenate([friction[inside], *near]), 0.15))
-
-
-def _around(values: np.ndarray, margin: float) -> tuple[float, float]:
-    """Limits of an axis around the values, with a margin as a share of their range on either side."""
-    low, high = values.min(), values.max()
-    space = margin * ((high - low) or abs(high) or 1.0)
-    return low - space, high + space
+    near = np.concatenate([friction[inside], *(values for values in lines if values.mean() * friction[inside].mean() > 0)])
+    margin = 0.15 * (np.ptp(near) or abs(near[0]) or 1.0)
+    zoom.set(ylabel=f"friction force [kN{per}]", ylim=(near.min() - margin, near.max() + margin))
 
 
 def _liveliest(history: dict[str, np.ndarray]) -> tuple[int, int] | None:
@@ -346,7 +352,7 @@ def flight(history: dict[str, np.ndarray], scene: dict[str, Value], series: list
         lowest = min(series, key=lambda each: history["y"][row(each[0])])
         picked = [(series[0], "touch", BLUE), (lowest, "lowest", ORANGE), (series[-1], "end of the run", GREEN)]
     else:
-        places = np.linspace(0, len(series) - 1, min(5, len(series))).round().astype(int)
+        places = evenly(range(len(series)), 5)
         picked = [(series[k], "", plt.get_cmap("viridis")(0.85 * k / places[-1])) for k in places]
     figure, axes = plt.subplots(figsize=(6.4, 5.6 if impact else 3.6))
     run = history["t"] >= series[0][0]
@@ -429,19 +435,14 @@ def _draw_pose(axes: plt.Axes, pose: Pose, colour, line, label: str | None) -> N
     axes.plot(*pose.diameter[0], color=colour, marker="o", markersize=4)
 
 
-def coloured(history: dict[str, np.ndarray]) -> list[str]:
-    """The pictures of shapes of a run: of the pressure where the elements of a body hold it."""
-    return ["shapes", *["pressure"] * ("hydrostatic_pressure" in history)]
-
-
-def instants(series: list[tuple[float, Path]]) -> list[tuple[float, Path]]:
-    """Up to SHAPES snapshots of a run, from the first to the last."""
-    return [series[k] for k in np.unique(np.linspace(0, len(series) - 1, SHAPES).round().astype(int))]
+def evenly(items: Sequence, most: int) -> list:
+    """Up to so many of the items, from the first to the last."""
+    return [items[k] for k in np.unique(np.linspace(0, len(items) - 1, most).round().astype(int))]
 
 
 def side_by_side(found: list["Body"], times: list[float], view: tuple[float, float, float, float], columns: int,
                  behind: Callable, label: str) -> plt.Figure:
-    """The bodies in rows, each at its time [s] within the limits `view` [m] with what behind(axes, time, place) draws there, coloured by
+    """The bodies in rows, each at its time [s] within the limits `view` [m] with what behind(axes, times, places) draws there, coloured by
     their stress, of which `label` says what it is: in one panel, as each of its own would take as long as its body."""
     left, right, low, high = view
     rows, inch = -(-len(found) // columns), (right - left) * columns / 6.5             # [m]
@@ -452,9 +453,9 @@ def side_by_side(found: list["Body"], times: list[float], view: tuple[float, flo
     # 0 or less and more: five in a thousand of all nodes are beyond each, so that one spot does not darken all the rest
     low_stress, high_stress = np.quantile(np.concatenate([body.stress for body in found]), [0.005, 0.995])
     ends = min(0.0, low_stress), high_stress or 1.0
-    for k, (body, t) in enumerate(zip(found, times)):
-        place = step * (k % columns, -(k // columns))
-        behind(axes, t, place)
+    places = [step * (k % columns, -(k // columns)) for k in range(len(found))]
+    behind(axes, times, places)
+    for body, t, place in zip(found, times, places):
         picture = draw_body(axes, body, ends, place)
         axes.text(*place + ((left + right) / 2, high), f"{1e3 * t:.2f} ms", ha="center", va="bottom")
     scale_bar(axes, 0.25 / columns)

@@ -16,7 +16,7 @@ from ..input.parameters import Value
 from ..places import shown
 from .bodies import obstacles_of
 from .contact import PRESSURE
-from .figures import STRESS, plt
+from .figures import STRESS, evenly, plt
 
 INSTALL = f"{shown(Path(sys.executable))} -m pip install pyvista vtk"
 PROBE = ("import pyvista; p = pyvista.Plotter(off_screen=True, window_size=(8, 8)); p.add_mesh(pyvista.Sphere()); "
@@ -199,8 +199,7 @@ def draw(series: list[tuple[float, Path]], table: np.recarray, scene: dict[str, 
     if not len(table) or vtu.read_solid(series[0][1]) is None or missing():
         return None
     views = Views(series, table, scene)
-    picked = [views.loaded[k]
-              for k in np.unique(np.linspace(0, len(views.loaded) - 1, INSTANTS).round().astype(int))] if views.loaded else [0]
+    picked = evenly(views.loaded or [0], INSTANTS)
     figure, grid = plt.subplots(2, len(picked), figsize=(2.5 * len(picked) + 0.9, 4.6), squeeze=False, layout="constrained")
     for column, k in zip(grid.T, picked):
         for axes, image in zip(column, views.render(views.sights[k])):

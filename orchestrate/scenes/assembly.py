@@ -20,8 +20,7 @@ from .bodies import DAMPING, MATERIAL, Body
 from ..freefem.describe import describe
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID
 from ..failure import BadInput
-from ..mesh.mesh import AXIS, FREE, Sizes, nearest
-from ..mesh.outline_mesh import Curve, mesh_body
+from ..mesh.mesh import AXIS, FREE, Curve, Sizes, mesh_body, nearest
 from .mirror import COPIES, FOLDED, copies
 from .scene import OWN, SELF_CONTACT, Pair, Scene
 from ..geometry.outlines import Loop
@@ -97,7 +96,9 @@ def assemble(scene: Scene, rule: Rule | None = None, met: list[Meeting] | None =
     asked for a disc, or a ball, of the pair's radius that hits a plane. `met`: the scene's meetings, where they are known already."""
     ask = Asker(scene, meetings(scene) if met is None else met, rule or partial(describe, script=scene.dimension.like))
     values = scene.values | contact_values(scene.bodies, scene.contact, ask, "contact")
-    scene = replace(scene, pairs=_with_small_obstacles(scene, ask), bodies=[_with_viscosity(k, ask) for k in range(len(scene.bodies))])
+    bodies = [replace(body, viscosity=float(_of_body(k, ask, loss=body.loss, viscosity=body.viscosity)["viscosity"])) if body.loss else body
+              for k, body in enumerate(scene.bodies)]
+    scene = replace(scene, pairs=_with_small_obstacles(scene, ask), bodies=bodies)
     pairs = [pair_values(pair, ask, values) for pair in scene.pairs]
     sizes = [None if body.mesh else _sizes(k, ask) for k, body in enumerate(scene.bodies)]
     together, regions, centres, rounds = (_solids if scene.dimension is SOLID else _sections)(scene, sizes)
@@ -230,15 +231,6 @@ def used_tables(scene: Scene, sizes: list[Sizes | None], values: dict[str, Value
     if scene.dimension is SOLID:
         top["symmetry"] = next(word for word, count in COPIES.items() if count == copies(scene))
     return top | {key: values[key] for key in scene.values} | {"body": bodies, "obstacle": obstacles, "contact": contact}
-
-
-def _with_viscosity(k: int, ask: Asker) -> Body:
-    """Body k, with the viscosity that its loss asks for."""
-    body = ask.scene.bodies[k]
-    if body.loss == 0:
-        return body
-    used = _of_body(k, ask, loss=body.loss, viscosity=body.viscosity)
-    return replace(body, viscosity=float(used["viscosity"]))
 
 
 def _of_body(k: int, ask: Asker, **given: Value) -> dict:

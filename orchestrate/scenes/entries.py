@@ -46,7 +46,9 @@ def release(given: dict, names: list[str]) -> tuple[str, ...]:
             found = [name for cause in causes for name, (where, entry) in zip(names, places) if entry == cause
                      and (where == path or key in EVERYWHERE)]
             if found and table[key] not in ("auto", 0):
-                said.append(parameters.release(f"{path}.{key}".lstrip("."), table.pop(key), found))
+                value, name = table.pop(key), f"{path}.{key}".lstrip(".")
+                fixed = f"{value:g}" if isinstance(value, float) else brief(value)
+                said.append(f"{name} is open again: the scene's {fixed} was for its own {', '.join(found)}")
     return tuple(said)
 
 

@@ -10,7 +10,7 @@ from .bodies import checked_name
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
 from ..failure import BadInput, brief
 from ..mesh.revolution import mirrored, on_axis
-from ..input.tables import LONGEST, SHORTEST, Table, placeholder
+from ..input.tables import Table, placeholder
 
 KINDS = {
     PLANE_STRAIN: {"plane": ("point", "normal"), "circle": ("centre", "radius"), "bowl": ("centre", "radius"),
@@ -96,17 +96,15 @@ def _obstacle(path: str, given: dict, dimension: Dimension) -> Obstacle:
     table = Table(path, given, ("name", "kind", "velocity", *kinds[kind]))
     shape = {"plane": _plane, "polyline": _polyline, "implicit": _implicit}.get(kind, _circle)
     return Obstacle(checked_name(path, given.get("name", path.replace(".", ""))), kind, shape(table, dimension),
-                    _velocity(table, dimension))
+                    _vector(table, "velocity", dimension, (0.0,) * dimension.axes))
 
 
-def _velocity(table: Table, dimension: Dimension) -> np.ndarray:
-    still = (0.0,) * dimension.axes
-    return on_axis(table, "velocity",
-                   still) if dimension is AXISYMMETRIC else table.numbers("velocity", -LONGEST, LONGEST, still, dimension.axes)
+def _vector(table: Table, key: str, dimension: Dimension, default: tuple[float, ...] | None = None) -> np.ndarray:
+    return on_axis(table, key, default) if dimension is AXISYMMETRIC else table.numbers(key, default, dimension.axes)
 
 
 def _plane(table: Table, dimension: Dimension) -> tuple[float, ...]:
-    point, normal = (table.numbers(key, -LONGEST, LONGEST, count=dimension.axes) for key in ("point", "normal"))
+    point, normal = (table.numbers(key, count=dimension.axes) for key in ("point", "normal"))
     if not normal.any():
         raise BadInput(f"{table.path}.normal: '{brief(table.given['normal'])}' has no direction (accepted: {placeholder(dimension.axes)} "
                        f"other than 0)")
@@ -118,8 +116,7 @@ def _plane(table: Table, dimension: Dimension) -> tuple[float, ...]:
 
 
 def _circle(table: Table, dimension: Dimension) -> tuple[float, ...]:
-    centre = on_axis(table, "centre") if dimension is AXISYMMETRIC else table.numbers("centre", -LONGEST, LONGEST, count=dimension.axes)
-    return *map(float, centre), table.number("radius", SHORTEST, LONGEST)
+    return *map(float, _vector(table, "centre", dimension)), table.number("radius")
 
 
 def _implicit(table: Table, dimension: Dimension) -> tuple[float, ...]:
@@ -134,6 +131,5 @@ def _polyline(table: Table, dimension: Dimension) -> tuple[float, ...]:
     closed, vertices = table.flag("closed", False), table.points("vertices", least=2)
     if dimension is AXISYMMETRIC:
         vertices, closed = mirrored(f"{table.path}.vertices", vertices)
-    rounding = table.number("rounding", 0, LONGEST, 0.0)
-    polyline.check(table.path, vertices, closed, rounding)
-    return polyline.numbers(vertices, closed, rounding)
+    polyline.check(table.path, vertices, closed)
+    return polyline.numbers(vertices, closed, table.number("rounding", 0, default=0.0))

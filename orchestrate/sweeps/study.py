@@ -50,7 +50,7 @@ def study(points: list[Point], folder: Path, base: Point, limit: float, name: st
         if given.meshed:
             mesh.start_gmsh()     # once for all runs, which are forks of this process
         (folder / "runs").mkdir(parents=True, exist_ok=True)   # here: a run takes away what it had to make if it is interrupted
-    acts = {where: partial(_limited, limit, where, wanted, estimate) for where, wanted in tasks.items()}
+    acts = {where: partial(_outcome, where, wanted, estimate, limit) for where, wanted in tasks.items()}
     for where, outcome in side_by_side(acts, cores, "/".join(folder.parts[-2:]), len(found)):
         found[where] = _row(1, str(outcome), False, {}) if isinstance(outcome, Failure) else outcome
     return pd.DataFrame([point | found[where] for where, point in zip(places, points)])
@@ -131,12 +131,6 @@ def _work(sender: Connection, parent: int, act: Callable) -> None:
     sender.send((True, act()))
 
 
-def _limited(limit: float, folder: Path, wanted: scene.Scene, estimate: bool) -> dict | None:
-    """_outcome() of a run that may take `limit` seconds."""
-    end_after(limit)
-    return _outcome(folder, wanted, estimate)
-
-
 def end_after(limit: float) -> None:
     """TooLong is raised in `limit` seconds."""
     def too_long(number):
@@ -159,9 +153,10 @@ def there(folder: Path, wanted: scene.Scene, estimate: bool = False) -> dict | N
     return result and _row(0, result.summary["message"], True, result.summary)
 
 
-def _outcome(folder: Path, wanted: scene.Scene, estimate: bool) -> dict | None:
-    """Exit code, message, whether it was there already, and the numbers of the summary, as far as the run came; None
+def _outcome(folder: Path, wanted: scene.Scene, estimate: bool, limit: float) -> dict | None:
+    """Exit code, message, whether it was there already, and the numbers of the summary, as far as the run came in `limit` seconds; None
     where another run is at it."""
+    end_after(limit)
     if found := there(folder, wanted, estimate):
         return found
     try:

@@ -48,11 +48,9 @@ def check(given: dict, points: list[dict], collected: list[str], columns: list[s
     if kind != "map" and isinstance(figure.get("y"), str):
         figure["y"] = [figure["y"]]
     axes, results = {"lines": (("x",), ("y",)), "map": (("x", "y"), ("colour",)), "histories": ((), ("y",))}[kind]
-    for key in axes:
+    telling = [*axes, *(key for key in ("by", "panel") if figure[key] is not None)]
+    for key in telling:
         _name(key, figure.get(key), varied)
-    for key in ("by", "panel"):
-        if figure[key] is not None:
-            _name(key, figure[key], varied)
     accepted = columns if kind == "histories" else collected
     for key in results:
         names = figure.get(key) if key == "y" else [figure.get(key)]
@@ -60,7 +58,7 @@ def check(given: dict, points: list[dict], collected: list[str], columns: list[s
             raise BadInput(f"figure: {key} is missing (accepted: one or several of {', '.join(accepted)})")
         for name in names:
             _name(key, name, accepted)
-    used = [figure[key] for key in (*axes, "by", "panel") if figure[key] is not None]
+    used = [figure[key] for key in telling]
     if len(set(used)) < len(used) or len({tuple(point[name] for name in used) for point in points}) < len(points):
         raise BadInput(f"figure: {', '.join(used) or 'nothing'} does not tell the points apart (accepted: different names for "
                        f"{', '.join((*axes, *(key for key in ('by', 'panel') if key in KINDS[kind])))}, that together do; "
@@ -119,8 +117,7 @@ def findings(sweep, rows: pd.DataFrame, out: Path) -> list[str]:
         return [trend(group, sweep.figure["x"], y, words, sweep.figure["per"]) for y in sweep.figure["y"]
                 for words, group in _groups(sweep, rows, "by")]
     if kind == "map":
-        return [line for panel, part in _groups(sweep, rows, "panel") for words, group in _groups(sweep, part, "by")
-                for line in _set(sweep.figure, ", ".join(filter(None, (panel, words))), group)]
+        return [line for words, group in _maps(sweep, rows) for line in _set(sweep.figure, words, group)]
     return [f"{panel}: ".removeprefix(": ") + f"relative L2 difference of {y.replace('_', ' ')}, {a} and {b}: {100 * value:.1f} %"
             + (f" (mesh and step change {100 * bar:.1f} %)" if sweep.refine else "")
             for panel, y, a, b, value, bar in distances(sweep, rows, out)]
@@ -293,17 +290,23 @@ def trend(group: pd.DataFrame, x: str, y: str, words: str, per: str = "/m") -> s
 
 # ---- maps
 
+def _maps(sweep, rows: pd.DataFrame) -> Iterator[tuple[str, pd.DataFrame]]:
+    """(words, rows) of each map, column by column of a row of them."""
+    for panel, part in _groups(sweep, rows, "panel"):
+        for words, group in _groups(sweep, part, "by"):
+            yield ", ".join(filter(None, (panel, words))), group
+
+
 def _map(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
     wanted = sweep.figure
     x, y, colour = (wanted[key] for key in ("x", "y", "colour"))
-    parts = [(panel, list(_groups(sweep, part, "by"))) for panel, part in _groups(sweep, rows, "panel")]
-    widths = [max(2.5, group[x].nunique()) for _, group in parts[0][1]]        # a panel has the values of x that its runs have
-    figure, grid = plt.subplots(len(parts), len(widths), figsize=(1.2 + 3.4 * sum(widths) / max(widths), 0.8 + 2.8 * len(parts)),
+    maps, height = list(_maps(sweep, rows)), len(list(_groups(sweep, rows, "panel")))
+    widths = [max(2.5, group[x].nunique()) for _, group in maps[:len(maps) // height]]   # a panel has the x of its runs
+    figure, grid = plt.subplots(height, len(widths), figsize=(1.2 + 3.4 * sum(widths) / max(widths), 0.8 + 2.8 * height),
                                 sharex="col", sharey=True, squeeze=False, width_ratios=widths, layout="constrained")
     values = _quantity(colour).factor * rows[colour]
     low, high = values.min(), values.max()
-    for axes, (words, group) in zip(grid.flat, [(", ".join(filter(None, (panel, words))), group) for panel, groups in parts
-                                                for words, group in groups]):
+    for axes, (words, group) in zip(grid.flat, maps):
         table = group.pivot(index=y, columns=x, values=colour) * _quantity(colour).factor
         cells = np.where(group.pivot(index=y, columns=x, values="exit") == 0, table, np.nan)   # evenly spaced, whatever the values
         picture = axes.imshow(cells, origin="lower", aspect="auto", cmap="viridis", vmin=low, vmax=high)
