@@ -324,7 +324,8 @@ private:
   // What block D, from its row `from` on, has in the columns of B; gives its first row beyond.
   template<class Number> int subtract(const Block<Number> &D, int from, const std::vector<int> &at, std::vector<Number> &taken,
                                       const Block<Number> &B) {
-    const int to = std::lower_bound(D.rows + from, D.rows + D.height, B.first + B.width) - D.rows, rows = D.height - from, columns = to - from;
+    const int to = std::lower_bound(D.rows + from, D.rows + D.height, B.first + B.width) - D.rows;
+    const int rows = D.height - from, columns = to - from;
     if (taken.size() < size_t(rows) * columns) taken.resize(size_t(rows) * columns);
     square(columns, D.width, D.value + from, D.height, taken.data(), rows);
     times(rows - columns, columns, D.width, D.value + to, D.value + from, D.height, taken.data() + columns, rows);
