@@ -401,35 +401,14 @@ BAD = [
 ]
 
 
-@pytest.mark.parametrize("entries, words", BAD, ids=[words.split(" (")[0] for _, words in BAD])
-def test_what_is_wrong_is_named(entries, words):
-    """Bad input, with exit code 10 and one line that names the entry, its value and what is accepted."""
-    with pytest.raises(BadInput) as caught:
-        read(changed(*entries))
-    assert words in str(caught.value) and caught.value.code == 10 and "\n" not in str(caught.value)
-
-
-@pytest.mark.parametrize("key", ["law", "young", "nu", "density"])
-def test_missing_material_is_no_default(key):
-    """A material that neither the body nor the top of the file gives is an error."""
-    with pytest.raises(BadInput, match=rf"^body.1.{key}: is missing, here and at the top of the file \(accepted: "):
-        read({name: value for name, value in SCENE.items() if name != key})
-
-
-@pytest.mark.parametrize("given, words", [
+TABLES = [
     ({"obstacle": []}, "body: is missing (accepted: one table [[body]] or more)"),
     ({"body": {"shape": "disc"}}, "body: '{'shape': 'disc'}' is no list of tables (accepted: [[body]])"),
     ({"body": [{}]}, "body.1.shape: is missing (accepted: disc|"),
     ({"body": [3]}, "body.1: '3' is no table (accepted: [[body]])"),
     ({"body": [DISC], "obstacle": [3]}, "obstacle.1: '3' is no table (accepted: [[obstacle]])"),
     ({"body": [{k: v for k, v in DISC.items() if k != "position"}]}, "body.1.position: is missing (accepted: [x, y], each -1e+09 to 1e+09)"),
-])
-def test_missing_tables_are_named(given, words):
-    with pytest.raises(BadInput) as caught:
-        read({k: v for k, v in SCENE.items() if k != "body"} | given)
-    assert words in str(caught.value)
-
-
+]
 POLYGONS = [
     ({"vertices": [[0, 0], [1, 1], [1, 0], [0, 1]]}, "body.1.vertices: the side from vertex 1 to 2 meets the side from vertex 3 to 4 (accepted: a polygon that does not cross or touch itself)"),
     ({"vertices": [[0, 0], [2, 0], [2, 1], [1, 0], [0, 1]]}, "body.1.vertices: the side from vertex 1 to 2 meets the side from vertex 3 to 4"),
@@ -443,14 +422,30 @@ POLYGONS = [
     ({"vertices": SQUARE, "holes": [[[0.1, 0.1], [0.9, 0.1], [0.9, 0.9]], [[0.6, 0.5], [0.8, 0.5], [0.8, 0.6]]]}, "body.1.holes.2: overlaps body.1.holes.1 (accepted: holes apart"),
     ({"vertices": SQUARE, "holes": [[[0.2, 0.2], [0.5, 0.2], [0.4, 0.6]], [[0.4, 0.3], [0.8, 0.3], [0.8, 0.6]]]}, "body.1.holes.2: overlaps body.1.holes.1"),
 ]
+NO_OBSTACLES = [
+    ({"kind": "cone"}, "obstacle.1.kind: 'cone' is not known (accepted: plane|circle|bowl|polyline|implicit)"),
+    ({}, "obstacle.1.kind: is missing (accepted: plane|"),
+    ({"kind": "plane", "point": [0, 0]}, "obstacle.1.normal: is missing (accepted: [x, y]"),
+    ({"kind": "bowl", "centre": [0, 0]}, "obstacle.1.radius: is missing"),
+    ({"kind": "bowl", "center": [0, 0]}, "obstacle.1.center: '[0, 0]' belongs to no such key; did you mean centre? (accepted: name, kind, velocity, centre, radius)"),
+    ({"kind": "polyline", "vertices": [[0, 0]]}, "obstacle.1.vertices: '[[0, 0]]' is too little (accepted: 2 points [x, y] or more)"),
+    ({"kind": "polyline", "vertices": [[0, 0], [1, 0], [1, 0]]}, "obstacle.1.vertices.3: [1, 0] is the vertex before it again"),
+    ({"kind": "polyline", "vertices": [[0, 0], [1, 0]], "closed": "yes"}, "obstacle.1.closed: 'yes' is neither true nor false (accepted: true|false)"),
+]
+REFUSED = [*((changed(*entries), words) for entries, words in BAD),
+           *(({k: v for k, v in SCENE.items() if k != name}, f"body.1.{name}: is missing, here and at the top of the file (accepted: ") for name in ("law", "young", "nu", "density")),
+           *(({k: v for k, v in SCENE.items() if k != "body"} | given, words) for given, words in TABLES),
+           *((with_body(shape="polygon", **entries), words) for entries, words in POLYGONS),
+           *((with_body(shape="disc", radius=0.1, position=[0, 9]) | {"obstacle": [entries]}, words) for entries, words in NO_OBSTACLES)]
 
 
-@pytest.mark.parametrize("entries, words", POLYGONS)
-def test_polygons_that_are_none_are_named(entries, words):
-    """A polygon that crosses or touches itself, folds back or repeats a vertex; holes outside, crossing or in each other."""
+@pytest.mark.parametrize("scene, words", REFUSED, ids=[words.split(" (")[0] for _, words in REFUSED])
+def test_what_is_wrong_is_named(scene, words):
+    """Bad input (entries, a material that neither the body nor the top gives, missing tables, polygons that cross, touch or repeat themselves and their holes, obstacles that
+    are none): exit code 10 and one line that names the entry, its value and what is accepted."""
     with pytest.raises(BadInput) as caught:
-        read(with_body(shape="polygon", **entries))
-    assert words in str(caught.value)
+        read(scene)
+    assert words in str(caught.value) and caught.value.code == 10 and "\n" not in str(caught.value)
 
 
 def test_overlaps_that_no_vertex_shows():
@@ -538,22 +533,6 @@ def test_obstacles_are_their_numbers_and_gaps(entries, words, points, gaps):
     scene = read(far)
     assert f"\nobstacle1 {words} 0.5 -0.25\n" in assembly.assemble(scene).data
     assert scene.obstacles[0].gap(np.array(points, dtype=float)) == pytest.approx(gaps)
-
-
-@pytest.mark.parametrize("entries, words", [
-    ({"kind": "cone"}, "obstacle.1.kind: 'cone' is not known (accepted: plane|circle|bowl|polyline|implicit)"),
-    ({}, "obstacle.1.kind: is missing (accepted: plane|"),
-    ({"kind": "plane", "point": [0, 0]}, "obstacle.1.normal: is missing (accepted: [x, y]"),
-    ({"kind": "bowl", "centre": [0, 0]}, "obstacle.1.radius: is missing"),
-    ({"kind": "bowl", "center": [0, 0]}, "obstacle.1.center: '[0, 0]' belongs to no such key; did you mean centre? (accepted: name, kind, velocity, centre, radius)"),
-    ({"kind": "polyline", "vertices": [[0, 0]]}, "obstacle.1.vertices: '[[0, 0]]' is too little (accepted: 2 points [x, y] or more)"),
-    ({"kind": "polyline", "vertices": [[0, 0], [1, 0], [1, 0]]}, "obstacle.1.vertices.3: [1, 0] is the vertex before it again"),
-    ({"kind": "polyline", "vertices": [[0, 0], [1, 0]], "closed": "yes"}, "obstacle.1.closed: 'yes' is neither true nor false (accepted: true|false)"),
-])
-def test_obstacles_that_are_none_are_named(entries, words):
-    with pytest.raises(BadInput) as caught:
-        read(with_body(shape="disc", radius=0.1, position=[0, 9]) | {"obstacle": [entries]})
-    assert words in str(caught.value)
 
 
 # ---- polygons
