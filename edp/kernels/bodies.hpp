@@ -145,11 +145,7 @@ public:
     if (ended != fine) return ended;
     if (step.carries) for (int i = 0; i < nodes * D; i++) volume.lag[unknown[i]] = lagging[i] * free[unknown[i]];
     for (int i = 0; i < nodes * D; i++) nodal[i] = step.massScale * nodal[i] - history[unknown[i]];
-    for (size_t p = 0; p < massOf.size(); p++) for (int i = 0; i < D; i++) {
-      const int a = pairA[p] * D + i, b = pairB[p] * D + i;
-      pull[a] += massOf[p] * nodal[b];
-      if (a != b) pull[b] += massOf[p] * nodal[a];
-    }
+    dispatch([&](auto stored) { this->template inertia<stored.D>(); });
     for (int i = 0; i < nodes * D; i++) residual[unknown[i]] = (pull[i] - deadLoad[unknown[i]]) * free[unknown[i]];
     return fine;
   }
@@ -273,6 +269,16 @@ private:
     for (size_t a = 0; a < node.size(); a++) for (int i = 0; i < D; i++) all[node[a] * D + i] += ofElements[a * D + i];
   }
 
+  template<int D> void inertia() {
+    for (size_t p = 0; p < massOf.size(); p++) {
+      const double m = massOf[p], *x = nodal.data();
+      double *to = pull.data();
+      const int a = pairA[p] * D, b = pairB[p] * D;
+      for (int i = 0; i < D; i++) to[a + i] += m * x[b + i];
+      if (a != b) for (int i = 0; i < D; i++) to[b + i] += m * x[a + i];
+    }
+  }
+
   // The least of the values at all points, or nan.
   double least(const double *values) const {
     double smallest = 1e300;
@@ -321,7 +327,7 @@ private:
       const int q = point[p];
       const laws::Material &m = material[q];
       const Symmetric C0 = symmetric<T>(at.C0, q), C1 = laws::rightCauchyGreen(whole<T>(step.where == stepMiddle ? at.Fs : at.F1, q));
-      Symmetric S = step.where == stepMean ? laws::algorithmicStress(m, C0, C1) : m.law->stress(m, C1);
+      Symmetric S = step.where == stepMean ? m.law->algorithmicStress(m, C0, C1) : m.law->stress(m, C1);
       if (step.rate > 0) {
         const Symmetric A = m.relaxing > 0 ? symmetric<T>(damping, q) : laws::identity;
         S += laws::dampingStress(m, C0, laws::rightCauchyGreen(whole<T>(at.F1, q)), A, step.rate);

@@ -1,5 +1,5 @@
 // laws.hpp: what edp/core/law says, at one quadrature point and always in three dimensions: in plane strain F_33 = C_33 = 1. Stresses and
-// moduli in Pa. A law is a struct Law, and a line of known() that gives its name; the scripts beside say what the symbols mean.
+// moduli in Pa. A law is a struct, and a line of known() that gives its name; the scripts beside say what the symbols mean.
 #pragma once
 #include <map>
 #include <string>
@@ -97,12 +97,22 @@ struct Material {
 struct Law {
   virtual ~Law() {}
   virtual Symmetric stress(const Material &m, const Symmetric &C) const = 0;
+  virtual Symmetric algorithmicStress(const Material &m, const Symmetric &C0, const Symmetric &C1) const = 0;
   virtual double workExcess(const Material &m, const Symmetric &M, const Symmetric &H) const = 0;
   virtual void addModuli(const Material &m, const Symmetric &C, Moduli &D) const = 0;
   virtual double ellipticity(const Material &m, const Symmetric &C, bool spatial) const = 0;
 };
 
-struct Svk : Law {
+// S with S : (C1 - C0)/2 = W1 - W0, second order: that at the mean of C, corrected along C1 - C0 (Gonzalez 2000); one call a point.
+template<class Own> struct Conserving : Law {
+  Symmetric algorithmicStress(const Material &m, const Symmetric &C0, const Symmetric &C1) const {
+    const Own &own = static_cast<const Own &>(*this);
+    const Symmetric M = 0.5 * (C0 + C1), H = 0.5 * (C1 - C0), S = own.Own::stress(m, M);
+    return m.traced ? S : S + own.Own::workExcess(m, M, H) / (2 * contract(H, H) + 1e-300) * H;
+  }
+};
+
+struct Svk : Conserving<Svk> {
   Symmetric stress(const Material &m, const Symmetric &C) const {   // (5)
     const Symmetric twiceE = C - identity;
     return m.lambda / 2 * trace(twiceE) * identity + m.mu * twiceE;
@@ -137,31 +147,34 @@ inline double atanhRest(double x) {
 }
 
 // The part -m ln J + l/2 (ln J)^2 of W: volumeStress(), volumeExcess(), volumeModuli() of neohookean.idp; not a number where det C <= 0.
+// Both are asked of one C in every step: inlined, and with a logarithm that the compiler knows to have no effects, they share it.
+__attribute__((const, noinline)) inline double ln(double x) { return std::log(x); }
+#define SHARED __attribute__((always_inline)) inline
 struct Logarithm {
   double l, m;
-  Symmetric stress(const Symmetric &C) const {
+  SHARED Symmetric stress(const Symmetric &C) const {
     const double det = determinant(C);
-    return (l / 2 * std::log(det) - m) / det * cofactor(C);
+    return (l / 2 * ln(det) - m) / det * cofactor(C);
   }
-  double workExcess(const Symmetric &M, const Symmetric &H) const {
+  SHARED double workExcess(const Symmetric &M, const Symmetric &H) const {
     const double det = determinant(M), a = contract(cofactor(M), H) / det, b = contract(M, cofactor(H)) / det, c = determinant(H) / det;
     const double x = (a + c) / (1 + b), D = atanhRest(x) - x * b + c;
     if (l == 0) return -2 * m * D;
-    return (l * std::log(det) - 2 * m) * D + l / 2 * std::log((1 + b) * (1 + b) - (a + c) * (a + c)) * (a + D);
+    return (l * ln(det) - 2 * m) * D + l / 2 * ln((1 + b) * (1 + b) - (a + c) * (a + c)) * (a + D);
   }
   void addModuli(const Symmetric &C, Moduli &D) const {
     const double det = determinant(C);
     const Symmetric inverse = 1 / det * cofactor(C);
-    D.add(inverse, inverse, l, m - l / 2 * std::log(det));
+    D.add(inverse, inverse, l, m - l / 2 * ln(det));
   }
   // of Q(N) = first I + a g (x) g, over mu: logarithmEllipticity()
   double ellipticity(const Symmetric &C, bool spatial, double first, double mu) const {
-    const double a = m + l * (1 - 0.5 * std::log(determinant(C)));
+    const double a = m + l * (1 - 0.5 * ln(determinant(C)));
     return a < 0 ? (first + a / std::max(0., principal(C, spatial)[spatial ? 2 : 1])) / mu : 1;
   }
 };
 
-struct NeoHookean : Law {
+struct NeoHookean : Conserving<NeoHookean> {
   static Logarithm rest(const Material &m) { return {m.lambda, m.mu}; }
   Symmetric stress(const Material &m, const Symmetric &C) const { return rest(m).stress(C) + m.mu * identity; }   // (6)
   double workExcess(const Material &m, const Symmetric &M, const Symmetric &H) const { return rest(m).workExcess(M, H); }
@@ -171,7 +184,7 @@ struct NeoHookean : Law {
   }
 };
 
-struct MooneyRivlin : Law {
+struct MooneyRivlin : Conserving<MooneyRivlin> {
   static double second(const Material &m) { return m.mu * m.own[0]; }
   static Logarithm rest(const Material &m) { return {m.lambda - 2 * second(m), m.mu + second(m)}; }
   Symmetric stress(const Material &m, const Symmetric &C) const {
@@ -187,7 +200,7 @@ struct MooneyRivlin : Law {
   }
 };
 
-struct Ogden : Law {
+struct Ogden : Conserving<Ogden> {
   // f(c, a/2) of every term
   template<class Function> static void each(const Material &m, Function f) {
     for (int k = 0; k < 6; k += 2) if (m.own[k] != 0) f(2 * m.own[k + 1] * m.mu / m.own[k], m.own[k] / 2);
@@ -282,12 +295,6 @@ inline const Law *known(const std::string &name) {
   static const std::map<std::string, const Law *> all = {
     {"svk", &svk}, {"neohookean", &neoHookean}, {"mooney-rivlin", &mooneyRivlin}, {"ogden", &ogden}};
   return all.count(name) ? all.at(name) : nullptr;
-}
-
-// S with S : (C1 - C0)/2 = W1 - W0, second order: that at the mean of C, corrected along C1 - C0 (Gonzalez 2000).
-inline Symmetric algorithmicStress(const Material &m, const Symmetric &C0, const Symmetric &C1) {
-  const Symmetric M = 0.5 * (C0 + C1), H = 0.5 * (C1 - C0), S = m.law->stress(m, M);
-  return m.traced ? S : S + m.law->workExcess(m, M, H) / (2 * contract(H, H) + 1e-300) * H;
 }
 
 // W(C) [J/m3], as accurate for small strains as for large ones: energyDensity() of law.idp.
