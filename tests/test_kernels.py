@@ -56,12 +56,19 @@ PLACES = {"plane": ("tangent-disc", {"accuracy": 0.1}), "axisymmetric": ("tangen
           "3d": ("tangent-3d", {"mesh_size": 0.025, "contact_mesh_size": 0.015})}
 
 
-@pytest.mark.parametrize("law, integrator", [("svk", "newmark"), ("neohookean", "energy-momentum"), ("neohookean", "midpoint"), ("svk", "energy-momentum")])
+OWN = {"mooney-rivlin": "0.3", "ogden": "1.3,0.5,5,0.2,-2,0.3"}
+VISCOUS = {"viscosity": 50, "bulk_viscosity": 30, "relaxation_modulus": 1e6, "relaxation_time": 1e-3}
+
+
+@pytest.mark.parametrize("law, integrator, more", [("svk", "newmark", {}), ("svk", "energy-momentum", {}), *((law, integrator, {}) for law in ("neohookean", *OWN)
+                         for integrator in ("energy-momentum", "midpoint")), *((law, "energy-momentum", VISCOUS) for law in OWN),
+                         ("ogden", "energy-momentum", {"law_parameters": "2.5,1"}), ("ogden", "newmark", {"law_parameters": "8,0.4,-3,0.6"})])
 @pytest.mark.parametrize("place", PLACES)
-def test_forces_tangent_and_factor_are_those_of_the_scripts(place, law, integrator):
-    """In any dimension, under both laws and wherever in the step the stress is taken: to round-off."""
+def test_forces_tangent_and_factor_are_those_of_the_scripts(place, law, integrator, more):
+    """In any dimension, under every law, damped as undamped, and wherever in the step the stress is taken: to round-off."""
     script, flags = PLACES[place]
-    equal(measure(script, law=law, nu=0.3, integrator=integrator, **flags))
+    own = {"law_parameters": OWN[law]} if law in OWN else {}
+    equal(measure(script, **{"law": law, "nu": 0.3, "integrator": integrator} | own | flags | more))
 
 
 @pytest.mark.parametrize("integrator", ["newmark", "energy-momentum"])
@@ -90,6 +97,9 @@ TIGHT = {"law": "neohookean", "nu": 0.4, "accuracy": 0.3, "tolerance": 1e-14}
 RUBBED = {"friction_static": 0.3, "angle": 60}
 MARCHES = {"disc": ("disc-plane", {}), "rubbing disc": ("disc-plane", RUBBED), "svk": ("disc-plane", {"law": "svk", "integrator": "midpoint", "speed": 2, "end_time": 1e-3}),
            "explicit": ("disc-plane", {"integrator": "central-difference", "end_time": 2e-4}), "ball of revolution": ("ball-axisymmetric", {}),
+           "mooney-rivlin": ("disc-plane", {"law": "mooney-rivlin", "law_parameters": OWN["mooney-rivlin"]}),
+           "ogden": ("ball-axisymmetric", {"law": "ogden", "law_parameters": OWN["ogden"], "viscosity": 50}),
+           "incompressible ogden": ("disc-plane", {"law": "ogden", "law_parameters": OWN["ogden"], "nu": 0.5, "accuracy": 0.2, "end_time": 1e-3}),
            "ball": ("ball-plane", RUBBED | {"end_time": 1e-3}), "two bodies": ("disc-block", RUBBED | {"end_time": 1e-3})}
 WATCHED = ["t", "normal_force", "friction_force", "kinetic", "elastic", "vx", "vy", "min_jacobian", "min_stretch", "min_ellipticity"]
 

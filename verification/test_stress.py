@@ -44,9 +44,8 @@ def assert_largest(largest: dict, sigma: np.ndarray) -> None:
 
 
 def longer(found: dict, name: str) -> np.ndarray:
-    """Entries 11, 22, 12, 33 of M or H at the ten points of work-excess.edp, (4, 10), in extended precision; in plane strain 33 is 1 or 0."""
-    out = {"M": 1.0, "H": 0.0}[name]
-    return np.array([[found.get(f"{name}{entry}_{i}", out) for i in range(10)] for entry in ("11", "22", "12", "33")]).astype(np.longdouble)
+    """Entries 11, 22, 12, 33 of M or H at the ten points of work-excess.edp, (4, 10), in extended precision."""
+    return np.array([[found[f"{name}{entry}_{i}"] for i in range(10)] for entry in ("11", "22", "12", "33")]).astype(np.longdouble)
 
 
 def neo(C: np.ndarray) -> np.ndarray:

@@ -4,14 +4,42 @@
 // once, in the blocks of L that lead from them to the last. Only the numbers are computed anew while pattern and `last` stay. A small
 // matrix CHOLMOD takes column by column, as L D L^T, which may be indefinite, though not in w; a large one by dense blocks of columns, as
 // L L^T, which may not. What is held has a 1 on the diagonal and no other entries.
-// An L that no cache holds is rounded to single precision, and S and its inverse are made of that: all solutions are those of one matrix,
-// off A by 1e-7, as the state that A is frozen at is by more. A back-substitution lasts as long as reading L does.
+// An L that no cache holds is made in single precision, in half the time, and S and its inverse of that: all solutions are those of one
+// matrix, off A by some 1e-7, as the state that A is frozen at is by more. A back-substitution lasts as long as reading L does.
 #pragma once
 #include <cholmod.h>
 #include <cstring>
 #include "bodies.hpp"
 
 extern "C" void dpotri_(const char *uplo, const int *n, double *A, const int *leading, int *info);
+
+// BLAS in either precision, of blocks stored by columns: C = A B^T; the lower triangle of A A^T; of A = L L^T; A L^-T.
+#define BLAS(Number, p) \
+extern "C" { \
+void p##gemm_(const char *, const char *, const int *, const int *, const int *, const Number *, const Number *, const int *, \
+              const Number *, const int *, const Number *, Number *, const int *); \
+void p##syrk_(const char *, const char *, const int *, const int *, const Number *, const Number *, const int *, const Number *, \
+              Number *, const int *); \
+void p##potrf_(const char *, const int *, Number *, const int *, int *); \
+void p##trsm_(const char *, const char *, const char *, const char *, const int *, const int *, const Number *, const Number *, \
+              const int *, Number *, const int *); \
+} \
+inline void times(int rows, int columns, int width, const Number *A, const Number *B, int height, Number *C, int heightOfC) { \
+  const Number one = 1, zero = 0; \
+  p##gemm_("N", "T", &rows, &columns, &width, &one, A, &height, B, &height, &zero, C, &heightOfC); \
+} \
+inline void square(int columns, int width, const Number *A, int height, Number *C, int heightOfC) { \
+  const Number one = 1, zero = 0; \
+  p##syrk_("L", "N", &columns, &width, &one, A, &height, &zero, C, &heightOfC); \
+} \
+inline void cholesky(int width, Number *A, int height) { int info;  p##potrf_("L", &width, A, &height, &info); } \
+inline void divide(int rows, int width, const Number *L, Number *A, int height) { \
+  const Number one = 1; \
+  p##trsm_("R", "L", "T", "N", &rows, &width, &one, L, &height, A, &height); \
+}
+BLAS(double, d)
+BLAS(float, s)
+#undef BLAS
 
 // What the processor at hand does in one go is found when the plugin is loaded; the order of sums is the same on all.
 #if defined(__x86_64__) && defined(__gnu_linux__)
@@ -24,7 +52,8 @@ template<class Number> struct Eight { typedef Doubles Type; };
 template<> struct Eight<float> { typedef float Type __attribute__((vector_size(32), aligned(4), may_alias)); };
 #define EIGHT(at) __builtin_convertvector(*(const typename Eight<Number>::Type *)(at), Doubles)
 
-// Four columns of a dense block from j on, the last again where there are fewer: z -= c x, and s = c^T z, of rows from first to last.
+// Four columns of a dense block from j on, the last again where there are fewer: z -= c x, and s = c^T z, of rows from first to last. Of
+// one right side rows go by eights: behind the last of z there is room for seven more, 0 for s, and behind those of the block as much.
 template<class Number> struct Four {
   const Number *c[4];
   int count;
@@ -41,19 +70,17 @@ private:
   WIDE static void subtract(const Number *c0, const Number *c1, const Number *c2, const Number *c3, const double *x, int i, int last,
                             double *z) {
     const double x0 = x[0], x1 = x[1], x2 = x[2], x3 = x[3];
-    for (; i + 8 <= last; i += 8)
+    for (; i < last; i += 8)
       *(Doubles *)(z + i) -= EIGHT(c0 + i) * x0 + EIGHT(c1 + i) * x1 + EIGHT(c2 + i) * x2 + EIGHT(c3 + i) * x3;
-    for (; i < last; i++) z[i] -= c0[i] * x0 + c1[i] * x1 + c2[i] * x2 + c3[i] * x3;
   }
   WIDE static void dot(const Number *c0, const Number *c1, const Number *c2, const Number *c3, const double *z, int i, int last,
                        double *s) {
     const Number *c[4] = {c0, c1, c2, c3};
     Doubles sum[4] = {};
-    for (; i + 8 <= last; i += 8) for (int k = 0; k < 4; k++) sum[k] += EIGHT(c[k] + i) * *(const Doubles *)(z + i);
+    for (; i < last; i += 8) for (int k = 0; k < 4; k++) sum[k] += EIGHT(c[k] + i) * *(const Doubles *)(z + i);
     for (int k = 0; k < 4; k++) {
-      s[k] = 0;
-      for (int l = 0; l < 8; l++) s[k] += sum[k][l];
-      for (int m = i; m < last; m++) s[k] += c[k][m] * z[m];
+      const double *l = (const double *)&sum[k];
+      s[k] = ((l[0] + l[4]) + (l[2] + l[6])) + ((l[1] + l[5]) + (l[3] + l[7]));
     }
   }
   WIDE static void subtract(const Number *c0, const Number *c1, const Number *c2, const Number *c3, const Doubles *x, int i, int last,
@@ -106,6 +133,15 @@ public:
     A.stype = -1;                          // the lower triangle
     A.itype = CHOLMOD_INT;  A.xtype = CHOLMOD_REAL;  A.dtype = CHOLMOD_DOUBLE;
     A.sorted = A.packed = 1;
+    firstOf.assign(n + 1, 0);
+    for (const Entry &e : entries) { firstOf[e.row + 1]++;  if (e.row != e.column) firstOf[e.column + 1]++; }
+    for (int j = 0; j < n; j++) firstOf[j + 1] += firstOf[j];
+    beside.resize(firstOf[n]);
+    std::vector<int> next(firstOf.begin(), firstOf.end() - 1);
+    for (size_t e = 0; e < entries.size(); e++) {
+      beside[next[entries[e].row]++] = {entries[e].column, int(e)};
+      if (entries[e].row != entries[e].column) beside[next[entries[e].column]++] = {entries[e].row, int(e)};
+    }
     if (L) cholmod_free_factor(&L, &common);
     cholmod_factor *alone = cholmod_analyze(&A, &common);   // by AMD, or METIS where that is poor
     ordered.assign((int *)alone->Perm, (int *)alone->Perm + n);
@@ -124,11 +160,13 @@ public:
     if (!L || w != last) order(w);
     inverse.clear();
     tail.assign(last.size() * last.size(), 0.);
-    cholmod_factorize(&A, L, &common);
-    if (common.status != CHOLMOD_OK || L->minor < L->n) return 1;
     single = L->is_super && L->xsize > mostDouble;
-    if (single) roundBlocks();
-    if (!L->is_super) takeColumns(); else if (single) takeBlocks<float>(); else takeBlocks<double>();
+    if (!L->is_super) {
+      cholmod_factorize(&A, L, &common);
+      if (common.status != CHOLMOD_OK || L->minor < L->n) return 1;
+      takeColumns();
+    }
+    else if (!(single ? makeBlocks<float>() : makeBlocks<double>())) return 1;
     for (size_t j = 0; j < last.size(); j++) if (!(tail[j * last.size() + j] > 0)) return 1;
     return 0;
   }
@@ -205,10 +243,14 @@ private:
   cholmod_sparse A = cholmod_sparse();
   cholmod_factor *L = nullptr;
   cholmod_dense *solution = nullptr, *work1 = nullptr, *work2 = nullptr;
-  std::vector<int> column, row, ordered, last, place;   // entries of A; CHOLMOD's order; w; unknown -> where in L
+  struct Beside { int unknown, entry; };
+  std::vector<int> column, row, firstOf;   // entries of A, those of its lower triangle; of an unknown those with others beside it
+  std::vector<Beside> beside;
+  std::vector<int> ordered, last, place, blockOf;       // CHOLMOD's order; w; unknown -> where in L -> its block of columns
   std::vector<size_t> from;                // entry of A -> where in the blocks
   std::vector<double> value, tail, inverse;      // of A; L_ww (lower triangle by columns); S^-1 (likewise), empty until it is asked for
-  std::vector<double> y, z, right, ways;
+  std::vector<double> doubles, y, z, right, ways;
+  std::vector<float> singles;              // L by blocks, in the one precision or the other
   std::vector<char> marked;                // blocks of L that lead from some unknowns to the last
   static const size_t lanes = 8;
 
@@ -224,25 +266,75 @@ private:
     common.method[0].ordering = CHOLMOD_GIVEN;
     common.postorder = 0;
     L = cholmod_analyze_p(&A, permutation.data(), nullptr, 0, &common);
+    place.resize(n);
+    for (int k = 0; k < n; k++) place[((int *)L->Perm)[k]] = k;
+    blockOf.resize(n);
+    for (int s = 0; L->is_super && s < int(L->nsuper); s++) std::fill_n(&blockOf[block<double>(s).first], block<double>(s).width, s);
   }
 
   // Columns of L that have their rows in common, themselves first.
-  template<class Number> struct Block { int first, width, height;  const int *rows;  const Number *value; };
-  template<class Number> Block<Number> block(int s) const {
+  template<class Number> struct Block { int first, width, height;  const int *rows;  Number *value; };
+  void numbersOf(double *&x) { x = doubles.data(); }
+  void numbersOf(float *&x) { x = singles.data(); }
+  template<class Number> Block<Number> block(int s) {
     const int *super = (int *)L->super, *pi = (int *)L->pi, *px = (int *)L->px;
-    return {super[s], super[s + 1] - super[s], pi[s + 1] - pi[s], (int *)L->s + pi[s], (Number *)L->x + px[s]};
+    Number *x;
+    numbersOf(x);
+    return {super[s], super[s + 1] - super[s], pi[s + 1] - pi[s], (int *)L->s + pi[s], x + px[s]};
   }
 
-  // The numbers of L in single precision, in the place of those in double.
-  void roundBlocks() {
-    const char *from = (char *)L->x;
-    char *to = (char *)L->x;
-    for (size_t k = 0; k < L->xsize; k++, from += sizeof(double), to += sizeof(float)) {
-      double exact;
-      std::memcpy(&exact, from, sizeof exact);
-      const float rounded = float(exact);
-      std::memcpy(to, &rounded, sizeof rounded);
+  // L, by blocks of columns: each begins as that of A, and what blocks before it have in its columns is taken from it (left-looking). False
+  // where A is not positive definite.
+  template<class Number> bool makeBlocks() {
+    const int blocks = int(L->nsuper);
+    std::vector<int> waiting(blocks, -1), behind(blocks, -1), reached(blocks), at(n);   // before a block: those with their next row in it
+    std::vector<Number> taken;
+    doubles.assign(single ? 0 : L->xsize + lanes, 0.);
+    singles.assign(single ? L->xsize + lanes : 0, 0.f);
+    for (int s = 0; s < blocks; s++) {
+      const Block<Number> B = block<Number>(s);
+      for (int i = 0; i < B.height; i++) at[B.rows[i]] = i;
+      begin(B, at);
+      for (int d = waiting[s], then; d >= 0; d = then) {
+        then = behind[d];
+        reached[d] = subtract(block<Number>(d), reached[d], at, taken, B);
+        wait(d, reached[d], waiting, behind);
+      }
+      cholesky(B.width, B.value, B.height);
+      for (int j = 0; j < B.width; j++) if (!(B.value[size_t(j) * B.height + j] > 0)) return false;
+      divide(B.height - B.width, B.width, B.value, B.value + B.width, B.height);
+      wait(s, reached[s] = B.width, waiting, behind);
     }
+    takeBlocks<Number>();
+    return true;
+  }
+  void wait(int d, int row, std::vector<int> &waiting, std::vector<int> &behind) {
+    const Block<double> D = block<double>(d);
+    if (row == D.height) return;
+    int &first = waiting[blockOf[D.rows[row]]];
+    behind[d] = first;
+    first = d;
+  }
+  template<class Number> void begin(const Block<Number> &B, const std::vector<int> &at) {
+    const int *permutation = (int *)L->Perm;
+    for (int k = B.first; k < B.first + B.width; k++)
+      for (int e = firstOf[permutation[k]]; e < firstOf[permutation[k] + 1]; e++)
+        if (place[beside[e].unknown] >= k) B.value[size_t(k - B.first) * B.height + at[place[beside[e].unknown]]] = value[beside[e].entry];
+  }
+  // What block D, from its row `from` on, has in the columns of B; gives its first row beyond.
+  template<class Number> int subtract(const Block<Number> &D, int from, const std::vector<int> &at, std::vector<Number> &taken,
+                                      const Block<Number> &B) {
+    const int to = std::lower_bound(D.rows + from, D.rows + D.height, B.first + B.width) - D.rows;
+    const int rows = D.height - from, columns = to - from;
+    if (taken.size() < size_t(rows) * columns) taken.resize(size_t(rows) * columns);
+    square(columns, D.width, D.value + from, D.height, taken.data(), rows);
+    times(rows - columns, columns, D.width, D.value + to, D.value + from, D.height, taken.data() + columns, rows);
+    for (int j = 0; j < columns; j++) {
+      const Number *of = &taken[size_t(j) * rows];
+      Number *column = B.value + size_t(D.rows[from + j] - B.first) * B.height;
+      for (int i = j; i < rows; i++) column[at[D.rows[from + i]]] -= of[i];
+    }
+    return to;
   }
 
   // `ways`: A^-1 at the unknowns u, of the columns from u_from on, before u_to.
@@ -263,13 +355,8 @@ private:
     for (size_t i = 0; i < u.size(); i++) std::copy_n(&y[place[u[i]] * lanes], lanes, &ways[i * lanes]);
   }
 
-  // `marked`, and `place`, where unknowns are in L.
+  // `marked`.
   void mark(const std::vector<int> &u) {
-    const int *permutation = (int *)L->Perm, *super = (int *)L->super;
-    std::vector<int> blockOf(n);
-    place.resize(n);
-    for (int k = 0; k < n; k++) place[permutation[k]] = k;
-    for (int s = 0; s < int(L->nsuper); s++) std::fill(&blockOf[super[s]], &blockOf[super[s]] + super[s + 1] - super[s], s);
     marked.assign(L->nsuper, 0);
     for (int j : u) for (int s = blockOf[place[j]]; s >= 0 && !marked[s]; ) {
       const Block<float> B = block<float>(s);
@@ -285,7 +372,8 @@ private:
     for (int s = blocks - 1; s >= 0; s--) if (!marked || (*marked)[s]) backward(block<Number>(s), (Value *)y.data());
   }
   template<class Value> Value *heights(int height) {
-    z.resize(height * sizeof(Value) / sizeof(double));
+    z.resize(height * sizeof(Value) / sizeof(double) + lanes);
+    std::fill(z.end() - lanes, z.end(), 0.);
     return (Value *)z.data();
   }
   static bool isZero(double v) { return v == 0; }

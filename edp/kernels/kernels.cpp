@@ -10,6 +10,7 @@
 
 static bodies::Bodies body;
 static bodies::Deformation deformation;
+static std::vector<const laws::Law *> law;
 static Factor factor;
 
 static bodies::Triplets entries(Sparse A) {
@@ -20,19 +21,26 @@ static bodies::Triplets entries(Sparse A) {
 
 static void addBodies() {
   add("kernelComponent", +[](long i, long dimensions, Sparse pick) { body.component(int(i), int(dimensions), entries(pick)); });
-  add("kernelMaterial", +[](Reals lambda, Reals mu, Reals eta, Reals zeta, Reals relaxing, Reals relaxTime, Reals bulk, Reals dampingState,
-                           Ints neohookean, Ints held, Reals weight) {
+  add("kernelKnows", +[](long number, std::string &name) {   // whether it has the law that has this number in lawOfPoint
+    law.resize(std::max(law.size(), size_t(number + 1)));
+    law[number] = laws::known(name);
+    return long(law[number] != nullptr);
+  });
+  add("kernelMaterial", +[](Reals lambda, Reals mu, Reals own, Reals eta, Reals zeta, Reals relaxing, Reals relaxTime, Reals bulk,
+                           Reals dampingState, Ints lawOfPoint, Ints traced, Ints held, Reals weight) {
+    const long nq = weight.N();
     body.weight = copied<double>(weight);
-    body.material.resize(weight.N());
+    body.material.resize(nq);
     body.damping = dampingState;
-    for (int q = 0; q < weight.N(); q++)
-      body.material[q] = {lambda[q], mu[q], eta[q], zeta[q], relaxing[q], relaxTime[q], bulk[q], neohookean[q] == 1, held[q] == 1};
+    for (long q = 0; q < nq; q++) {
+      laws::Material &m = body.material[q] = {law[lawOfPoint[q]], lambda[q], mu[q], {}, eta[q], zeta[q], relaxing[q], relaxTime[q], bulk[q],
+                                              traced[q] == 1, held[q] == 1};
+      for (int k = 0; k < 8; k++) m.own[k] = own[k * nq + q];
+    }
   });
   add("kernelBodies", +[](Sparse gradient, Sparse mass, Reals free) {
     body.free = copied<double>(free);
-    body.elements(entries(gradient));
-    body.mass(entries(mass));
-    body.pairs();
+    body.make(entries(gradient), entries(mass));
     factor.pattern(body);
   });
   add("kernelDeformation", +[](Reals F0, Reals C0, Reals F1, Reals C1, Reals jacobian1, Reals Fs, Reals Ss) {
@@ -43,10 +51,10 @@ static void addBodies() {
   });
   add("kernelForces", +[](Reals d, Reals history, Reals deadLoad, double massScale, double rate, long where, bool breaks, bool carries,
                           Reals residual) {
-    return long(body.forces(d, history, deadLoad, massScale, rate, int(where), breaks, carries, deformation, residual));
+    return long(body.forces(d, history, deadLoad, {massScale, rate, int(where), breaks, carries}, deformation, residual));
   });
   add("kernelEnergy", +[](Reals C, Reals W) { body.energies(C, W); });
-  add("kernelRelax", +[](Reals C0, Reals C1, double dt) { body.relax(C0, C1, dt); });
+  add("kernelDamp", +[](Reals C0, Reals C1, double dt) { body.damp(C0, C1, dt); });
   add("kernelSmallestStretch", +[](Reals C, Reals stretch) { body.smallestStretches(C, stretch); });
   add("kernelEllipticity", +[](Reals C, Reals e) { body.ellipticities(C, e); });
   add("kernelStresses", +[](Reals F, Reals p, Reals sigma, Reals mises) { body.stresses(F, p, sigma, mises); });

@@ -1,74 +1,138 @@
-// laws.hpp: the constitutive laws at one quadrature point (edp/core/law), always in three dimensions: in plane strain F_33 = C_33 = 1.
-// F, P: (i, J) at 3 i + J. Symmetric tensors (C, S): 11, 22, 33, 12, 23, 13. Stresses and moduli in Pa.
+// laws.hpp: what edp/core/law says, at one quadrature point and always in three dimensions: in plane strain F_33 = C_33 = 1. Stresses and
+// moduli in Pa. A law is a struct, and a line of known() that gives its name; the scripts beside say what the symbols mean.
 #pragma once
-#include <algorithm>
-#include <cmath>
+#include <map>
+#include <string>
+#include "vectors.hpp"
 
 namespace laws {
 
-const int sym[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};   // (J, L) of a symmetric tensor -> where it stands
+using namespace vectors;
+typedef Vector<9> Matrix;                  // F, P: (i, J) at 3 i + J
+typedef Vector<6> Symmetric;               // C, S: 11, 22, 33, 12, 23, 13
 
+const int sym[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}}, rowOf[6] = {0, 1, 2, 0, 1, 0}, columnOf[6] = {0, 1, 2, 1, 2, 2};
+const Symmetric identity = {1, 1, 1, 0, 0, 0};
+
+inline double determinant(const Matrix &F) {
+  return F[0] * (F[4] * F[8] - F[5] * F[7]) + F[1] * (F[5] * F[6] - F[3] * F[8]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
+}
+inline double determinant(const Symmetric &A) {
+  return A[0] * (A[1] * A[2] - A[4] * A[4]) + A[3] * (A[4] * A[5] - A[3] * A[2]) + A[5] * (A[3] * A[4] - A[1] * A[5]);
+}
+inline Symmetric cofactor(const Symmetric &A) {   // det A A^-1
+  return {A[1] * A[2] - A[4] * A[4], A[0] * A[2] - A[5] * A[5], A[0] * A[1] - A[3] * A[3],
+          A[4] * A[5] - A[3] * A[2], A[3] * A[5] - A[0] * A[4], A[3] * A[4] - A[1] * A[5]};
+}
+inline Symmetric inverse(const Symmetric &A) { return 1 / determinant(A) * cofactor(A); }
+inline double trace(const Symmetric &A) { return A[0] + A[1] + A[2]; }
+inline double contract(const Symmetric &A, const Symmetric &B) {   // A:B
+  return A[0] * B[0] + A[1] * B[1] + A[2] * B[2] + 2 * (A[3] * B[3] + A[4] * B[4] + A[5] * B[5]);
+}
+inline Matrix product(const Symmetric &A, const Symmetric &B) {   // A B
+  Matrix X;
+  for (int J = 0; J < 3; J++) for (int L = 0; L < 3; L++)
+    X[3 * J + L] = A[sym[J][0]] * B[sym[0][L]] + A[sym[J][1]] * B[sym[1][L]] + A[sym[J][2]] * B[sym[2][L]];
+  return X;
+}
+inline Matrix product(const Matrix &F, const Symmetric &S) {   // P = F S (3)
+  Matrix P;
+  for (int i = 0; i < 9; i += 3) for (int J = 0; J < 3; J++)
+    P[i + J] = F[i] * S[sym[0][J]] + F[i + 1] * S[sym[1][J]] + F[i + 2] * S[sym[2][J]];
+  return P;
+}
+inline Symmetric timesTransposed(const Matrix &A, const Matrix &B) {   // A B^T, where that is symmetric
+  Symmetric S;
+  for (int k = 0; k < 6; k++) {
+    const int i = 3 * rowOf[k], j = 3 * columnOf[k];
+    S[k] = A[i] * B[j] + A[i + 1] * B[j + 1] + A[i + 2] * B[j + 2];
+  }
+  return S;
+}
+inline Symmetric rightCauchyGreen(const Matrix &F) {   // F^T F
+  Symmetric C;
+  for (int k = 0; k < 6; k++) {
+    const int J = rowOf[k], L = columnOf[k];
+    C[k] = F[J] * F[L] + F[3 + J] * F[3 + L] + F[6 + J] * F[6 + L];
+  }
+  return C;
+}
+
+// Squared principal stretches: principalStretches() of tensors.idp.
+inline Vector<3> principal(const Symmetric &C, bool spatial) {
+  if (!spatial) {
+    const double q = (C[0] + C[1]) / 2, p = std::sqrt((C[0] - C[1]) * (C[0] - C[1]) / 4 + C[3] * C[3]);
+    return {q + p, q - p, C[2]};
+  }
+  const double q = trace(C) / 3;
+  const Symmetric B = C - q * identity;
+  const double p = std::sqrt(contract(B, B) / 6), ratio = determinant(B) / std::max(1e-300, 2 * p * p * p),
+               phi = std::acos(std::max(-1., std::min(1., ratio))) / 3;
+  return {q + 2 * p * std::cos(phi), q + 2 * p * std::cos(phi - 2 * M_PI / 3), q + 2 * p * std::cos(phi - 4 * M_PI / 3)};
+}
+
+// D_IJKL = 2 dS_IJ/dC_KL at (IJ, KL) of Symmetric.
+struct Moduli {
+  double D[6][6] = {};
+  void add(const Symmetric &A, const Symmetric &B, double l, double m) {   // l A_IJ B_KL + m (A_IK B_JL + A_IL B_JK)
+    for (int a = 0; a < 6; a++) for (int b = 0; b < 6; b++) {
+      const int *I = sym[rowOf[a]], *J = sym[columnOf[a]], K = rowOf[b], L = columnOf[b];
+      D[a][b] += l * A[a] * B[b] + m * (A[I[K]] * B[J[L]] + A[I[L]] * B[J[K]]);
+    }
+  }
+};
+
+struct Law;
 struct Material {
-  double lambda, mu;
+  const Law *law;
+  double lambda, mu, own[8];               // Lame's constants, numbers of the law's own
   double eta, zeta;                        // viscosities [Pa s]
   double relaxing, relaxTime;              // G [Pa], tau [s] of relaxation.idp
   double bulk;                             // kappa [Pa], the part of the law's lambda that acts in the mean of an element (volume.idp)
-  bool neohookean;                         // or St. Venant-Kirchhoff
+  bool traced;                             // what measures volume is tr E: W is quadratic in C
   bool held;                               // with J = 1 (material.idp)
 };
 
-// det F.
-inline double determinant(const double *F) {
-  return F[0] * (F[4] * F[8] - F[5] * F[7]) + F[1] * (F[5] * F[6] - F[3] * F[8]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
-}
+// What a law says: S, 2 [W(M+H) - W(M-H) - S(M):H], D, and of the motions in the plane of the mesh, or (spatial) all, ellipticity.
+struct Law {
+  virtual ~Law() {}
+  virtual Symmetric stress(const Material &m, const Symmetric &C) const = 0;
+  virtual Symmetric algorithmicStress(const Material &m, const Symmetric &C0, const Symmetric &C1) const = 0;
+  virtual double workExcess(const Material &m, const Symmetric &M, const Symmetric &H) const = 0;
+  virtual void addModuli(const Material &m, const Symmetric &C, Moduli &D) const = 0;
+  virtual double ellipticity(const Material &m, const Symmetric &C, bool spatial) const = 0;
+};
 
-// det A of a symmetric A.
-inline double determinantOf(const double *A) {
-  return A[0] * (A[1] * A[2] - A[4] * A[4]) + A[3] * (A[4] * A[5] - A[3] * A[2]) + A[5] * (A[3] * A[4] - A[1] * A[5]);
-}
-
-// K = cof A = det A A^-1 of a symmetric A.
-inline void cofactor(const double *A, double *K) {
-  K[0] = A[1] * A[2] - A[4] * A[4];
-  K[1] = A[0] * A[2] - A[5] * A[5];
-  K[2] = A[0] * A[1] - A[3] * A[3];
-  K[3] = A[4] * A[5] - A[3] * A[2];
-  K[4] = A[3] * A[5] - A[0] * A[4];
-  K[5] = A[3] * A[4] - A[1] * A[5];
-}
-
-// A:B of symmetric A, B.
-inline double contract(const double *A, const double *B) {
-  return A[0] * B[0] + A[1] * B[1] + A[2] * B[2] + 2 * (A[3] * B[3] + A[4] * B[4] + A[5] * B[5]);
-}
-
-// C = F^T F.
-inline void rightCauchyGreen(const double *F, double *C) {
-  for (int J = 0; J < 3; J++)
-    for (int L = J; L < 3; L++) C[sym[J][L]] = F[J] * F[L] + F[3 + J] * F[3 + L] + F[6 + J] * F[6 + L];
-}
-
-// P = F S (3).
-inline void nominalStress(const double *F, const double *S, double *P) {
-  for (int i = 0; i < 3; i++)
-    for (int J = 0; J < 3; J++) P[3 * i + J] = F[3 * i] * S[sym[0][J]] + F[3 * i + 1] * S[sym[1][J]] + F[3 * i + 2] * S[sym[2][J]];
-}
-
-// S = g(E): lambda tr(E) I + 2 mu E (5), or mu I + (lambda ln J - mu) C^-1 (6); not a number where det C <= 0.
-// Returns lambda ln J - mu.
-inline double stress(const Material &m, const double *C, double *S) {
-  if (m.neohookean) {
-    double det = determinantOf(C), slope = m.lambda / 2 * std::log(det) - m.mu, t = slope / det;
-    cofactor(C, S);
-    for (int k = 0; k < 6; k++) S[k] *= t;
-    for (int k = 0; k < 3; k++) S[k] += m.mu;
-    return slope;
+// S with S : (C1 - C0)/2 = W1 - W0, second order: that at the mean of C, corrected along C1 - C0 (Gonzalez 2000); one call a point.
+template<class Own> struct Conserving : Law {
+  Symmetric algorithmicStress(const Material &m, const Symmetric &C0, const Symmetric &C1) const {
+    const Own &own = static_cast<const Own &>(*this);
+    const Symmetric M = 0.5 * (C0 + C1), H = 0.5 * (C1 - C0), S = own.Own::stress(m, M);
+    return m.traced ? S : S + own.Own::workExcess(m, M, H) / (2 * contract(H, H) + 1e-300) * H;
   }
-  double t = m.lambda / 2 * ((C[0] - 1) + (C[1] - 1) + (C[2] - 1));
-  for (int k = 0; k < 3; k++) S[k] = m.mu * (C[k] - 1) + t;
-  for (int k = 3; k < 6; k++) S[k] = m.mu * C[k];
-  return 0;
-}
+};
+
+struct Svk : Conserving<Svk> {
+  Symmetric stress(const Material &m, const Symmetric &C) const {   // (5)
+    const Symmetric twiceE = C - identity;
+    return m.lambda / 2 * trace(twiceE) * identity + m.mu * twiceE;
+  }
+  double workExcess(const Material &, const Symmetric &, const Symmetric &) const { return 0; }
+  void addModuli(const Material &m, const Symmetric &, Moduli &D) const { D.add(identity, identity, m.lambda, m.mu); }
+  double ellipticity(const Material &m, const Symmetric &C, bool spatial) const {
+    const double k = 1 + (m.lambda + m.bulk) / m.mu;
+    const Vector<3> L = principal(C, spatial);
+    double least = 1e300;
+    for (int n = spatial ? 0 : 2; n < 3; n++) {
+      const double a = L[(n + 1) % 3], b = L[(n + 2) % 3], J = std::sqrt(std::max(0., a * b));
+      double e = (k + 1) / (2 * k) * ((k - 2) * (a + b) + 4 * J) - k;
+      if (a + b > (1 + k + 1 / (1 + k)) * J)
+        e = (k - 1) / 2 * (a + b) - k + (k + 2) * 2 * J * J / (a + b + std::sqrt(std::max(0., (a + b) * (a + b) - 4 * J * J)));
+      least = std::min(least, e + (k - 1) / 2 * (L[n] - 1));
+    }
+    return least;
+  }
+};
 
 // atanh x - x without cancellation: the series x^3/3 + x^5/5 + ... up to the last bit, beyond 0.3 the logarithm.
 inline double atanhRest(double x) {
@@ -82,27 +146,161 @@ inline double atanhRest(double x) {
   return rest * y * x;
 }
 
-// 2 [W(M+H) - W(M-H) - S(M):H], third order in H [J/m3]: neohookeanWorkExcess() of neohookean.idp; 0 where W is quadratic in C. `slope`: of
-// stress() at M.
-inline double workExcess(const Material &m, const double *M, const double *H, double slope) {
-  if (!m.neohookean) return 0;
-  double K[6], det = determinantOf(M);
-  cofactor(M, K);
-  double a = contract(K, H) / det, c = determinantOf(H) / det;
-  cofactor(H, K);
-  double b = contract(M, K) / det, odd = a + c, x = odd / (1 + b), D = atanhRest(x) - x * b + c;
-  return m.lambda / 2 * std::log((1 + b) * (1 + b) - odd * odd) * (a + D) + 2 * slope * D;
+// The part -m ln J + l/2 (ln J)^2 of W: volumeStress(), volumeExcess(), volumeModuli() of neohookean.idp; not a number where det C <= 0.
+// Both are asked of one C in every step: inlined, and with a logarithm that the compiler knows to have no effects, they share it.
+__attribute__((const, noinline)) inline double ln(double x) { return std::log(x); }
+#define SHARED __attribute__((always_inline)) inline
+struct Logarithm {
+  double l, m;
+  SHARED Symmetric stress(const Symmetric &C) const {
+    const double det = determinant(C);
+    return (l / 2 * ln(det) - m) / det * cofactor(C);
+  }
+  SHARED double workExcess(const Symmetric &M, const Symmetric &H) const {
+    const double det = determinant(M), a = contract(cofactor(M), H) / det, b = contract(M, cofactor(H)) / det, c = determinant(H) / det;
+    const double x = (a + c) / (1 + b), D = atanhRest(x) - x * b + c;
+    if (l == 0) return -2 * m * D;
+    return (l * ln(det) - 2 * m) * D + l / 2 * ln((1 + b) * (1 + b) - (a + c) * (a + c)) * (a + D);
+  }
+  void addModuli(const Symmetric &C, Moduli &D) const {
+    const double det = determinant(C);
+    const Symmetric inverse = 1 / det * cofactor(C);
+    D.add(inverse, inverse, l, m - l / 2 * ln(det));
+  }
+  // of Q(N) = first I + a g (x) g, over mu: logarithmEllipticity()
+  double ellipticity(const Symmetric &C, bool spatial, double first, double mu) const {
+    const double a = m + l * (1 - 0.5 * ln(determinant(C)));
+    return a < 0 ? (first + a / std::max(0., principal(C, spatial)[spatial ? 2 : 1])) / mu : 1;
+  }
+};
+
+struct NeoHookean : Conserving<NeoHookean> {
+  static Logarithm rest(const Material &m) { return {m.lambda, m.mu}; }
+  Symmetric stress(const Material &m, const Symmetric &C) const { return rest(m).stress(C) + m.mu * identity; }   // (6)
+  double workExcess(const Material &m, const Symmetric &M, const Symmetric &H) const { return rest(m).workExcess(M, H); }
+  void addModuli(const Material &m, const Symmetric &C, Moduli &D) const { rest(m).addModuli(C, D); }
+  double ellipticity(const Material &m, const Symmetric &C, bool spatial) const {
+    return Logarithm{m.lambda + m.bulk, m.mu}.ellipticity(C, spatial, m.mu, m.mu);
+  }
+};
+
+struct MooneyRivlin : Conserving<MooneyRivlin> {
+  static double second(const Material &m) { return m.mu * m.own[0]; }
+  static Logarithm rest(const Material &m) { return {m.lambda - 2 * second(m), m.mu + second(m)}; }
+  Symmetric stress(const Material &m, const Symmetric &C) const {
+    return rest(m).stress(C) + (m.mu - second(m) + second(m) * trace(C)) * identity - second(m) * C;
+  }
+  double workExcess(const Material &m, const Symmetric &M, const Symmetric &H) const { return rest(m).workExcess(M, H); }
+  void addModuli(const Material &m, const Symmetric &C, Moduli &D) const {
+    D.add(identity, identity, 2 * second(m), -second(m));
+    rest(m).addModuli(C, D);
+  }
+  double ellipticity(const Material &m, const Symmetric &C, bool spatial) const {
+    return rest(m).ellipticity(C, spatial, m.mu - second(m), m.mu);
+  }
+};
+
+struct Ogden : Conserving<Ogden> {
+  // f(c, a/2) of every term
+  template<class Function> static void each(const Material &m, Function f) {
+    for (int k = 0; k < 6; k += 2) if (m.own[k] != 0) f(2 * m.own[k + 1] * m.mu / m.own[k], m.own[k] / 2);
+  }
+  static Logarithm rest(const Material &m) {
+    Logarithm of = {m.lambda, 0};
+    each(m, [&](double c, double) { of.m += c; });
+    return of;
+  }
+  // newtonBasis() and newtonCoefficients() of ogden.idp: polynomials in C through values at its eigenvalues l
+  struct Newton {
+    Vector<3> l;
+    Symmetric N[3];
+    explicit Newton(const Symmetric &C) : l(principal(C, C[4] != 0 || C[5] != 0)) {
+      const double h = 1e-7;
+      l[1] = std::min(l[1], (1 - h) * l[0]);
+      if (std::abs(l[2] - l[0]) < h * l[0]) l[2] = (1 + h) * l[0];
+      else if (std::abs(l[2] - l[1]) < h * l[1]) l[2] = (1 - h) * l[1];
+      N[0] = identity;
+      N[1] = C - l[0] * identity;
+      const Matrix X = product(N[1], C - l[1] * identity);
+      for (int k = 0; k < 6; k++) N[2][k] = X[3 * rowOf[k] + columnOf[k]];
+    }
+    void coefficients(double *f, int stride) const {
+      const double f01 = (f[stride] - f[0]) / (l[1] - l[0]), f02 = (f[2 * stride] - f[0]) / (l[2] - l[0]);
+      f[stride] = f01;
+      f[2 * stride] = (f02 - f01) / (l[2] - l[1]);
+    }
+  };
+  static Symmetric powers(const Material &m, const Symmetric &C) {   // sum c C^(a/2 - 1)
+    const Newton of(C);
+    double f[3] = {};
+    each(m, [&](double c, double p) { for (int i = 0; i < 3; i++) f[i] += c * std::pow(of.l[i], p - 1); });
+    of.coefficients(f, 1);
+    return f[0] * of.N[0] + f[1] * of.N[1] + f[2] * of.N[2];
+  }
+  static double energy(const Material &m, const Symmetric &C) {   // sum c/a (L1^a + L2^a + L3^a)
+    const Vector<3> l = principal(C, C[4] != 0 || C[5] != 0);
+    double W = 0;
+    each(m, [&](double c, double p) { W += c / (2 * p) * (std::pow(l[0], p) + std::pow(l[1], p) + std::pow(l[2], p)); });
+    return W;
+  }
+  static double dividedDifference(double a, double b, double p) {   // of x^p
+    const double y = std::max(1e-9, std::abs(std::log(b / a) / 2));
+    return std::pow(a * b, (p - 1) / 2) * std::sinh(p * y) / std::sinh(y);
+  }
+  Symmetric stress(const Material &m, const Symmetric &C) const { return rest(m).stress(C) + powers(m, C); }
+  double workExcess(const Material &m, const Symmetric &M, const Symmetric &H) const {
+    const Symmetric S = powers(m, M), xH = std::sqrt(0.6) * H;
+    const double e = rest(m).workExcess(M, H);
+    if (contract(H, H) > 1e-5) return e + 2 * (energy(m, M + H) - energy(m, M - H) - contract(S, H));
+    return e + 5. / 9 * contract(powers(m, M + xH) + powers(m, M - xH) - 2 * S, H);
+  }
+  void addModuli(const Material &m, const Symmetric &C, Moduli &D) const {
+    const Newton of(C);
+    double g[3][3] = {};
+    each(m, [&](double c, double p) {
+      for (int i = 0; i < 3; i++) for (int j = 0; j < 3; j++) g[i][j] += c * dividedDifference(of.l[i], of.l[j], p - 1);
+    });
+    for (int i = 0; i < 3; i++) of.coefficients(g[i], 1);
+    for (int j = 0; j < 3; j++) of.coefficients(&g[0][j], 3);
+    for (int i = 0; i < 3; i++) for (int j = 0; j < 3; j++) D.add(of.N[i], of.N[j], 0, g[i][j]);
+    rest(m).addModuli(C, D);
+  }
+  double ellipticity(const Material &m, const Symmetric &C, bool spatial) const {
+    const Vector<3> L = principal(C, spatial);
+    const double ratio = (m.lambda + m.bulk) / m.mu, volume = ratio * std::log(determinant(C)) / 2;
+    double least = 1e300;
+    for (int n = spatial ? 0 : 2; n < 3; n++) {
+      const double l1 = std::max(L[(n + 1) % 3], L[(n + 2) % 3]), l2 = std::min(L[(n + 1) % 3], L[(n + 2) % 3]);
+      double t1 = volume, t2 = volume, s1 = ratio, s2 = ratio, A = 0;
+      each(m, [&](double c, double p) {
+        const double x1 = c / m.mu * std::pow(l1, p), x2 = c / m.mu * std::pow(l2, p);
+        A += c / m.mu * dividedDifference(l1, l2, p);
+        t1 += x1 - c / m.mu;  s1 += 2 * p * x1;
+        t2 += x2 - c / m.mu;  s2 += 2 * p * x2;
+      });
+      const double W11 = (s1 - t1) / l1, W22 = (s2 - t2) / l2, across = (ratio + l2 * A - t2) / std::sqrt(l1 * l2);
+      const double both = std::sqrt(std::max(0., W11) * std::max(0., W22)) + A - std::abs(across);
+      least = std::min({least, W11, W22, A, both});
+    }
+    return least;
+  }
+};
+
+// Those of laws.idp that are compiled, a line each; 0 for others.
+inline const Law *known(const std::string &name) {
+  static const Svk svk;
+  static const NeoHookean neoHookean;
+  static const MooneyRivlin mooneyRivlin;
+  static const Ogden ogden;
+  static const std::map<std::string, const Law *> all = {
+    {"svk", &svk}, {"neohookean", &neoHookean}, {"mooney-rivlin", &mooneyRivlin}, {"ogden", &ogden}};
+  return all.count(name) ? all.at(name) : nullptr;
 }
 
-// S with S : (C1 - C0)/2 = W1 - W0, second order: that at the mean of C, corrected along C1 - C0 (Gonzalez 2000).
-inline void algorithmicStress(const Material &m, const double *C0, const double *C1, double *S) {
-  double M[6], H[6];
-  for (int k = 0; k < 6; k++) M[k] = 0.5 * (C0[k] + C1[k]);
-  const double slope = stress(m, M, S);
-  if (!m.neohookean) return;
-  for (int k = 0; k < 6; k++) H[k] = 0.5 * (C1[k] - C0[k]);
-  double e = workExcess(m, M, H, slope) / (2 * contract(H, H) + 1e-300);
-  for (int k = 0; k < 6; k++) S[k] += e * H[k];
+// W(C) [J/m3], as accurate for small strains as for large ones: energyDensity() of law.idp.
+inline double energy(const Material &m, const Symmetric &C) {
+  const Symmetric M = 0.5 * (C + identity), H = 0.5 * (C - identity);
+  return m.law->workExcess(m, M, H) / 2 + contract(m.law->stress(m, M), H);
 }
 
 // G (1 - theta/2) of relaxation.idp [Pa] in a step of 1/rate.
@@ -110,207 +308,92 @@ inline double relaxedShare(const Material &m, double rate) {
   return m.relaxing > 0 ? m.relaxing * (1 + std::exp(-1 / (rate * m.relaxTime))) / 2 : 0;
 }
 
-// S += S_v + S_m of a step from C0 to C1 at rate = 1/dt: with C their mean, T = C^-1 (C1 - C0), rate [eta T C^-1 + zeta/2 tr(T) C^-1], as
-// viscousStress() of damping.idp, and as addRelaxing() of relaxation.idp.
-inline void addDampingStress(const Material &m, const double *C0, const double *C1, const double *A, double rate, double *S) {
-  double C[6], inverse[6], T[3][3] = {};
-  for (int k = 0; k < 6; k++) C[k] = 0.5 * (C0[k] + C1[k]);
-  double det = determinantOf(C);
-  cofactor(C, inverse);
-  for (int k = 0; k < 6; k++) inverse[k] /= det;
-  if (m.relaxing > 0) {                    // e as workExcess() has it, of -G ln J
-    double H[6], K[6], share = relaxedShare(m, rate);
-    for (int k = 0; k < 6; k++) H[k] = 0.5 * (C1[k] - C0[k]);
-    cofactor(H, K);
-    double c = determinantOf(H) / det, b = contract(C, K) / det, x = (contract(inverse, H) + c) / (1 + b);
-    double e = -m.relaxing * (atanhRest(x) - x * b + c) / (contract(H, H) + 1e-300);
-    for (int k = 0; k < 6; k++) S[k] += share * (A[k] - inverse[k]) + e * H[k];
-  }
-  if (m.eta == 0 && m.zeta == 0) return;
-  for (int J = 0; J < 3; J++)
-    for (int L = 0; L < 3; L++)
-      for (int K = 0; K < 3; K++) T[J][L] += inverse[sym[J][K]] * (C1[sym[K][L]] - C0[sym[K][L]]);
-  double bulk = m.zeta / 2 * (T[0][0] + T[1][1] + T[2][2]);
-  for (int J = 0; J < 3; J++)
-    for (int L = J; L < 3; L++) {
-      double TB = 0;
-      for (int K = 0; K < 3; K++) TB += T[J][K] * inverse[sym[K][L]];
-      S[sym[J][L]] += rate * (m.eta * TB + bulk * inverse[sym[J][L]]);
-    }
+// S_v of a step from C0 to C1 at rate = 1/dt: viscousStress() of damping.idp.
+inline Symmetric viscousStress(const Material &m, const Symmetric &C0, const Symmetric &C1, double rate) {
+  const Symmetric H = 0.5 * (C1 - C0), B = inverse(0.5 * (C0 + C1));
+  return 2 * rate * m.eta * timesTransposed(product(B, H), Matrix{B[0], B[3], B[5], B[3], B[1], B[4], B[5], B[4], B[2]})
+    + rate * m.zeta * contract(B, H) * B;
+}
+
+// S_v + S_m: that, and as addRelaxing() of relaxation.idp.
+inline Symmetric dampingStress(const Material &m, const Symmetric &C0, const Symmetric &C1, const Symmetric &A, double rate) {
+  const Symmetric C = 0.5 * (C0 + C1), H = 0.5 * (C1 - C0);
+  Symmetric S = {};
+  if (m.eta > 0 || m.zeta > 0) S = viscousStress(m, C0, C1, rate);
+  if (m.relaxing > 0) S += relaxedShare(m, rate) * (A - inverse(C))
+    + Logarithm{0, m.relaxing}.workExcess(C, H) / (2 * contract(H, H) + 1e-300) * H;
+  return S;
 }
 
 // Of X = C A - I: tr X, [(tr X)^2 - tr X^2]/2, det X: invariantsBeyond() of relaxation.idp.
-inline void invariantsBeyond(const double *C, const double *A, double *I) {
-  double X[9];
-  for (int J = 0; J < 3; J++)
-    for (int L = 0; L < 3; L++)
-      X[3 * J + L] = C[sym[J][0]] * A[sym[0][L]] + C[sym[J][1]] * A[sym[1][L]] + C[sym[J][2]] * A[sym[2][L]] - (J == L);
-  I[0] = X[0] + X[4] + X[8];
-  I[1] = X[0] * X[4] - X[1] * X[3] + X[4] * X[8] - X[5] * X[7] + X[8] * X[0] - X[6] * X[2];
-  I[2] = determinant(X);
+inline Vector<3> invariantsBeyond(const Symmetric &C, const Symmetric &A) {
+  Matrix X = product(C, A);
+  for (int k = 0; k < 9; k += 4) X[k] -= 1;
+  return {X[0] + X[4] + X[8], X[0] * X[4] - X[1] * X[3] + X[4] * X[8] - X[5] * X[7] + X[8] * X[0] - X[6] * X[2], determinant(X)};
 }
 
 // G/2 [tr X - ln det(I + X)] of s X [J/m3], I the invariants of X: addStored() of relaxation.idp.
-inline double stored(const Material &m, const double *I, double s) {
+inline double stored(const Material &m, const Vector<3> &I, double s) {
   double r = s * s * (I[1] + s * I[2]), p = s * I[0] + r, z = p / (2 + p);
   return m.relaxing / 2 * (p * z - 2 * atanhRest(z) - r);
 }
 
-// A at the end of a step from C0 to C1; D [J/m3], what it takes: relax() of relaxation.idp.
-inline double relax(const Material &m, const double *C0, const double *C1, double dt, double *A) {
-  double K[6], inverse[6], I[3], s = std::exp(-dt / m.relaxTime);
-  for (int k = 0; k < 6; k++) K[k] = 0.5 * (C0[k] + C1[k]);
-  invariantsBeyond(K, A, I);
-  double det = determinantOf(K);
-  cofactor(K, inverse);
-  for (int k = 0; k < 6; k++) A[k] = (A[k] - inverse[k] / det) * s + inverse[k] / det;
-  return std::max(0., stored(m, I, 1) - stored(m, I, s));
+// A at the end of a step from C0 to C1; what viscosity and relaxation take in it [J/m3]: takeDamping() of law.idp.
+inline double damp(const Material &m, const Symmetric &C0, const Symmetric &C1, double dt, Symmetric &A) {
+  const Symmetric K = 0.5 * (C0 + C1);
+  double taken = 0;
+  if (m.eta > 0 || m.zeta > 0) taken = contract(viscousStress(m, C0, C1, 1 / dt), 0.5 * (C1 - C0));
+  if (m.relaxing > 0) {
+    const double s = std::exp(-dt / m.relaxTime);
+    const Vector<3> I = invariantsBeyond(K, A);
+    A = s * (A - inverse(K)) + inverse(K);
+    taken += std::max(0., stored(m, I, 1) - stored(m, I, s));
+  }
+  return taken;
 }
 
 // What measures volume, j = J or tr E, and T = 2 dj/dC; of a step T : (C1 - C0)/2 = j1 - j0: volumeNow(), volumeOfStep() of volume.idp.
-inline double volume(const Material &m, const double *C) {
-  return m.neohookean ? std::sqrt(determinantOf(C)) : ((C[0] - 1) + (C[1] - 1) + (C[2] - 1)) / 2;
-}
-inline void volumeDirection(const Material &m, const double *C, double J, double *T) {
-  if (m.neohookean) cofactor(C, T);
-  for (int k = 0; k < 6; k++) T[k] = m.neohookean ? T[k] / J : k < 3;
-}
-inline void volumeDirection(const Material &m, const double *C0, const double *C1, double sumJ, double *T) {
-  double M[6], H[6], cofH[6];
-  for (int k = 0; k < 6; k++) { M[k] = 0.5 * (C0[k] + C1[k]);  H[k] = 0.5 * (C1[k] - C0[k]); }
-  cofactor(M, T);
-  cofactor(H, cofH);
-  for (int k = 0; k < 6; k++) T[k] = m.neohookean ? 2 * (T[k] + cofH[k] / 3) / sumJ : k < 3;
+inline double volume(const Material &m, const Symmetric &C) { return m.traced ? trace(C - identity) / 2 : std::sqrt(determinant(C)); }
+inline Symmetric volumeDirection(const Material &m, const Symmetric &C, double J) { return m.traced ? identity : 1 / J * cofactor(C); }
+inline Symmetric volumeDirection(const Material &m, const Symmetric &C0, const Symmetric &C1, double sumJ) {
+  return m.traced ? identity : 2 / sumJ * (cofactor(0.5 * (C0 + C1)) + 1. / 3 * cofactor(0.5 * (C1 - C0)));
 }
 
 // Of the mean theta of that: energy U [J/m3], p = U', U'' [Pa]; p of a step, (U1 - U0)/(theta1 - theta0).
 inline double volumeEnergy(const Material &m, double theta) {
-  double e = m.neohookean ? std::log(theta) : theta;
+  double e = m.traced ? theta : std::log(theta);
   return m.bulk / 2 * e * e;
 }
-inline double pressure(const Material &m, double theta) { return m.bulk * (m.neohookean ? std::log(theta) / theta : theta); }
-inline double pressureSlope(const Material &m, double theta) {
-  return m.bulk * (m.neohookean ? (1 - std::log(theta)) / (theta * theta) : 1);
-}
+inline double pressure(const Material &m, double theta) { return m.bulk * (m.traced ? theta : std::log(theta) / theta); }
+inline double pressureSlope(const Material &m, double theta) { return m.bulk * (m.traced ? 1 : (1 - std::log(theta)) / (theta * theta)); }
 inline double pressure(const Material &m, double theta0, double theta1) {
-  if (!m.neohookean) return m.bulk * (theta0 + theta1) / 2;
+  if (m.traced) return m.bulk * (theta0 + theta1) / 2;
   double x = (theta1 - theta0) / (theta1 + theta0);
   return m.bulk * std::log(theta0 * theta1) * (1 + (x == 0 ? 0 : atanhRest(x) / x)) / (theta0 + theta1);
 }
 
-// W(C) [J/m3], as accurate for small strains as for large ones: neohookeanEnergy() of neohookean.idp.
-inline double energy(const Material &m, const double *C) {
-  double M[6], H[6], S[6];
-  for (int k = 0; k < 6; k++) { M[k] = 0.5 * (C[k] + (k < 3));  H[k] = 0.5 * (C[k] - (k < 3)); }
-  if (!m.neohookean) return m.mu * contract(H, H) + m.lambda / 2 * (H[0] + H[1] + H[2]) * (H[0] + H[1] + H[2]);
-  const double slope = stress(m, M, S);
-  return workExcess(m, M, H, slope) / 2 + contract(S, H);
+// Those of a point in which S has the pressure p of the element, with those of damping at rate = 1/dt (0: none), scale times their sum what
+// the tangent has: moduli() of law.idp.
+inline Moduli moduli(const Material &m, const Symmetric &C, double p, double scale, double rate) {
+  Moduli D;
+  m.law->addModuli(m, C, D);
+  double l = 0, n = 0;
+  if (p != 0 && !m.traced) n = -(l = p * std::sqrt(determinant(C)));   // p J (C^-1 C^-1 - ...)
+  if (rate > 0) { l += rate / scale * m.zeta;  n += rate / scale * m.eta + relaxedShare(m, rate); }
+  if (l != 0 || n != 0) D.add(inverse(C), inverse(C), l, n);
+  return D;
 }
 
 // Cauchy's stress F S F^T / det F, with the pressure p of the element, and von Mises' of it.
-inline double cauchy(const Material &m, const double *F, double p, double *sigma) {
-  double C[6], S[6], T[6], P[9], J = determinant(F), mises = 0;
-  rightCauchyGreen(F, C);
-  stress(m, C, S);
-  if (m.bulk > 0) {
-    volumeDirection(m, C, J, T);
-    for (int k = 0; k < 6; k++) S[k] += p * T[k];
-  }
-  nominalStress(F, S, P);
-  for (int i = 0; i < 3; i++)
-    for (int k = i; k < 3; k++) sigma[sym[i][k]] = (P[3 * i] * F[3 * k] + P[3 * i + 1] * F[3 * k + 1] + P[3 * i + 2] * F[3 * k + 2]) / J;
-  for (int k = 0; k < 3; k++)
-    mises += 0.5 * (sigma[k] - sigma[(k + 1) % 3]) * (sigma[k] - sigma[(k + 1) % 3]) + 3 * sigma[3 + k] * sigma[3 + k];
+inline double cauchy(const Material &m, const Matrix &F, double p, Symmetric &sigma) {
+  const Symmetric C = rightCauchyGreen(F);
+  const double J = determinant(F);
+  Symmetric S = m.law->stress(m, C);
+  if (m.bulk > 0) S += p * volumeDirection(m, C, J);
+  sigma = 1 / J * timesTransposed(product(F, S), F);
+  double mises = 0;
+  for (int k = 0; k < 3; k++) mises += std::pow(sigma[k] - sigma[(k + 1) % 3], 2) / 2 + 3 * sigma[3 + k] * sigma[3 + k];
   return std::sqrt(mises);
 }
-
-// Squared principal stretches, the largest first: principalStretches() of tensors-3d.idp.
-inline void principal(const double *C, double *L) {
-  double q = (C[0] + C[1] + C[2]) / 3, B[6];
-  for (int k = 0; k < 6; k++) B[k] = C[k] - (k < 3 ? q : 0);
-  double p = std::sqrt(contract(B, B) / 6), ratio = determinantOf(B) / std::max(1e-300, 2 * p * p * p);
-  double phi = std::acos(std::max(-1., std::min(1., ratio))) / 3;
-  for (int k = 0; k < 3; k++) L[k] = q + 2 * p * std::cos(phi - 2 * M_PI * k / 3);
-}
-
-// The smaller eigenvalue of the plane block of C.
-inline double smallerInPlane(const double *C) {
-  return 0.5 * (C[0] + C[1] - std::sqrt((C[0] - C[1]) * (C[0] - C[1]) + 4 * C[3] * C[3]));
-}
-
-// The smallest eigenvalue of the acoustic tensor over mu, of waves in a plane with that trace and determinant J^2 of C: planeEllipticity()
-// of svk.idp.
-inline double planeEllipticity(const Material &m, double trace, double J) {
-  double k = 1 + (m.lambda + m.bulk) / m.mu;
-  if (trace - (1 + k + 1 / (1 + k)) * J > 0)
-    return (k - 1) / 2 * trace - k + (k + 2) * 2 * J * J / (trace + std::sqrt(std::max(0., trace * trace - 4 * J * J)));
-  return (k + 1) * (k - 2) / (2 * k) * trace + 2 * (k + 1) / k * J - k;
-}
-
-// That of all waves of the scene's motions: in the plane of the mesh, or (spatial) in any; svkEllipticity(), neohookeanEllipticity().
-inline double ellipticity(const Material &m, const double *C, bool spatial) {
-  double L[3], least = 1e300, k = 1 + (m.lambda + m.bulk) / m.mu;
-  if (m.neohookean) {
-    double a = 1 + (1 - 0.5 * std::log(determinantOf(C))) * (m.lambda + m.bulk) / m.mu;
-    if (!(a < 0)) return 1;
-    if (!spatial) return 1 + a / smallerInPlane(C);
-    principal(C, L);
-    return 1 + a / std::max(0., L[2]);
-  }
-  if (!spatial) return planeEllipticity(m, C[0] + C[1], std::sqrt(C[0] * C[1] - C[3] * C[3])) + (k - 1) / 2 * (C[2] - 1);
-  principal(C, L);
-  for (int i = 0; i < 3; i++) {
-    double a = L[(i + 1) % 3], b = L[(i + 2) % 3];
-    least = std::min(least, planeEllipticity(m, a + b, std::sqrt(std::max(0., a * b))) + (k - 1) / 2 * (L[i] - 1));
-  }
-  return least;
-}
-
-// dP_iJ/dF_kL = delta_ik S_JL + l Q_iJ Q_kL + n (B_ik D_JL + Q_iL Q_kJ), as addModuli() of assembly.idp has it.
-struct Moduli {
-  double Q[9], B[6], D[6], l, n;
-  const double *S;
-
-  // p: the pressure of the element that is in S.
-  Moduli(const Material &m, const double *F, double p, const double *stress) : l(m.lambda), n(m.mu), S(stress) {
-    for (int k = 0; k < 6; k++) B[k] = D[k] = k < 3;
-    if (!m.neohookean) {                   // Q = F, B = F F^T, D = I
-      for (int k = 0; k < 9; k++) Q[k] = F[k];
-      for (int i = 0; i < 3; i++)
-        for (int k = i; k < 3; k++) B[sym[i][k]] = F[3 * i] * F[3 * k] + F[3 * i + 1] * F[3 * k + 1] + F[3 * i + 2] * F[3 * k + 2];
-      return;
-    }
-    double det = inverted(F);
-    n = m.mu - m.lambda / 2 * std::log(det);
-    if (p != 0) { l += p * std::sqrt(det);  n -= p * std::sqrt(det); }   // p J (C^-1 C^-1 - ...)
-  }
-
-  // Of the stresses of addDampingStress(), without these themselves: viscousModuli() of damping.idp, and scale times relaxedModuli().
-  Moduli(const Material &m, const double *F, double rate, double scale)
-    : l(rate * m.zeta), n(rate * m.eta + scale * relaxedShare(m, rate)), S(nullptr) {
-    for (int k = 0; k < 6; k++) B[k] = k < 3;
-    inverted(F);
-  }
-
-  // Q = F^-T, D = C^-1 (B = I); det C.
-  double inverted(const double *F) {
-    double C[6], J = determinant(F);
-    rightCauchyGreen(F, C);
-    double det = determinantOf(C);
-    cofactor(C, D);
-    for (int k = 0; k < 6; k++) D[k] /= det;
-    for (int i = 0; i < 3; i++)
-      for (int L = 0; L < 3; L++) {        // by cyclic indices
-        int i1 = (i + 1) % 3, i2 = (i + 2) % 3, L1 = (L + 1) % 3, L2 = (L + 2) % 3;
-        Q[3 * i + L] = (F[3 * i1 + L1] * F[3 * i2 + L2] - F[3 * i1 + L2] * F[3 * i2 + L1]) / J;
-      }
-    return det;
-  }
-
-  double operator()(int i, int J, int k, int L) const {
-    double a = l * Q[3 * i + J] * Q[3 * k + L] + n * (B[sym[i][k]] * D[sym[J][L]] + Q[3 * i + L] * Q[3 * k + J]);
-    return i == k && S ? a + S[sym[J][L]] : a;
-  }
-};
 
 }

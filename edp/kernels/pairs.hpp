@@ -2,38 +2,15 @@
 // another body (edges in the plane, faces in space, A components), the closest points of these, the rows of the conserving gap, and the
 // springs at vertices.
 #pragma once
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <memory>
 #include <utility>
 #include <vector>
 #include "call.hpp"
+#include "vectors.hpp"
 
 namespace pairs {
 
-template<size_t A> using Vector = std::array<double, A>;
-
-template<size_t A> double dot(const Vector<A> &a, const Vector<A> &b) {
-  double sum = 0;
-  for (size_t i = 0; i < A; i++) sum += a[i] * b[i];
-  return sum;
-}
-template<size_t A> double length(const Vector<A> &a) { return std::sqrt(dot(a, a)); }
-template<size_t A> Vector<A> plus(const Vector<A> &a, double s, const Vector<A> &b) {   // a + s b
-  Vector<A> c;
-  for (size_t i = 0; i < A; i++) c[i] = a[i] + s * b[i];
-  return c;
-}
-template<size_t A> Vector<A> times(double s, const Vector<A> &a) { return plus(Vector<A>{}, s, a); }
-template<size_t A> double farthest(const Vector<A> &a, const Vector<A> &b) {
-  double most = 0;
-  for (size_t i = 0; i < A; i++) most = std::max(most, std::abs(a[i] - b[i]));
-  return most;
-}
-inline Vector<3> cross(const Vector<3> &a, const Vector<3> &b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
+using namespace vectors;
 
 // 1, r, r^2 of an edge, 1, r, s, r^2, r s, s^2 of a face, and their derivatives.
 constexpr int termsOf(int A) { return A == 2 ? 3 : 6; }
@@ -54,23 +31,17 @@ template<int A> struct Foot {
 };
 
 // y - x of a cell and a point, or how it changes in a step, by coefficients of the monomials.
-template<int A> struct Patch {
-  std::array<Vector<A>, termsOf(A)> c;
-  void at(Foot<A> &foot) const {
-    Vector<termsOf(A)> p, slope[A - 1];
-    monomials(foot.r, p, slope);
-    foot.arm = {};
-    for (int k = 0; k < termsOf(A); k++) foot.arm = plus(foot.arm, p[k], c[k]);
-    for (int l = 0; l < A - 1; l++) {
-      foot.tangent[l] = {};
-      for (int k = 0; k < termsOf(A); k++) foot.tangent[l] = plus(foot.tangent[l], slope[l][k], c[k]);
-    }
+template<int A> using Patch = Vector<termsOf(A), Vector<A>>;
+
+template<int A> void evaluate(const Patch<A> &patch, Foot<A> &foot) {
+  Vector<termsOf(A)> p, slope[A - 1];
+  monomials(foot.r, p, slope);
+  foot.arm = {};
+  for (int k = 0; k < termsOf(A); k++) foot.arm += p[k] * patch[k];
+  for (int l = 0; l < A - 1; l++) {
+    foot.tangent[l] = {};
+    for (int k = 0; k < termsOf(A); k++) foot.tangent[l] += slope[l][k] * patch[k];
   }
-};
-template<int A> Patch<A> plus(const Patch<A> &a, double s, const Patch<A> &b) {
-  Patch<A> sum;
-  for (int k = 0; k < termsOf(A); k++) sum.c[k] = plus(a.c[k], s, b.c[k]);
-  return sum;
 }
 
 inline double clip(double a) { return std::min(1., std::max(0., a)); }
@@ -86,7 +57,7 @@ struct Convergence {
 };
 
 inline void closest(const Patch<2> &patch, Foot<2> &foot) {
-  const Vector<2> &a = patch.c[0], &b = patch.c[1], &c = patch.c[2], chord = plus(b, 1, c);
+  const Vector<2> &a = patch[0], &b = patch[1], &c = patch[2], chord = b + c;
   const double c0 = dot(a, b), c1 = 2 * dot(a, c) + dot(b, b), c2 = 3 * dot(b, c), c3 = 2 * dot(c, c), square = dot(chord, chord);
   double r = clip(-dot(a, chord) / square);
   Convergence steps;
@@ -97,7 +68,7 @@ inline void closest(const Patch<2> &patch, Foot<2> &foot) {
     r = next;
   }
   foot.r[0] = r;
-  patch.at(foot);
+  evaluate<2>(patch, foot);
 }
 
 // r to the least of g.p + p.H p / 2, p from r on, on the triangle: inside it, or on one of its three edges.
@@ -119,10 +90,10 @@ inline void closest(const Patch<3> &patch, Foot<3> &foot) {
   foot.r = {1. / 3, 1. / 3};
   Convergence steps;
   for (int it = 0; it < 20 && steps.going(); it++) {
-    patch.at(foot);
+    evaluate<3>(patch, foot);
     const Vector<3> &y = foot.arm, &yr = foot.tangent[0], &ys = foot.tangent[1];
     double hrr = dot(yr, yr), hrs = dot(yr, ys), hss = dot(ys, ys);
-    const double krr = 2 * dot(y, patch.c[3]), krs = dot(y, patch.c[4]), kss = 2 * dot(y, patch.c[5]);
+    const double krr = 2 * dot(y, patch[3]), krs = dot(y, patch[4]), kss = 2 * dot(y, patch[5]);
     // the curvature where the matrix stays definite with it; beyond the centre of curvature that of the tangents alone, so that it descends
     if ((hrr + krr) * (hss + kss) - (hrs + krs) * (hrs + krs) > 0.1 * (hrr * hss - hrs * hrs)
         && hrr + krr + hss + kss > 0) { hrr += krr;  hrs += krs;  hss += kss; }
@@ -130,7 +101,7 @@ inline void closest(const Patch<3> &patch, Foot<3> &foot) {
     steps.moved(farthest(next, foot.r));
     foot.r = next;
   }
-  patch.at(foot);
+  evaluate<3>(patch, foot);
 }
 
 // Whether the foot is on a vertex of an edge, on an edge of a face: within round-off, then made so.
@@ -140,7 +111,7 @@ inline bool onBoundary(Vector<1> &r) {
   return true;
 }
 inline bool onBoundary(Vector<2> &r) {
-  for (double &x : r) if (x <= 1e-12) x = 0;
+  for (double &x : r.a) if (x <= 1e-12) x = 0;
   const bool slant = 1 - r[0] - r[1] <= 1e-12;
   if (slant) r[0] = 1 - r[1];
   return slant || r[0] == 0 || r[1] == 0;
@@ -149,11 +120,11 @@ inline bool onBoundary(Vector<2> &r) {
 // Outward normal of a cell; an edge has the body to its left.
 inline Vector<2> normalOf(const Foot<2> &foot, double) {
   const Vector<2> &t = foot.tangent[0];
-  return times(1 / std::max(1e-300, length(t)), Vector<2>{t[1], -t[0]});
+  return 1 / std::max(1e-300, length(t)) * Vector<2>{t[1], -t[0]};
 }
 inline Vector<3> normalOf(const Foot<3> &foot, double side) {
   const Vector<3> m = cross(foot.tangent[0], foot.tangent[1]);
-  return times(side / std::max(1e-300, length(m)), m);
+  return side / std::max(1e-300, length(m)) * m;
 }
 
 inline void tangents(const Vector<2> &n, Vector<2> *t) { t[0] = {n[1], -n[0]}; }
@@ -165,13 +136,13 @@ inline void tangents(const Vector<3> &n, Vector<3> *t) {   // tangentFrames() of
 
 // c of a row  f.rho + sum over l of c_l.(N_a,l delta y_a)  for the slip along t: the cell turns under the arm g n.
 inline void turning(const Foot<2> &foot, const Vector<2> &, const Vector<2> &m, const Vector<2> &, double g, Vector<2> *c) {
-  c[0] = times(-g / length(foot.tangent[0]), m);
+  c[0] = -g / length(foot.tangent[0]) * m;
 }
 inline void turning(const Foot<3> &foot, const Vector<3> &n, const Vector<3> &m, const Vector<3> &t, double g, Vector<3> *c) {
-  const Vector<3> &yr = foot.tangent[0], &ys = foot.tangent[1], about = cross(n, t), tau = times(g, plus(about, -0.5 * dot(m, about), m));
+  const Vector<3> &yr = foot.tangent[0], &ys = foot.tangent[1], about = cross(n, t), tau = g * (about - 0.5 * dot(m, about) * m);
   const double rr = dot(yr, yr), rs = dot(yr, ys), ss = dot(ys, ys), det = rr * ss - rs * rs;
-  c[0] = cross(plus(times(ss / det, yr), -rs / det, ys), tau);
-  c[1] = cross(plus(times(rr / det, ys), -rs / det, yr), tau);
+  c[0] = cross(ss / det * yr - rs / det * ys, tau);
+  c[1] = cross(rr / det * ys - rs / det * yr, tau);
 }
 
 // What the outline or surface is, once; its arrays as in pair.idp.
@@ -252,7 +223,7 @@ public:
     rows.row.resize(entries);  rows.unknown.resize(entries);  rows.normal.resize(entries);  rows.slip.resize((A - 1) * entries);
     patches(d, step);
     middle = end = patchAtStart;
-    for (size_t e = 0; e < cell.size(); e++) { middle[e] = plus(middle[e], 0.5, step[e]);  end[e] = plus(end[e], 1, step[e]); }
+    for (size_t e = 0; e < cell.size(); e++) { middle[e] += 0.5 * step[e];  end[e] += step[e]; }
     now.resize(n);
     for (int k = 0; k < n; k++) {
       now[k] = project(middle, k);
@@ -318,8 +289,21 @@ private:
   }
   Vector<A> pointPlace(const double *x, int p) const {
     Vector<A> y = {};
-    for (int a = 0; a < surface.nodes; a++) y = plus(y, surface.pointShape[a * surface.np + p], nodePlace(x, p / surface.points, a));
+    for (int a = 0; a < surface.nodes; a++) y += surface.pointShape[a * surface.np + p] * nodePlace(x, p / surface.points, a);
     return y;
+  }
+
+  // f(a, N_a, N_a,l) of the nodes of a cell at r.
+  template<class Function> void shapes(const Vector<A - 1> &r, Function f) const {
+    Vector<termsOf(A)> power, slope[A - 1];
+    monomials(r, power, slope);
+    for (int a = 0; a < surface.nodes; a++) {
+      const double *shape = &surface.shape[a * termsOf(A)];
+      double N = 0, turn[A - 1] = {};
+      for (int j = 0; j < termsOf(A); j++) N += shape[j] * power[j];
+      for (int l = 0; l < A - 1; l++) for (int j = 0; j < termsOf(A); j++) turn[l] += shape[j] * slope[l][j];
+      f(a, N, turn);
+    }
   }
 
   // A curved edge lies within |C|/4 of its chord, y = chord + r (r - 1) C; a curved face in the hull of its corners and of 2 m - (a + b)/2,
@@ -371,14 +355,8 @@ private:
     const int p = int(slot[k] % s.np), c = cell[place.pick];
     if (place.gap >= 0 || slot[k] / s.np < s.obstacles + s.bodies - 1) return place.gap;
     if (-place.gap <= reach && sightOf(p / s.points, c) == 2) return place.gap;
-    Vector<termsOf(A)> power, slope[A - 1];
-    monomials(place.foot.r, power, slope);
     Vector<A> apart = pointPlace(s.reference.data(), p);
-    for (int a = 0; a < s.nodes; a++) {
-      double N = 0;
-      for (int j = 0; j < termsOf(A); j++) N += s.shape[a * termsOf(A) + j] * power[j];
-      apart = plus(apart, -N, nodePlace(s.reference.data(), c, a));
-    }
+    shapes(place.foot.r, [&](int a, double N, const double *) { apart -= N * nodePlace(s.reference.data(), c, a); });
     return -place.gap <= std::min(reach, 0.1 * length(apart)) ? place.gap : -place.gap;
   }
 
@@ -400,11 +378,10 @@ private:
       const Vector<A> point = pointPlace(w, int(slot[k] % surface.np));
       for (int e = first[k]; e < first[k + 1]; e++) {
         for (int a = 0; a < surface.nodes; a++) {
-          const double *N = &surface.shape[a * termsOf(A)];
           const Vector<A> y = nodePlace(w, cell[e], a);
-          for (int j = 0; j < termsOf(A); j++) all[e].c[j] = plus(all[e].c[j], N[j], y);
+          for (int j = 0; j < termsOf(A); j++) all[e][j] += surface.shape[a * termsOf(A) + j] * y;
         }
-        all[e].c[0] = plus(all[e].c[0], -1, point);
+        all[e][0] -= point;
       }
     }
   }
@@ -432,7 +409,7 @@ private:
     const bool edge = onBoundary(r);
     place.pick = first[k] + pick;
     place.foot.r = r;
-    patch[place.pick].at(place.foot);
+    evaluate<A>(patch[place.pick], place.foot);
     place.m = place.n = normalOf(place.foot, surface.side[cell[place.pick]]);
     place.gap = -dot(place.foot.arm, place.n);
     place.unseen = false;
@@ -459,7 +436,7 @@ private:
       Foot<A> &foot = feet[e - first[k]];
       tied[e - first[k]] = true;
       for (int l = 1; l < A; l++) foot.r[l - 1] = there[l];
-      patch[e].at(foot);
+      evaluate<A>(patch[e], foot);
     }
   }
 
@@ -469,12 +446,12 @@ private:
     Vector<A> mean = {};
     int count = 0;
     for (int e = first[k]; e < first[k + 1]; e++) {
-      if (tied[e - first[k]]) { mean = plus(mean, 1, normalOf(feet[e - first[k]], surface.side[cell[e]]));  count++; }
+      if (tied[e - first[k]]) { mean += normalOf(feet[e - first[k]], surface.side[cell[e]]);  count++; }
     }
-    mean = times(1 / std::max(1e-300, length(mean)), mean);
+    mean *= 1 / std::max(1e-300, length(mean));
     const double distance = length(arm), side = -dot(arm, mean);
     place.gap = side < 0 ? -distance : distance;
-    place.n = distance <= roundOff ? mean : times(-1 / place.gap, arm);
+    place.n = distance <= roundOff ? mean : -1 / place.gap * arm;
     place.unseen = count == 1 && std::abs(side) < std::sqrt(0.5) * distance && distance > roundOff;
   }
 
@@ -483,17 +460,12 @@ private:
     const Surface &s = surface;
     const int p = int(slot[k] % s.np), c = cell[place.pick], blocks = A * s.nodes;
     const double none[A - 1] = {};
-    Vector<termsOf(A)> power, slope[A - 1];
-    monomials(place.foot.r, power, slope);
-    for (int a = 0; a < s.nodes; a++) {
-      double N = 0, turn[A - 1] = {};
-      for (int j = 0; j < termsOf(A); j++) N += s.shape[a * termsOf(A) + j] * power[j];
-      for (int l = 0; l < A - 1; l++) for (int j = 0; j < termsOf(A); j++) turn[l] += s.shape[a * termsOf(A) + j] * slope[l][j];
+    shapes(place.foot.r, [&](int a, double N, const double *turn) {
       for (int i = 0; i < A; i++) {
         entry(i * s.nodes + a, node(p / s.points, i, a), i, s.pointShape[a * s.np + p], none);
         entry(blocks + i * s.nodes + a, node(c, i, a), i, -N, turn);
       }
-    }
+    });
   }
 
   // Row k of n of B and S; `change`: of the gap in the step.
@@ -504,7 +476,7 @@ private:
     Vector<A - 1> s;
     Foot<A> motion;
     motion.r = p.foot.r;
-    step[p.pick].at(motion);               // -rho, N_a,l delta y_a
+    evaluate<A>(step[p.pick], motion);               // -rho, N_a,l delta y_a
     tangents(p.n, t);
     const double a = -dot(p.n, motion.arm);
     double most = std::abs(a), square = a * a;
@@ -517,11 +489,11 @@ private:
       square += s[j] * s[j];
     }
     const double kappa = most <= 10 * roundOff ? 0 : (change - a) / square;
-    f[0] = times(-(1 + kappa * a), p.n);
+    f[0] = -(1 + kappa * a) * p.n;
     for (int l = 0; l < A - 1; l++) c[0][l] = {};
     for (int j = 0; j < A - 1; j++) {
-      f[0] = plus(f[0], -kappa * s[j], f[j + 1]);
-      for (int l = 0; l < A - 1; l++) c[0][l] = plus(c[0][l], -kappa * s[j], c[j + 1][l]);
+      f[0] -= kappa * s[j] * f[j + 1];
+      for (int l = 0; l < A - 1; l++) c[0][l] -= kappa * s[j] * c[j + 1][l];
     }
     each(k, p, [&](int block, int unknown, int i, double N, const double *turn) {
       const long at = k * 2L * A * surface.nodes + block;
