@@ -4,8 +4,8 @@
 // once, in the blocks of L that lead from them to the last. Only the numbers are computed anew while pattern and `last` stay. A small
 // matrix CHOLMOD takes column by column, as L D L^T, which may be indefinite, though not in w; a large one by dense blocks of columns, as
 // L L^T, which may not. What is held has a 1 on the diagonal and no other entries.
-// An L that no cache holds is made in single precision, in half the time, and S and its inverse of that: all solutions are those of one
-// matrix, off A by some 1e-7, as the state that A is frozen at is by more. A back-substitution lasts as long as reading L does.
+// An L that no cache holds is made in single precision, in half the time, if it can be, and S and its inverse of that: all solutions are
+// those of one matrix, off A by some 1e-7, as the state that A is frozen at is by more. A back-substitution lasts as long as reading L.
 #pragma once
 #include <cholmod.h>
 #include <cstring>
@@ -160,20 +160,23 @@ public:
     if (!L || w != last) order(w);
     inverse.clear();
     tail.assign(last.size() * last.size(), 0.);
-    single = L->is_super && L->xsize > mostDouble;
     if (!L->is_super) {
       cholmod_factorize(&A, L, &common);
       if (common.status != CHOLMOD_OK || L->minor < L->n) return 1;
       takeColumns();
     }
-    else if (!(single ? makeBlocks<float>() : makeBlocks<double>())) return 1;
+    else {
+      single = isLarge() && makeBlocks<float>();   // what is too near to indefinite for that is made in double precision
+      if (single) std::vector<double>().swap(doubles);
+      else if (!makeBlocks<double>()) return 1;
+    }
     for (size_t j = 0; j < last.size(); j++) if (!(tail[j * last.size() + j] > 0)) return 1;
     return 0;
   }
 
   // What a factorisation costs, in iterations of solveStep(), most of whose time two back-substitutions take: its operations a number of L
   // count, and twice as much as an iteration costs the assembly. 0 where L is small, and so is that part of an iteration.
-  long renewalCost() const { return single ? 2 + long(common.fl / (90. * L->xsize)) : 0; }
+  long renewalCost() const { return isLarge() ? 2 + long(common.fl / (90. * L->xsize)) : 0; }
 
   // A x = b. Of b that is zero but at w so is L^-1 b: it costs half.
   void solve(const double *b, double *x) {
@@ -239,6 +242,7 @@ private:
   const size_t mostDouble = 2000000;       // numbers of L that caches hold: 16 MB
   int n = 0;
   bool single = false;
+  bool isLarge() const { return L && L->is_super && L->xsize > mostDouble; }
   cholmod_common common;
   cholmod_sparse A = cholmod_sparse();
   cholmod_factor *L = nullptr;
@@ -274,13 +278,11 @@ private:
 
   // Columns of L that have their rows in common, themselves first.
   template<class Number> struct Block { int first, width, height;  const int *rows;  Number *value; };
-  void numbersOf(double *&x) { x = doubles.data(); }
-  void numbersOf(float *&x) { x = singles.data(); }
+  std::vector<double> &numbersOf(double) { return doubles; }
+  std::vector<float> &numbersOf(float) { return singles; }
   template<class Number> Block<Number> block(int s) {
     const int *super = (int *)L->super, *pi = (int *)L->pi, *px = (int *)L->px;
-    Number *x;
-    numbersOf(x);
-    return {super[s], super[s + 1] - super[s], pi[s + 1] - pi[s], (int *)L->s + pi[s], x + px[s]};
+    return {super[s], super[s + 1] - super[s], pi[s + 1] - pi[s], (int *)L->s + pi[s], numbersOf(Number()).data() + px[s]};
   }
 
   // L, by blocks of columns: each begins as that of A, and what blocks before it have in its columns is taken from it (left-looking). False
@@ -289,8 +291,9 @@ private:
     const int blocks = int(L->nsuper);
     std::vector<int> waiting(blocks, -1), behind(blocks, -1), reached(blocks), at(n);   // before a block: those with their next row in it
     std::vector<Number> taken;
-    doubles.assign(single ? 0 : L->xsize + lanes, 0.);
-    singles.assign(single ? L->xsize + lanes : 0, 0.f);
+    doubles.clear();
+    singles.clear();
+    numbersOf(Number()).assign(L->xsize + lanes, 0);
     for (int s = 0; s < blocks; s++) {
       const Block<Number> B = block<Number>(s);
       for (int i = 0; i < B.height; i++) at[B.rows[i]] = i;
