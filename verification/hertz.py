@@ -24,7 +24,7 @@ def hertz(folder: Path, share: float, law: str = "neohookean", nu: float = 0.3, 
     folder.mkdir(parents=True, exist_ok=True)
     stiffness, ball = 1 / (1 - nu**2), body == "ball"
     load = 4 / 3 * stiffness * NARROW**3 if ball else math.pi * stiffness * NARROW**2 / 4
-    found = measure("hertz-ball" if ball else "hertz", law=law, young=1, nu=nu, density=1, radius=1, speed=0,
+    found = measure("hertz-ball" if ball else "hertz", law=law, young=1, nu=nu, density=1, radius=1, speed=0, end_time=1,
                     gravity=load / (4 / 3 * math.pi if ball else math.pi), dt=20, integrator="backward-euler",
                     penalty=10 * stiffness / (share * NARROW), mesh_size=0.2, contact_mesh_size=share * NARROW, out=folder)
     if abs(found["imbalance"]) > 1e-6 or found["kinetic"] > 1e-9:
