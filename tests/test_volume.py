@@ -59,10 +59,10 @@ def test_an_impact_keeps_energy_and_momenta(tmp_path, name):
         assert run.history[column] == pytest.approx(scripted.history[column], rel=0, abs=1e-8 * max(abs(run.history[column]))), column
 
 
-@pytest.mark.parametrize("script, size", [("spinning", 0.03), ("spinning-3d", 0.04)])
-def test_a_spinning_body_keeps_energy_and_momenta(script, size):
-    """A free body that spins and vibrates a hundred turns at nu = 0.4999."""
-    found = measure(script, law="neohookean", nu=0.4999, spin=200, exponent=3, tolerance=5e-14, mesh_size=size, contact_mesh_size=size)
+@pytest.mark.parametrize("script, size, tens", [("spinning", 0.03, 3), ("spinning-3d", 0.04, 4)])
+def test_a_spinning_body_keeps_energy_and_momenta(script, size, tens):
+    """A free body that spins and vibrates a hundred turns at nu = 0.4999; a ball in 40 steps a turn (of 30 some fail, which a run would halve)."""
+    found = measure(script, law="neohookean", nu=0.4999, spin=200, exponent=tens, tolerance=5e-14, mesh_size=size, contact_mesh_size=size)
     assert found["state"] == 0 and max(found["energy"], found["momentum"], found["angular"]) < 1e-9
 
 
