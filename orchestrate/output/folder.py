@@ -84,7 +84,9 @@ def staging(folder: Path) -> Iterator[tuple[Path, int]]:
             yield stage, lock
         finally:
             if _holds(lock, stage) and not checkpoints(stage):   # once in its place, that name may already be another run's
-                shutil.rmtree(stage, ignore_errors=True)
+                with suppress(OSError):
+                    clear(stage)
+                    stage.rmdir()
 
 
 def _take_away(folders: list[Path]) -> None:
