@@ -29,7 +29,7 @@ def test_tractions_and_solutions_are_those_of_the_scripts(case):
     assert found["tractions"] < 1e-12 and found["solution"] < 1e-10 and found["unsolved"] < 1e-10
 
 
-COARSE = dict(fields=0, accuracy=0.2, tolerance=1e-14)   # what steps leave unsolved is no part of the comparison
+COARSE = dict(fields=0, accuracy=0.2, tolerance=1e-13)   # what steps leave unsolved is no part of the comparison; 1e-14 is at round-off
 RUNS = {"disc-oblique": STEADY, "disc-rolling": STEADY | dict(end_time=0.02), "ball-oblique": STEADY, "two-discs": {}}
 
 

@@ -1,7 +1,7 @@
 // bodies.hpp: the bodies as their operators see them, made once of the sparse matrices of edp/core/discrete: forces and tangent, in any
 // dimension. Displacements are taken by nodes: (node, component), D components. F_iJ - delta_iJ = sum over the nodes a of a point of N_a,J
 // u_ai; of bodies of revolution (H = 1) there is F_33 = 1 + u_r/r as well, with N_a/r in the place of a derivative. Points that have the
-// same nodes, those of an element, go together. Arrays over points are stacked as in the scripts: component k of point q at k nq + q.
+// same nodes, those of an element, follow each other. Arrays over points are stacked as in the scripts: component k of point q at k nq + q.
 #pragma once
 #include <algorithm>
 #include <map>
@@ -52,11 +52,12 @@ public:
   int ndof = 0, nq = 0, nodes = 0, D = 0, H = 0;
   std::vector<int> unknown;                // (node, component) -> unknown
   std::vector<double> free;                // (ndof) 0 at what is held
-  std::vector<laws::Material> material;    // (nq)
+  std::vector<laws::Material> materials;   // those there are: points that follow each other share one
+  std::vector<int> materialOf;             // (nq)
   double *damping = nullptr;               // dampingState of damping.idp: A, stacked, and what has been taken
   std::vector<double> weight;              // (nq) [m2, m3] of the WHOLE bodies
   // elements: their nodes, their points, N_a,J of each of these (point, node, slot)
-  std::vector<int> firstNode, node, firstPoint, point;
+  std::vector<int> firstNode, node, firstPoint;
   std::vector<size_t> firstShape;
   std::vector<double> shape;
   // pairs of nodes (a >= b) that an element or the mass couples, their mass, alike for all components [kg/m, kg], and their D x D blocks of
@@ -69,6 +70,12 @@ public:
   std::vector<double> cellWeight, slope, g0;
   bool slopeKnown = false;
   Volume volume = Volume();
+
+  void addPoint(const laws::Material &m) {
+    if (materials.empty() || !(materials.back() == m)) materials.push_back(m);
+    materialOf.push_back(int(materials.size()) - 1);
+  }
+  const laws::Material &material(int q) const { return materials[materialOf[q]]; }
 
   // From componentOf[i]: which unknown is component i of node a.
   void component(int i, int dimensions, const Triplets &pick) {
@@ -94,24 +101,17 @@ public:
       N.resize(D + H);
       N[s] += gradient.value[e];
     }
-    std::map<std::vector<int>, std::vector<int>> pointsOfNodes;
-    for (int q = 0; q < nq; q++) {
-      std::vector<int> its;
-      for (auto &N : at[q]) its.push_back(N.first);
-      pointsOfNodes[its].push_back(q);
-    }
     firstNode = firstPoint = firstPair = {0};
     firstShape = {0};
-    for (auto &element : pointsOfNodes) {
-      const std::vector<int> &its = element.first;
-      for (int q : element.second) {
-        point.push_back(q);
-        for (auto &N : at[q]) shape.insert(shape.end(), N.second.begin(), N.second.end());
-      }
-      node.insert(node.end(), its.begin(), its.end());
-      for (int a : its) for (int b : its) if (b <= a) pairOf.push_back(pair(a, b));
+    for (int q = 0; q < nq; q++) {
+      for (auto &N : at[q]) shape.insert(shape.end(), N.second.begin(), N.second.end());
+      const bool same = q + 1 < nq && at[q].size() == at[q + 1].size()
+        && std::equal(at[q].begin(), at[q].end(), at[q + 1].begin(), [](auto &M, auto &N) { return M.first == N.first; });
+      if (same) continue;
+      for (auto &N : at[q]) node.push_back(N.first);
+      for (auto &M : at[q]) for (auto &N : at[q]) if (N.first <= M.first) pairOf.push_back(pair(M.first, N.first));
       firstNode.push_back(int(node.size()));
-      firstPoint.push_back(int(point.size()));
+      firstPoint.push_back(q + 1);
       firstShape.push_back(shape.size());
       firstPair.push_back(int(pairOf.size()));
     }
@@ -128,8 +128,8 @@ public:
     cell.clear();
     cellWeight.assign(firstPoint.size() - 1, 0.);
     for (size_t g = 0; g + 1 < firstPoint.size(); g++) {
-      cell.push_back(cellOfPoint[point[firstPoint[g]]]);
-      for (int p = firstPoint[g]; p < firstPoint[g + 1]; p++) cellWeight[g] += weight[point[p]];
+      cell.push_back(cellOfPoint[firstPoint[g]]);
+      for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++) cellWeight[g] += weight[q];
     }
     slope.assign(cell.size(), 0.);
     g0.assign(node.size() * D, 0.);
@@ -162,7 +162,7 @@ public:
   void energies(const double *C, double *W) const {
     each([&](auto stored, int q) {
       typedef decltype(stored) T;
-      const laws::Material &m = material[q];
+      const laws::Material &m = material(q);
       const Symmetric c = symmetric<T>(C, q);
       W[q] = laws::energy(m, c);
       if (m.relaxing > 0) W[q] += laws::stored(m, laws::invariantsBeyond(c, symmetric<T>(damping, q)), 1);
@@ -170,9 +170,10 @@ public:
     for (size_t g = 0; g < cell.size(); g++) {
       double theta = 0;
       dispatch([&](auto stored) {
-        for (int q : pointsOf(g)) theta += weight[q] / cellWeight[g] * laws::volume(material[q], symmetric<decltype(stored)>(C, q));
+        for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++)
+          theta += weight[q] / cellWeight[g] * laws::volume(material(q), symmetric<decltype(stored)>(C, q));
       });
-      for (int q : pointsOf(g)) W[q] += laws::volumeEnergy(material[q], theta);
+      for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++) W[q] += laws::volumeEnergy(material(q), theta);
     }
   }
   // `damping` after a step from C0 to C1.
@@ -180,12 +181,12 @@ public:
     each([&](auto stored, int q) {
       typedef decltype(stored) T;
       Symmetric A = symmetric<T>(damping, q);
-      damping[T::C * nq + q] += laws::damp(material[q], symmetric<T>(C0, q), symmetric<T>(C1, q), dt, A);
+      damping[T::C * nq + q] += laws::damp(material(q), symmetric<T>(C0, q), symmetric<T>(C1, q), dt, A);
       put<T>(A, q, damping);
     });
   }
   void ellipticities(const double *C, double *e) const {
-    each([&](auto stored, int q) { e[q] = material[q].law->ellipticity(material[q], symmetric<decltype(stored)>(C, q), D == 3); });
+    each([&](auto stored, int q) { e[q] = material(q).law->ellipticity(material(q), symmetric<decltype(stored)>(C, q), D == 3); });
   }
   void smallestStretches(const double *C, double *stretch) const {
     each([&](auto stored, int q) {
@@ -195,10 +196,10 @@ public:
   }
   void stresses(const double *F, const double *pressure, double *sigma, double *mises) const {
     std::vector<double> p(nq, 0.);
-    for (size_t g = 0; g < cell.size(); g++) for (int q : pointsOf(g)) p[q] = pressure[cell[g]];
+    for (size_t g = 0; g < cell.size(); g++) for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++) p[q] = pressure[cell[g]];
     each([&](auto stored, int q) {
       Symmetric s;
-      mises[q] = laws::cauchy(material[q], whole<decltype(stored)>(F, q), p[q], s);
+      mises[q] = laws::cauchy(material(q), whole<decltype(stored)>(F, q), p[q], s);
       for (int k = 0; k < 6; k++) sigma[k * nq + q] = s[k];
     });
   }
@@ -220,12 +221,6 @@ private:
   }
   template<class Function> void each(Function f) const { dispatch([&](auto stored) { for (int q = 0; q < nq; q++) f(stored, q); }); }
 
-  struct Points {
-    const int *first, *last;
-    const int *begin() const { return first; }
-    const int *end() const { return last; }
-  };
-  Points pointsOf(size_t g) const { return {&point[firstPoint[g]], &point[0] + firstPoint[g + 1]}; }
   int nodesOf(size_t g) const { return firstNode[g + 1] - firstNode[g]; }
 
   // F, and C, S or A, of point q.
@@ -247,11 +242,6 @@ private:
   // there are.
   template<class T> int innerForces(const Step &step, const Deformation &at) {
     const int elements = int(firstNode.size()) - 1;
-    #pragma omp parallel for
-    for (int g = 0; g < elements; g++) stretched<T>(g, step, at);
-    const double smallest = least(at.jacobian1);
-    if (smallest != smallest) return notANumber;
-    if (smallest <= 0 && step.breaks) return inverted;
     if (step.carries) {
       way.resize(nodes * D);
       for (int i = 0; i < nodes * D; i++) way[i] = nodal[i] - volume.dBase[unknown[i]];
@@ -259,7 +249,13 @@ private:
     own.assign(node.size() * D, 0.);
     if (step.carries) ownLagging.assign(node.size() * D, 0.);
     #pragma omp parallel for
-    for (int g = 0; g < elements; g++) stressed<T>(g, step, at);
+    for (int g = 0; g < elements; g++) {
+      stretched<T>(g, step, at);
+      stressed<T>(g, step, at);
+    }
+    const double smallest = least(at.jacobian1);
+    if (smallest != smallest) return notANumber;
+    if (smallest <= 0 && step.breaks) return inverted;
     sum(own, pull);
     if (step.carries) sum(ownLagging, lagging);
     return fine;
@@ -292,7 +288,7 @@ private:
     const double *N = &shape[firstShape[g]];
     double its[most * D];
     for (int a = 0; a < n; a++) for (int i = 0; i < D; i++) its[a * D + i] = nodal[node[firstNode[g] + a] * D + i];
-    for (int q : pointsOf(g)) {
+    for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++) {
       double dF[T::F] = {};
       for (int a = 0; a < n; a++, N += T::slots) {
         for (int i = 0; i < D; i++) for (int J = 0; J < D; J++) dF[i * D + J] += N[J] * its[a * D + i];
@@ -323,16 +319,15 @@ private:
     double *its = &own[size_t(firstNode[g]) * D];
     Pressed pressed;
     if (!cell.empty()) press<T>(g, step, at, pressed);
-    for (int p = firstPoint[g]; p < firstPoint[g + 1]; p++, N += n * T::slots) {
-      const int q = point[p];
-      const laws::Material &m = material[q];
+    for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++, N += n * T::slots) {
+      const laws::Material &m = material(q);
       const Symmetric C0 = symmetric<T>(at.C0, q), C1 = laws::rightCauchyGreen(whole<T>(step.where == stepMiddle ? at.Fs : at.F1, q));
       Symmetric S = step.where == stepMean ? m.law->algorithmicStress(m, C0, C1) : m.law->stress(m, C1);
       if (step.rate > 0) {
         const Symmetric A = m.relaxing > 0 ? symmetric<T>(damping, q) : laws::identity;
         S += laws::dampingStress(m, C0, laws::rightCauchyGreen(whole<T>(at.F1, q)), A, step.rate);
       }
-      if (!cell.empty()) S += pressed.p * pressed.T[p - firstPoint[g]];
+      if (!cell.empty()) S += pressed.p * pressed.T[q - firstPoint[g]];
       put<T>(C1, q, at.C1);
       put<T>(S, q, at.Ss);
       pulled<T>(q, n, N, whole<T>(at.Fs, q), S, its);
@@ -343,13 +338,12 @@ private:
   // Of an element with a volume of its own: its pressure p, p* - p, and T at its points (volume.idp).
   struct Pressed { double p, left;  Symmetric T[mostPoints]; };
   template<class T> void press(size_t g, const Step &step, const Deformation &at, Pressed &its) const {
-    const laws::Material &m = material[point[firstPoint[g]]];
+    const laws::Material &m = material(firstPoint[g]);
     double theta0 = 0, theta1 = 0;
-    for (int p = firstPoint[g]; p < firstPoint[g + 1]; p++) {
-      const int q = point[p];
+    for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++) {
       const Symmetric C1 = laws::rightCauchyGreen(whole<T>(step.where == stepMiddle ? at.Fs : at.F1, q));
       const double w = weight[q] / cellWeight[g], j = laws::volume(m, C1);
-      Symmetric &to = its.T[p - firstPoint[g]];
+      Symmetric &to = its.T[q - firstPoint[g]];
       theta1 += w * j;
       if (step.where == stepMean) {
         const Symmetric C0 = symmetric<T>(at.C0, q);
@@ -381,8 +375,8 @@ private:
     const int n = nodesOf(g);
     const double *N = &shape[firstShape[g]];
     double all[most * T::D] = {};
-    for (int p = firstPoint[g]; p < firstPoint[g + 1]; p++, N += n * T::slots)
-      pulled<T>(point[p], n, N, whole<T>(at.Fs, point[p]), pressed.left * pressed.T[p - firstPoint[g]], all);
+    for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++, N += n * T::slots)
+      pulled<T>(q, n, N, whole<T>(at.Fs, q), pressed.left * pressed.T[q - firstPoint[g]], all);
     for (int i = 0; i < n * D; i++) {
       const double along = slopeKnown ? pressed.left * g0[size_t(firstNode[g]) * D + i] : all[i];
       its[i] += along;
@@ -395,7 +389,7 @@ private:
     for (size_t g = 0; g + 1 < firstNode.size(); g++) {
       const int n = nodesOf(g), D = T::D;
       const double *N = &shape[firstShape[g]];
-      for (int q : pointsOf(g)) {
+      for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++) {
         double A[T::F][T::F];
         slopes<T>(q, whole<T>(F, q), symmetric<T>(S, q), cell.empty() ? 0 : pressure[cell[g]], scale, rate, A);
         const int *to = &pairOf[firstPair[g]];
@@ -418,7 +412,7 @@ private:
 
   // A = scale w dP_iJ/dF_kL, dP_iJ/dF_kL = delta_ik S_JL + F_iI F_kK D_IJKL, as addModuli() of assembly.idp has it.
   template<class T> void slopes(int q, const Matrix &F, const Symmetric &S, double p, double scale, double rate, double A[][T::F]) const {
-    const laws::Moduli moduli = laws::moduli(material[q], laws::rightCauchyGreen(F), p, scale, rate);
+    const laws::Moduli moduli = laws::moduli(material(q), laws::rightCauchyGreen(F), p, scale, rate);
     double G[6][T::F];                     // F_kK D_IJKL
     for (int a = 0; a < 6; a++) for (int l = 0; l < T::F; l++) {
       const double *f = &F[3 * T::row(l)], *D = moduli.D[a];
@@ -437,11 +431,11 @@ private:
   // g0, slope of an element, and block += slope g0 g0^T.
   template<class T> void rankOne(size_t g, const double *F, double scale) {
     const int n = nodesOf(g);
-    const laws::Material &m = material[point[firstPoint[g]]];
+    const laws::Material &m = material(firstPoint[g]);
     const double *N = &shape[firstShape[g]];
     double *its = &g0[size_t(firstNode[g]) * D], theta = 0;
     std::fill(its, its + n * D, 0.);
-    for (int q : pointsOf(g)) {
+    for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++) {
       const Matrix f = whole<T>(F, q);
       const Symmetric C = laws::rightCauchyGreen(f);
       const double j = laws::volume(m, C);

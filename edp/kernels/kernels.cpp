@@ -1,6 +1,9 @@
 // kernels.cpp: the plugin of FreeFEM that edp/kernels.idp loads: every kernel by its name in the scripts. One process runs one scene: its
 // bodies, and the factorisation of their tangent, are made once and stay.
 #include <cholmod.h>   // first: without SuiteSparse's headers the build ends at once
+#ifdef _OPENMP
+#include <omp.h>
+#endif
 #include "call.hpp"
 #include "bodies.hpp"
 #include "factor.hpp"
@@ -30,12 +33,12 @@ static void addBodies() {
                            Reals dampingState, Ints lawOfPoint, Ints traced, Ints held, Reals weight) {
     const long nq = weight.N();
     body.weight = copied<double>(weight);
-    body.material.resize(nq);
     body.damping = dampingState;
     for (long q = 0; q < nq; q++) {
-      laws::Material &m = body.material[q] = {law[lawOfPoint[q]], lambda[q], mu[q], {}, eta[q], zeta[q], relaxing[q], relaxTime[q], bulk[q],
-                                              traced[q] == 1, held[q] == 1};
+      laws::Material m = {law[lawOfPoint[q]], lambda[q], mu[q], {}, eta[q], zeta[q], relaxing[q], relaxTime[q], bulk[q], traced[q],
+                          held[q]};
       for (int k = 0; k < 8; k++) m.own[k] = own[k * nq + q];
+      body.addPoint(m);
     }
   });
   add("kernelBodies", +[](Sparse gradient, Sparse mass, Reals free) {
@@ -77,7 +80,18 @@ static void addFactor() {
   });
 }
 
+extern "C" void openblas_set_num_threads(int) __attribute__((weak));
+
+// One thread each, where the environment does not say how many: threads of BLAS that wait take as long as those that work.
+static void limitThreads() {
+  if (!getenv("OPENBLAS_NUM_THREADS") && !getenv("OMP_NUM_THREADS") && openblas_set_num_threads) openblas_set_num_threads(1);
+#ifdef _OPENMP
+  if (!getenv("OMP_NUM_THREADS")) omp_set_num_threads(1);
+#endif
+}
+
 static void addKernels() {
+  limitThreads();
   addBodies();
   addFactor();
   contact::addContact();

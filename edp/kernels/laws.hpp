@@ -1,6 +1,7 @@
 // laws.hpp: what edp/core/law says, at one quadrature point and always in three dimensions: in plane strain F_33 = C_33 = 1. Stresses and
 // moduli in Pa. A law is a struct, and a line of known() that gives its name; the scripts beside say what the symbols mean.
 #pragma once
+#include <cstring>
 #include <map>
 #include <string>
 #include "vectors.hpp"
@@ -89,8 +90,9 @@ struct Material {
   double eta, zeta;                        // viscosities [Pa s]
   double relaxing, relaxTime;              // G [Pa], tau [s] of relaxation.idp
   double bulk;                             // kappa [Pa], the part of the law's lambda that acts in the mean of an element (volume.idp)
-  bool traced;                             // what measures volume is tr E: W is quadratic in C
-  bool held;                               // with J = 1 (material.idp)
+  long traced;                             // whether what measures volume is tr E: W is quadratic in C
+  long held;                               // with J = 1 (material.idp)
+  bool operator==(const Material &m) const { return std::memcmp(this, &m, sizeof m) == 0; }
 };
 
 // What a law says: S, 2 [W(M+H) - W(M-H) - S(M):H], D, and of the motions in the plane of the mesh, or (spatial) all, ellipticity.
