@@ -9,6 +9,9 @@
 #pragma once
 #include <cholmod.h>
 #include <cstring>
+#ifdef __SSE__
+#include <xmmintrin.h>
+#endif
 #include "bodies.hpp"
 
 extern "C" void dpotri_(const char *uplo, const int *n, double *A, const int *leading, int *info);
@@ -98,6 +101,18 @@ private:
     s[0] = s0;  s[1] = s1;  s[2] = s2;  s[3] = s3;
   }
 };
+
+// While it lives numbers below 1e-38 are 0: an L in single precision, whose entries decay with distance, is full of them, and the processor
+// takes a hundred times as long over each.
+#ifdef __SSE__
+struct NothingTiny {
+  const unsigned before = _mm_getcsr();
+  NothingTiny() { _mm_setcsr(before | 0x8040); }
+  ~NothingTiny() { _mm_setcsr(before); }
+};
+#else
+struct NothingTiny { NothingTiny() {} };
+#endif
 
 class Factor {
 public:
@@ -288,6 +303,7 @@ private:
   // L, by blocks of columns: each begins as that of A, and what blocks before it have in its columns is taken from it (left-looking). False
   // where A is not positive definite.
   template<class Number> bool makeBlocks() {
+    const NothingTiny flushed;
     const int blocks = int(L->nsuper);
     std::vector<int> waiting(blocks, -1), behind(blocks, -1), reached(blocks), at(n);   // before a block: those with their next row in it
     std::vector<Number> taken;
