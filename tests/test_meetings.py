@@ -146,3 +146,12 @@ def test_a_body_set_down_flat_is_not_turned(gravity):
         ask = assembly.Asker(tables, approach.meetings(tables), lambda values: describe(values, tables.dimension.like))
         sizes.append(assembly._sizes(0, ask).contact)
     assert sizes[0] == pytest.approx(sizes[1], rel=0.1) and sizes[0] > 0.005
+
+
+@pytest.mark.parametrize("angle, share", [(35, 1), (0, 0)])
+def test_a_contact_that_begins_at_a_corner_is_named(tmp_path, angle, share):
+    """A block that falls on its corner says that stated errors do not cover what smaller elements do there, and that all of its impulse is of that contact; one that
+    falls flat does not."""
+    block = {"name": "block", "shape": "rectangle", "width": 0.1, "height": 0.05, "angle": angle, "position": [0, 0.075], "velocity": [0, -2]}
+    found = go(tmp_path, block, FLOOR, accuracy=0.02)
+    assert found.summary["corner_share"] == pytest.approx(share, abs=0.05) and len(said(found, "corner")) == share

@@ -15,6 +15,7 @@ MIXTURE = {"disc-normal": (24, (0.005, 0.01, 0.02)), "disc-block": (10, (0.01, 0
            "two-discs": (10, (0.01, 0.02, 0.05)), "ball": (4, (0.1,))}
 COARSE = (0.03, 0.05, 0.1)  # accuracies of scenes where stated errors are tried at few elements and steps
 SLOWEST, FASTEST = 5e-4, {"svk": 0.1, "neohookean": 0.18}   # speeds, over sqrt(E/density); svk breaks down above
+FASTEST_CORNER = 0.05       # of those that fall on a corner
 
 
 def bar_speed(young: float, density: float) -> float:
@@ -91,6 +92,19 @@ def _on_another(chance: random.Random, point: Point) -> Point:
     return found | {f"contact.{name}": value for name, value in contact.items()}
 
 
+def _on_corner(chance: random.Random, point: Point) -> Point:
+    """A block, square or longer, that falls on one of its corners."""
+    width, height, speed = 2 * point["radius"], 2 * point["radius"] * chance.choice([0.3, 0.6, 1]), min(
+        point["speed"], FASTEST_CORNER * bar_speed(point["young"], point["density"]))
+    found = {name: point[name] for name in ("law", "young", "density", "nu", "accuracy") if name in point}
+    found |= {"body.1.width": width, "body.1.height": height, "body.1.angle": _round(chance.uniform(10, 80)),
+              "body.1.position": [0.0, _round(0.51 * (width**2 + height**2) ** 0.5)],
+              "body.1.velocity": [_round(chance.choice([0, 0.5, 1]) * speed), -_round(speed)]}
+    contact = {"friction_static": 0.0, "friction_dynamic": 0.0} | {
+        name: point[name] for name in ("friction_static", "friction_dynamic", "exponent") if name in point}
+    return found | {f"contact.{name}": value for name, value in contact.items()}
+
+
 def _in_space(chance: random.Random, point: Point) -> Point:
     """A ball in three dimensions, not too fast for coarse elements."""
     kept = {name: value for name, value in point.items() if name not in ("symmetry", "spin", "exponent")}
@@ -98,7 +112,7 @@ def _in_space(chance: random.Random, point: Point) -> Point:
 
 
 SCENES = {"disc-normal": _on_plane, "disc-block": _on_block, "ball-axisymmetric": _of_revolution, "two-discs": _on_another,
-          "ball": _in_space}
+          "block-corner": _on_corner, "ball": _in_space}
 
 
 def words(point: Point) -> str:
@@ -108,7 +122,8 @@ def words(point: Point) -> str:
     told = {"law", "young", "density", "nu" if known else "", "speed", "friction_static", "friction_dynamic", "body.1.position",
             "body.1.velocity", "body.2.velocity"}
     point = {name.removeprefix("contact."): value for name, value in point.items()}
-    speed = point["speed"] if "speed" in point else point["body.1.velocity"][0] - point["body.2.velocity"][0]
+    speed = point["speed"] if "speed" in point else max(
+        abs(a - b) for a, b in zip(point["body.1.velocity"], point.get("body.2.velocity", [0, 0])))
     parts = [point["law"], named[point["young"], point["density"]], f"v/c {speed / bar_speed(point['young'], point['density']):.2g}"]
     if point.get("friction_static"):
         parts.append(f"friction {point['friction_static']:g}, {point['friction_dynamic']:g}")
