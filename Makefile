@@ -73,7 +73,7 @@ paper: $(READY) ## all of the above, and results/paper/report.html
 
 movie: CASE := disc-oblique
 movie: $(READY) ## a film of a scene, built in or a file: make movie CASE=disc-oblique
-	@$(PYTHON) -m orchestrate $@ $(CASE) $(ARGS)
+	@$(PYTHON) -m orchestrate $@ "$(CASE)" $(ARGS)
 
 docs: $(READY) ## a site of README and docs/: results/site/html (installs MkDocs with its theme)
 	@$(PYTHON) -m pip install -q --disable-pip-version-check "mkdocs>=1.6,<2" "mkdocs-material>=9.5,<10"
