@@ -72,7 +72,7 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument("--quiet", action="store_true", help="no progress, no report")
     command.set_defaults(command=_run)
 
-    command = commands.add_parser("list", help="list the built-in scenes")
+    command = commands.add_parser("list", help="list the built-in scenes, with their scripts")
     command.set_defaults(command=_list)
     command = commands.add_parser("parameters", help="list the parameters: default, unit, what is accepted")
     command.set_defaults(command=_parameters)
@@ -102,7 +102,8 @@ def _list(options: argparse.Namespace) -> None:
     from . import scene
     names = scene.built_in()
     for name in names:
-        print(f"{name:<{2 + max(map(len, names))}}{scene.load(name).title}")
+        one = scene.load(name)
+        print(f"{name:<{2 + max(map(len, names))}}{f'edp/{one.script}.edp':<27}{one.title}")
 
 
 def _parameters(options: argparse.Namespace) -> None:

@@ -279,4 +279,4 @@ def excess(estimated: Mapping[str, float], accuracy: float, also: str) -> list[s
     above = [f"{name.replace('_', ' ')} {100 * estimated[name]:.2g} %" for name, limit in limits.items() if estimated[name] > limit]
     return [f"estimated errors above the {100 * accuracy:g} % that are asked for: {', '.join(above)}: take these answers as known to no "
             f"more than that, or ask for a smaller accuracy (contact times and peak forces scatter in hard impacts on any "
-            f"mesh)"] if above else []
+            f"mesh, and are named from {LOOSER} times the accuracy on)"] if above else []

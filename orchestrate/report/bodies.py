@@ -14,9 +14,9 @@ from ..scenes import obstacles
 from ..scenes.obstacles import Obstacle
 from ..input.parameters import Value
 from ..output.results import body_names, mechanical_energy, suffixes
-from .figures import (BAND, BLACK, BLUE, COLOURED, GREEN, GREY, ORANGE, ORIGIN, PURPLE, SHAPES, VISCOUS, Body, as_written, balance_error,
-                      deformed, end_of_contact, evenly, flight, friction_force, goes_along, is_half, least, material, over_time, per_metre,
-                      plt, rolling, side_by_side)
+from .figures import (BAND, BLACK, BLUE, COLOURED, GREEN, GREY, ORANGE, ORIGIN, PURPLE, SHAPES, VISCOUS, Body, amid, as_written,
+                      balance_error, deformed, end_of_contact, evenly, flight, friction_force, goes_along, is_half, least, material,
+                      over_time, per_metre, plt, rolling, side_by_side)
 
 ALONE = ("disc-plane", "ball-axisymmetric", "ball-plane")     # scripts of one body on the plane
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, "#56b4e9", "#e69f00")    # of bodies
@@ -142,7 +142,7 @@ def velocities(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.F
     """Velocities [m/s] of the centres of mass and spins [rad/s], a panel a component, a line a body."""
     bodies = columns_of(history, scene)
     components = {**{f"v{axis}": f"velocity along {axis} [m/s]" for axis in "xyz"}, "spin_x": "spin about x [rad/s]",
-                  "spin_y": "spin about y [rad/s]", "spin": "spin [rad/s]"}
+                  "spin_y": "spin about y [rad/s]", "spin": "spin about z [rad/s]" if "spin_x" in history else "spin [rad/s]"}
     moving = [name for name in components if any(np.any(history.get(name + of, 0)) for of in bodies.values())] or ["vy"]
     figure, grid = panels(len(moving), 2.8)
     for axes, name in zip(grid, moving):
@@ -158,14 +158,14 @@ def velocities(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.F
 
 def forces(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
     """Contact forces [kN/m] over time: normal and friction forces of all contacts, and the components on each of several bodies."""
-    t, unit, bodies = 1e3 * history["t"], f"[kN{per_metre(scene)}]", columns_of(history, scene)
+    t, unit, bodies = amid(history, scene), f"[kN{per_metre(scene)}]", columns_of(history, scene)
     lines = {f"normal force {unit}": {"": "normal_force"}}
     if history["friction_force"].any():
         lines[f"friction force {unit}"] = {"": "friction_force"}
     own = {f"force along {component} {unit}": {name: f"force_{component}{of}" for name, of in bodies.items()} for component in "xyz"
            if len(bodies) > 1}
     own = {words: columns for words, columns in own.items() if any(np.any(history.get(column, 0)) for column in columns.values())}
-    if own and len(bodies) == 2 and not obstacles_of(scene):     # the normal force is then that on each
+    if len(own) == 1 and len(bodies) == 2 and not obstacles_of(scene):     # the normal force is then that on each
         lines = dict(list(lines.items())[1:])
     lines |= own
     figure, grid = panels(len(lines), 2.8)
@@ -186,8 +186,9 @@ def shapes(series: list[tuple[float, Path]], scene: dict[str, Value], field: str
     """All bodies at up to SHAPES instants among the obstacles, coloured by a field [MPa]."""
     picked = evenly(series, SHAPES)
     found = [deformed(vtu.read(path), is_half(scene), field) for _, path in picked]
-    left, right, low, high = view = limits(found)
-    rigid, columns = obstacles_of(scene), 3 if right - left < 3 * (high - low) else 2
+    rigid = obstacles_of(scene)
+    left, right, low, high = view = down_the_slope(limits(found), rigid)
+    columns = 3 if right - left < 3 * (high - low) else 2
     moves = any(one.velocity.any() for one in rigid)
 
     def behind(axes: plt.Axes, times: list[float], places: list[np.ndarray]) -> None:
@@ -207,6 +208,17 @@ def limits(found: list[Body]) -> tuple[float, float, float, float]:
     (left, bottom), (right, top) = low.min(axis=0), high.max(axis=0)
     margin = 0.06 * max(right - left, top - bottom)
     return left - margin, right + margin, bottom - margin, top + margin
+
+
+def down_the_slope(view: tuple[float, float, float, float], rigid: list[Obstacle]) -> tuple[float, float, float, float]:
+    """A view [m] whose lower end, by up to half its height lower, no obstacle's surface crosses: else a slope would end in the picture."""
+    left, right, low, high = view
+    for lower in low - (high - low) * np.linspace(0, 0.5, 11) if rigid else ():
+        edge = np.stack([np.linspace(left, right, GRID), np.full(GRID, lower)], axis=-1)
+        gap = np.min([one.gap_in_plane(edge, 0.0) for one in rigid], axis=0)
+        if gap.min() > 0 or gap.max() < 0:
+            return left, right, lower, high
+    return view
 
 
 def draw_obstacles(axes: plt.Axes, rigid: list[Obstacle], view: tuple[float, float, float, float], t: float,

@@ -8,15 +8,15 @@ from matplotlib.colors import ListedColormap
 
 from ..input.parameters import Value
 from ..output.results import read_table
-from .figures import BLACK, BLUE, ORANGE, evenly, plt
+from .figures import BLACK, BLUE, ORANGE, STICKS, evenly, plt
 
 INSTANTS = 6                     # profiles at most
 SLOW = 0.03                      # speed over sqrt(E/rho) up to which the pressure of a ball is shown beside Hertz'
 MOST_BODIES = 4                  # those with the largest pressure
 PRESSURE = "contact pressure [MPa]"
-SLIP = {"slips back": BLUE, "sticks": "#bbbbbb", "slips forward": ORANGE}    # v_T < 0, > 0: on the plane along x
-RADIAL = {"slips inwards": BLUE, "sticks": "#bbbbbb", "slips outwards": ORANGE}    # from the axis
-SLIDES = {"sticks": "#bbbbbb", "slides": ORANGE}
+SLIP = {"slides back": BLUE, "sticks": STICKS, "slides forward": ORANGE}    # v_T < 0, > 0: on the plane along x
+RADIAL = {"slides inwards": BLUE, "sticks": STICKS, "slides outwards": ORANGE}    # from the axis
+SLIDES = {"sticks": STICKS, "slides": ORANGE}
 MAPS = 5                         # instants at most
 ALONG = "along the outline"
 ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 1), "ncols": 3, "fontsize": 6.5, "handlelength": 1.0, "columnspacing": 0.8}

@@ -33,6 +33,8 @@ from . import literature
 LAWS = {"svk": "St. Venant–Kirchhoff", "neohookean": "neo-Hookean", "mooney-rivlin": "Mooney–Rivlin", "ogden": "Ogden",
         "incompressible": "neo-Hookean with J = 1"}
 BLUE, ORANGE, GREEN, PURPLE, BLACK, GREY = "#0072b2", "#d55e00", "#009e73", "#aa4499", "#222222", "#999999"
+STICKS = "#bbbbbb"      # what slides is orange, what slides back blue
+END_FORCES = ("newmark", "bdf2", "backward-euler")      # integrators whose forces are those at the end of a step
 SMALL = 7.5   # text of legends, of numbers in cells and below figures; all other text has the style's size
 # hinting, titley: quicker: outlines of letters as they are; titles stand where nothing is to be made way for
 STYLE = {"font.size": 9, "axes.titlesize": 9, "legend.fontsize": SMALL, "figure.titlesize": 9, "axes.spines.top": False,
@@ -151,6 +153,11 @@ def per_metre(scene: dict[str, Value]) -> str:
     return "/m" if dimension.per_metre(scene.get("script", "")) else ""
 
 
+def amid(history: dict[str, np.ndarray], scene: dict[str, Value]) -> np.ndarray:
+    """The times [ms] at which the forces of a history are drawn: amid its steps, of which they are means (but of END_FORCES)."""
+    return 1e3 * (history["t"] - (0 if scene.get("integrator") in END_FORCES else history["dt"] / 2))
+
+
 def touched(summary: dict) -> tuple[float, float] | None:
     """When the contact begins and ends [s], both interpolated inside their steps; None without one, or where it is not over."""
     if summary.get("contact_time") is None or summary.get("contact_start") is None:
@@ -217,7 +224,7 @@ def friction_force(history: dict[str, np.ndarray], scene: dict[str, Value]) -> p
 
     The broken lines are the coefficients times the normal force: a body of which all points slide one way is on the dynamic one.
     """
-    t, per = 1e3 * history["t"], per_metre(scene)
+    t, per = amid(history, scene), per_metre(scene)
     normal, friction = 1e-3 * history["normal_force"], 1e-3 * history["friction_force"]
     window = _liveliest(history)
     figure, grid = plt.subplots(2, 2 if window else 1, figsize=(8.4 if window else 5.6, 5.2), sharex="col", squeeze=False,
@@ -238,19 +245,19 @@ def friction_force(history: dict[str, np.ndarray], scene: dict[str, Value]) -> p
     drag.legend(**ABOVE, ncols=2)
     end_of_contact([force, drag], history, scene)
     if window:
-        _enlarge(grid, history, window, per)
+        _enlarge(grid, history, scene, window)
     return figure
 
 
-def _enlarge(grid: np.ndarray, history: dict[str, np.ndarray], window: tuple[int, int], per: str) -> None:
+def _enlarge(grid: np.ndarray, history: dict[str, np.ndarray], scene: dict[str, Value], window: tuple[int, int]) -> None:
     """The right panels of figure 5: the share of the load that slides, and the friction force [kN/m], in a window of rows that is marked on
     the left."""
-    t, friction = 1e3 * history["t"], 1e-3 * history["friction_force"]
+    t, friction = amid(history, scene), 1e-3 * history["friction_force"]
     first, last = window
     inside, (share, zoom) = slice(first, last + 1), grid[:, 1]
     for axes in grid[:, 0]:
         axes.axvspan(t[first], t[last], color=BAND, alpha=0.6, linewidth=0, zorder=0)
-    share.step(t, 100 * history["sliding_fraction"], where="pre", color=PURPLE, linewidth=1.0)
+    share.step(1e3 * history["t"], 100 * history["sliding_fraction"], where="pre", color=PURPLE, linewidth=1.0)
     share.set(title="grey on the left, enlarged", ylabel="load that slides [%]",
               xlim=(t[first], t[last]), ylim=(0, 1.08 * max(1.0, 100 * history["sliding_fraction"][inside].max())))
     zoom.plot(t, friction, color=ORANGE, linewidth=1.0, marker=".", markersize=3)
@@ -258,7 +265,7 @@ def _enlarge(grid: np.ndarray, history: dict[str, np.ndarray], window: tuple[int
     lines = [line.get_ydata()[inside] for line in grid[1, 0].lines if len(line.get_ydata()) == len(t)]
     near = np.concatenate([friction[inside], *(values for values in lines if values.mean() * friction[inside].mean() > 0)])
     margin = 0.15 * (np.ptp(near) or abs(near[0]) or 1.0)
-    zoom.set(ylabel=f"friction force [kN{per}]", ylim=(near.min() - margin, near.max() + margin))
+    zoom.set(ylabel=f"friction force [kN{per_metre(scene)}]", ylim=(near.min() - margin, near.max() + margin))
 
 
 def _liveliest(history: dict[str, np.ndarray]) -> tuple[int, int] | None:
@@ -292,8 +299,8 @@ def rolling(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figu
     top.set_ylabel("velocity [m/s]")
     touches = history["normal_force"] > 0
     back = np.minimum(history["reverse_fraction"], history["sliding_fraction"])
-    shares = {"sticks": (1 - history["sliding_fraction"], "#56b4e9"), "slides": (history["sliding_fraction"] - back, PURPLE),
-              "slides back": (back, ORANGE)}
+    shares = {"sticks": (1 - history["sliding_fraction"], STICKS), "slides": (history["sliding_fraction"] - back, ORANGE),
+              "slides back": (back, BLUE)}
     if not back.any():
         del shares["slides back"]
     floor = np.zeros(len(t))
@@ -301,7 +308,7 @@ def rolling(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figu
         values = np.where(touches, 100 * values, 0)
         bottom.fill_between(t, floor, floor + values, step="pre", color=colour, linewidth=0, label=label)
         floor = floor + values
-    bottom.fill_between(t, 0, np.where(touches, 0, 100), step="pre", color="#ececec", linewidth=0, label="no contact")
+    bottom.fill_between(t, 0, np.where(touches, 0, 100), step="pre", color="#f2f2f2", linewidth=0, label="no contact")
     bottom.set(xlabel="time [ms]", ylabel="share of the load [%]", ylim=(0, 100))
     bottom.legend(**ABOVE | {"handlelength": 1.0}, ncols=4, handleheight=1.0)
     over_time([top, bottom], history, scene)

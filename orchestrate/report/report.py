@@ -132,6 +132,8 @@ def report(result: RunResult) -> str:
     place = shown(result.folder)
     lines = [f"{place}: " + ("finished earlier, same scene and code" if result.reused else "finished"), *_scene(scene)]
     quantities = [one for row in rows(dimension.per_metre(script)) for one in _of_bodies(row, scene, summary)]
+    if scene.get("end_time"):           # not of an impact alone
+        quantities = [replace(quantity, label=quantity.label.replace("rebound", "final")) for quantity in quantities]
     width = max(24, *(len(quantity.label) + 1 for quantity in quantities))
     for quantity in quantities:
         value = summary.get(quantity.key)

@@ -134,7 +134,8 @@ def _check(stage: Path, exit_code: int, said: str) -> None:
 
 def _tail(stage: Path) -> str:
     lines = [line.strip() for line in (stage / "log.txt").read_text().splitlines()]
-    return "end of its log: " + " | ".join([line for line in lines if line and not line.startswith("progress ")][-4:])
+    said = [line for line in lines if line and not line.startswith("progress ")] or lines[-1:] or ["nothing"]
+    return "end of its log: " + " | ".join(said[-4:])
 
 
 # ---- what is told of the runs
