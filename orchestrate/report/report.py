@@ -153,4 +153,7 @@ def report(result: RunResult) -> str:
     pictures = sorted((result.folder / "figures").glob("*.png"))
     if pictures:
         lines.append(f"  {'figures':<{width}}" + f"{place}/figures/{{{','.join(p.stem for p in pictures)}}}.png")
+        if summary.get("contact_intervals") and scene.get("fields") and "contact" not in {picture.stem for picture in pictures}:
+            lines.append(f"  {'no contact.png':<{width}}"
+                         f"no state that was kept is one in contact: fields = {4 * scene['fields']:g} keeps more")
     return "\n".join(lines)
