@@ -105,10 +105,17 @@ def straight(route: str, folder: Path) -> object:
     return answers(route, folder / "straight")
 
 
+def holds(folder: Path, point: str) -> bool:
+    """Whether `point` is somewhere in a folder in which others come and go while it is looked through."""
+    with contextlib.suppress(FileNotFoundError):
+        return any(folder.rglob(point))
+    return False
+
+
 def stop_at(point: str, process: subprocess.Popen, out: Path) -> list[int]:
     """Stops the FreeFem++s of a run once `point` is there; they are at work, and so a kill is one."""
     end = time.monotonic() + 60
-    while not any(out.parent.rglob(point)):
+    while not holds(out.parent, point):
         assert process.poll() is None and time.monotonic() < end, f"no {point}"
     stopped = set()
     while found := set(freefems(out)) - stopped:
