@@ -9,7 +9,7 @@ namespace contact {
 enum Place { stepMean, stepMiddle, stepEnd };                      // where in the step the law is evaluated
 enum Regularization { linear, linearPrinted, sqrtOf, tanhOf };
 
-struct Point { double qa, k, muStatic, muDynamic; bool sticks; };  // start of the step, stiffness, coefficients, side of the jump
+struct Point { double vN0, k, muStatic, muDynamic; bool sticks; };  // start of the step, stiffness, coefficients, side of the jump
 struct Forces { double t[3], slope[3][3]; };                       // (t_N, -t_T), d/d(q, slip)
 
 struct Law {
@@ -17,82 +17,82 @@ struct Law {
   bool jumps = false;
   int slips = 0, where = stepMean, regularization = linear;
 
-  void normal(double qa, double qb, double k, double &t, double &stiff) const {
-    // t_N = k p^m (10), and dt_N/dq_b
-    const double m = exponent, middle = (qa + qb) / 2;
+  void normal(double vN0, double vN1, double k, double &t, double &stiff) const {
+    // (10): t_N = k v_N^m where v_N > 0, and dt_N/dvN1
+    const double m = exponent, middle = (vN0 + vN1) / 2;
     t = stiff = 0;
     if (where == stepMean) {
-      if (!(qa > 0 || qb > 0)) return;
-      const bool stays = std::min(qa, qb) > 0, moves = std::abs(qb - qa) > 0.02 * (qa + qb);
-      const double turn = (qb - qa) / (qa + qb), turn2 = turn * turn;
-      if (!stays) t = k * (std::pow(std::max(qa, qb), m + 1) / (m + 1) / std::abs(qb - qa));
+      if (!(vN0 > 0 || vN1 > 0)) return;
+      const bool stays = std::min(vN0, vN1) > 0, moves = std::abs(vN1 - vN0) > 0.02 * (vN0 + vN1);
+      const double turn = (vN1 - vN0) / (vN0 + vN1), turn2 = turn * turn;
+      if (!stays) t = k * (std::pow(std::max(vN0, vN1), m + 1) / (m + 1) / std::abs(vN1 - vN0));
       else if (m == 1) t = k * middle;
-      else if (moves) t = k * ((std::pow(qb, m + 1) - std::pow(qa, m + 1)) / (m + 1) / (qb - qa));
+      else if (moves) t = k * ((std::pow(vN1, m + 1) - std::pow(vN0, m + 1)) / (m + 1) / (vN1 - vN0));
       else t = k * (std::pow(middle, m)
                     * (1 + m * (m - 1) / 6 * turn2 * (1 + (m - 2) * (m - 3) / 20 * turn2 * (1 + (m - 4) * (m - 5) / 42 * turn2))));
       if (stays && m == 1) stiff = k / 2;
-      else if (!stays || moves) stiff = ((qb > 0 ? k * std::pow(qb, m) : 0) - t) / (qb - qa);
+      else if (!stays || moves) stiff = ((vN1 > 0 ? k * std::pow(vN1, m) : 0) - t) / (vN1 - vN0);
       else stiff = k * m / 2 * std::pow(middle, m - 1) * (1 + (m - 1) / 3 * turn);
     }
     if (where == stepMiddle && middle > 0) { t = k * std::pow(middle, m);  stiff = k * m / 2 * std::pow(middle, m - 1); }
-    if (where == stepEnd && qb > 0) { t = k * std::pow(qb, m);  stiff = k * m * std::pow(qb, m - 1); }
+    if (where == stepEnd && vN1 > 0) { t = k * std::pow(vN1, m);  stiff = k * m * std::pow(vN1, m - 1); }
   }
 
-  void ratioOf(double v, const Point &a, double &ratio, double &slope) const {
+  void muPhiAt(double v, const Point &a, double &muPhi, double &slope) const {
     // mu_f phi [-] and its derivative [s/m] at the velocity v [m/s]
-    const double pi = 3.14159265358979323846, size = std::abs(v) / slipVelocity, low = a.muStatic * (1 - bridge) / 2,
+    const double pi = 3.14159265358979323846, vOverEps = std::abs(v) / slipVelocity, low = a.muStatic * (1 - bridge) / 2,
         rise = (a.muDynamic - low) / bridge;
-    double phi = 0, steep = 0, mu = a.sticks ? a.muStatic : a.muDynamic, muSteep = 0;
+    double phi = 0, dPhi = 0, mu = a.sticks ? a.muStatic : a.muDynamic, dMu = 0;
     switch (regularization) {
-      case sqrtOf: phi = size / std::sqrt(size * size + 1);  steep = std::pow(size * size + 1, -1.5);  break;
-      case tanhOf: phi = std::tanh(size);  steep = 1 - phi * phi;  break;
-      case linear: phi = std::min(size, 1.);  steep = size < 1;  break;
+      case sqrtOf: phi = vOverEps / std::sqrt(vOverEps * vOverEps + 1);  dPhi = std::pow(vOverEps * vOverEps + 1, -1.5);  break;
+      case tanhOf: phi = std::tanh(vOverEps);  dPhi = 1 - phi * phi;  break;
+      case linear: phi = std::min(vOverEps, 1.);  dPhi = vOverEps < 1;  break;
       case linearPrinted:
-        phi = size < 1 - bridge ? size / 2 : std::min(1., (1 - bridge) / 2 + (size - 1 + bridge) * (1 + bridge) / (2 * bridge));
-        steep = size < 1 - bridge ? 0.5 : (size < 1 ? (1 + bridge) / (2 * bridge) : 0);
+        phi = vOverEps < 1 - bridge ? vOverEps / 2 : std::min(1., (1 - bridge) / 2 + (vOverEps - 1 + bridge) * (1 + bridge) / (2 * bridge));
+        dPhi = vOverEps < 1 - bridge ? 0.5 : (vOverEps < 1 ? (1 + bridge) / (2 * bridge) : 0);
     }
     if (!jumps) {                                                  // smooth: a half cosine from mu_e at eps to mu_d at 2 eps
       const double half = (a.muStatic - a.muDynamic) / 2;
-      mu = a.muDynamic + half * (1 + std::cos(pi * std::max(0., std::min(1., size - 1))));
-      if (size > 1 && size < 2) muSteep = -half * pi * std::sin(pi * (size - 1));
+      mu = a.muDynamic + half * (1 + std::cos(pi * std::max(0., std::min(1., vOverEps - 1))));
+      if (vOverEps > 1 && vOverEps < 2) dMu = -half * pi * std::sin(pi * (vOverEps - 1));
     }
-    ratio = mu * phi;
-    slope = mu * steep + muSteep * phi;
+    muPhi = mu * phi;
+    slope = mu * dPhi + dMu * phi;
     if (jumps && regularization == linearPrinted) {
-      if (a.sticks) { ratio = a.muStatic * std::min(size, 1.) / 2;  slope = size < 1 ? a.muStatic / 2 : 0; }
+      if (a.sticks) { muPhi = a.muStatic * std::min(vOverEps, 1.) / 2;  slope = vOverEps < 1 ? a.muStatic / 2 : 0; }
       else {
-        ratio = size < 1 - bridge ? std::min(a.muDynamic, a.muStatic * size / 2)
-            : std::min(a.muDynamic, low + std::max(rise, 0.) * (size - 1 + bridge));
-        slope = ratio >= a.muDynamic ? 0 : (size < 1 - bridge ? a.muStatic / 2 : rise);
+        muPhi = vOverEps < 1 - bridge ? std::min(a.muDynamic, a.muStatic * vOverEps / 2)
+            : std::min(a.muDynamic, low + std::max(rise, 0.) * (vOverEps - 1 + bridge));
+        slope = muPhi >= a.muDynamic ? 0 : (vOverEps < 1 - bridge ? a.muStatic / 2 : rise);
       }
     }
-    if (v < 0) ratio = -ratio;
+    if (v < 0) muPhi = -muPhi;
     slope /= slipVelocity;
   }
 
-  void ratiosOf(const double *v, const Point &a, double *ratio, double slope[2][2]) const {
+  void muPhiVector(const double *v, const Point &a, double *muPhi, double slope[2][2]) const {
     // The same of the velocity as a vector, mu_f phi(|v|) e; in the plane it has one component.
-    if (slips == 1) return ratioOf(v[0], a, ratio[0], slope[0][0]);
-    const double size = std::hypot(v[0], v[1]), scale = std::max(size, 1e-300), e[2] = {v[0] / scale, v[1] / scale};
-    double along, steep;
-    ratioOf(size, a, along, steep);
-    const double grip = size > 1e-9 * slipVelocity ? along / size : steep, more = std::max(steep, 0.) - grip;
-    for (int i = 0; i < 2; i++) ratio[i] = along * e[i];
-    for (int i = 0; i < 2; i++) for (int j = 0; j < 2; j++) slope[i][j] = (i == j ? grip : 0) + more * e[i] * e[j];
+    if (slips == 1) return muPhiAt(v[0], a, muPhi[0], slope[0][0]);
+    const double speed = std::hypot(v[0], v[1]), scale = std::max(speed, 1e-300), e[2] = {v[0] / scale, v[1] / scale};
+    double size, along;                                            // mu_f phi and its derivative at |v|
+    muPhiAt(speed, a, size, along);
+    const double across = speed > 1e-9 * slipVelocity ? size / speed : along, more = std::max(along, 0.) - across;
+    for (int i = 0; i < 2; i++) muPhi[i] = size * e[i];
+    for (int i = 0; i < 2; i++) for (int j = 0; j < 2; j++) slope[i][j] = (i == j ? across : 0) + more * e[i] * e[j];
   }
 
   void at(const Point &a, const double *x, const double *linearisedAt, Forces &f) const {
     // Forces of a point that comes to x = (q, slip), friction linearised at another velocity, if one is given.
-    normal(a.qa, x[0], a.k, f.t[0], f.slope[0][0]);
+    normal(a.vN0, x[0], a.k, f.t[0], f.slope[0][0]);
     if (slips == 0) return;
-    double v[2], ratio[2], slope[2][2];
+    double v[2], muPhi[2], slope[2][2];
     for (int i = 0; i < slips; i++) v[i] = x[1 + i] / dt;
     const double *where = linearisedAt ? linearisedAt : v;
-    ratiosOf(where, a, ratio, slope);
-    for (int i = 0; i < slips; i++) for (int j = 0; j < slips && linearisedAt; j++) ratio[i] += slope[i][j] * (v[j] - where[j]);
+    muPhiVector(where, a, muPhi, slope);
+    for (int i = 0; i < slips; i++) for (int j = 0; j < slips && linearisedAt; j++) muPhi[i] += slope[i][j] * (v[j] - where[j]);
     for (int i = 0; i < slips; i++) {
-      f.t[1 + i] = ratio[i] * f.t[0];                              // (11), (12): t_T = -mu phi(v_T) t_N
-      f.slope[1 + i][0] = ratio[i] * f.slope[0][0];
+      f.t[1 + i] = muPhi[i] * f.t[0];                              // (12): -t_T = mu_f phi(v_T) abs(t_N)
+      f.slope[1 + i][0] = muPhi[i] * f.slope[0][0];
       f.slope[0][1 + i] = 0;
       for (int j = 0; j < slips; j++) f.slope[1 + i][1 + j] = slope[i][j] * f.t[0] / dt;
     }

@@ -20,9 +20,9 @@ static void setLaw(double exponent, double slipVelocity, double bridge, double s
   problem.sticksBelow = sticksBelow;
 }
 
-static void tractions(Reals qa, Reals place, Reals k, Ints of, Ints sticks, Reals muStatic, Reals muDynamic, double dt, long where,
+static void tractions(Reals vN0, Reals place, Reals k, Ints of, Ints sticks, Reals muStatic, Reals muDynamic, double dt, long where,
                       Reals t, Reals stiff, Reals drag, Reals coupling) {
-  const int n = qa.n, kinds = 1 + law.slips;
+  const int n = vN0.n, kinds = 1 + law.slips;
   law.where = where;
   law.dt = dt;
   for (int i = 0; i < n; i++) {
@@ -30,7 +30,7 @@ static void tractions(Reals qa, Reals place, Reals k, Ints of, Ints sticks, Real
     double x[3];
     Forces f;
     for (int c = 0; c < kinds; c++) x[c] = place[c * n + i];
-    law.at({qa[i], k[i], muStatic[s], muDynamic[s], sticks[i] == 1}, x, nullptr, f);
+    law.at({vN0[i], k[i], muStatic[s], muDynamic[s], sticks[i] == 1}, x, nullptr, f);
     for (int c = 0; c < kinds; c++) t[c * n + i] = f.t[c];
     stiff[i] = f.slope[0][0];
     for (int c = 1; c < kinds; c++) { coupling[(c - 1) * n + i] = f.slope[c][0];  drag[(c - 1) * n + i] = f.slope[c][c]; }

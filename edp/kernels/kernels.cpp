@@ -52,9 +52,9 @@ static void addBodies() {
   add("kernelVolume", +[](Ints cellOfPoint, Reals carried, Reals star, Reals now, Reals dBase, Reals lag) {
     body.cells(copied<int>(cellOfPoint), {carried, star, now, dBase, lag});
   });
-  add("kernelForces", +[](Reals d, Reals history, Reals deadLoad, double massScale, double rate, long where, bool breaks, bool carries,
-                          Reals residual) {
-    return long(body.forces(d, history, deadLoad, {massScale, rate, int(where), breaks, carries}, deformation, residual));
+  add("kernelForces", +[](Reals d, Reals inertiaKnown, Reals bodyForce, double massScale, double rate, long where, bool breaks,
+                          bool carries, Reals residual) {
+    return long(body.forces(d, inertiaKnown, bodyForce, {massScale, rate, int(where), breaks, carries}, deformation, residual));
   });
   add("kernelEnergy", +[](Reals C, Reals W) { body.energies(C, W); });
   add("kernelDamp", +[](Reals C0, Reals C1, double dt) { body.damp(C0, C1, dt); });

@@ -97,7 +97,7 @@ def equations(prefix: str = "") -> str:
             if match := EQUATION.search(line):
                 if line[:match.start()].strip():                     # code, not prose
                     found.setdefault(match[1], []).append((path, number, line[match.end():].strip()))
-    text = "| equation | line | |\n|---|---|---|\n"
+    text = "| equation | line | what stands there |\n|---|---|---|\n"
     for marks, places in sorted(found.items(), key=lambda each: int(re.search(r"\d+", each[0])[0])):
         links = ", ".join(f"[{path.parent.name}/{path.name}:{number}]({prefix}{path.relative_to(ROOT)}#L{number})"
                           for path, number, _ in places)
