@@ -153,6 +153,7 @@ def test_table_and_figure(fake, tmp_path, capsys):
     assert (out / "sweep.toml").read_text() == DRAWN and plt.imread(out / "sweep.png").std() > 0
     said = capsys.readouterr().out
     assert "6 of 6 points finished" in said and "ν = 0.3: contact time over speed" in said and "no error bars" in said
+    assert "\nunits: speed m/s, contact_time s" in said
     assert all(results.read_scene(folder)["mesh_size"] == 0.02 for folder in (out / "runs").iterdir())
 
 

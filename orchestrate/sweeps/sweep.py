@@ -23,6 +23,7 @@ import argparse
 import fcntl
 import itertools
 import os
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -34,6 +35,7 @@ import pandas as pd
 from .. import scene
 from ..input import parameters
 from ..failure import BadInput, Busy, Failure, Unreadable, brief
+from ..freefem.describe import describe_results
 from ..input.parameters import Value
 from ..output.folder import result_folder
 from ..places import COMMAND, RESULTS, shown
@@ -309,6 +311,13 @@ def table(wanted: Sweep, out: Path) -> pd.DataFrame:
     return rows
 
 
+def _units(wanted: Sweep, names: list[str]) -> str:
+    """The units of columns of sweep.csv: parameters' and those of the summary, as they stand there."""
+    said = describe_results(script=wanted.sample.script)["meanings"]["summary"]
+    units = {name: said[key][0] if (key := re.sub("_[0-9]+$", "", name)) in said else sweep_figures.unit_of(name) for name in names}
+    return "units: " + ", ".join(f"{name} {unit}" for name, unit in units.items() if unit not in ("", "-", "1"))
+
+
 def report(wanted: Sweep, rows: pd.DataFrame, out: Path) -> str:
     """What was found, point by point where the table is short, failures with their reasons, where the files are."""
     lines = [wanted.title]
@@ -319,7 +328,7 @@ def report(wanted: Sweep, rows: pd.DataFrame, out: Path) -> str:
             if wanted.refine:
                 text[name] += ["" if np.isnan(error) else f" ± {error:.0e}" for error in rows[f"{name}_error"]]
         lines += [study.table(text, {name: "g" if name in wanted.axes and pd.api.types.is_numeric_dtype(rows[name]) else ""
-                                     for name in text}), ""]
+                                     for name in text}), _units(wanted, list(text)), ""]
     failed = rows[rows.exit != 0]
     for (code, message), group in failed.groupby(["exit", "message"], sort=False):
         where = "; ".join(study.place(Path(), point).name for point in group[wanted.axes].to_dict("records"))

@@ -156,8 +156,13 @@ def _value(name: str, value) -> str:
         return LAWS.get(value, value)
     if value == "auto":
         return f"{_words(name)} auto"
-    unit = parameter.unit if (parameter := _parameter(name)) else "-"
+    unit = unit_of(name)
     return f"{_words(name)} = {value:g}" + f" {unit}" * (unit != "-")
+
+
+def unit_of(name: str) -> str:
+    """The unit of a parameter, "-" of what has none."""
+    return parameter.unit if (parameter := _parameter(name)) else "-"
 
 
 def _groups(sweep, rows: pd.DataFrame, key: str) -> Iterator[tuple[str, pd.DataFrame]]:
