@@ -190,6 +190,7 @@ def shapes(series: list[tuple[float, Path]], scene: dict[str, Value], field: str
     left, right, low, high = view = down_the_slope(limits(found), rigid)
     columns = 3 if right - left < 3 * (high - low) else 2
     moves = any(one.velocity.any() for one in rigid)
+    label += " in the plane z = 0" if scene["script"] in (dimension.SOLID.script, *dimension.SOLID.cases) else ""
 
     def behind(axes: plt.Axes, times: list[float], places: list[np.ndarray]) -> None:
         for t, at in zip(times, [[place] for place in places]) if moves else [(0.0, places)]:
