@@ -43,9 +43,9 @@ def test_every_warning_is_listed():
 
 
 def test_readme_is_one_page_and_its_scene_is_sound(tmp_path):
-    """At most 130 lines and 1,200 words; the scene that it shows is accepted as it stands."""
+    """At most 130 lines and, beside the table of equations, 950 words; the scene that it shows is accepted as it stands."""
     text = (ROOT / "README.md").read_text()
-    assert text.count("\n") <= 130 and len(text.split()) <= 1200
+    assert text.count("\n") <= 130 and len(text.replace(pages.equations(), "").split()) <= 950
     path = tmp_path / "drop.toml"
     path.write_text(re.search(r"```\n(title = .*?)```", text, re.DOTALL)[1])
     assert len(scene.load(str(path)).bodies) == 1

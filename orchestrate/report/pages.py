@@ -101,7 +101,7 @@ def equations(prefix: str = "") -> str:
     for marks, places in sorted(found.items(), key=lambda each: int(re.search(r"\d+", each[0])[0])):
         links = ", ".join(f"[{path.parent.name}/{path.name}:{number}]({prefix}{path.relative_to(ROOT)}#L{number})"
                           for path, number, _ in places)
-        text += f"| {marks} | {links} | {cell(places[0][2])} |\n"
+        text += f"| {marks} | {links} | {cell('; '.join(words for _, _, words in places))} |\n"
     return text
 
 
