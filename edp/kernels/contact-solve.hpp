@@ -22,6 +22,8 @@ void dgetrf_(const int *, const int *, double *, const int *, int *, int *);
 void dgetrs_(const char *, const int *, const int *, const double *, const int *, const int *, double *, const int *, int *);
 void dpotrf_(const char *, const int *, double *, const int *, int *);
 void dpotri_(const char *, const int *, double *, const int *, int *);
+void spotrf_(const char *, const int *, float *, const int *, int *);
+void spotri_(const char *, const int *, float *, const int *, int *);
 }
 
 namespace contact {
@@ -36,6 +38,16 @@ inline double largest(const Vector &a) {
   double m = 0;
   for (double v : a) if (!(std::abs(v) <= m)) { m = std::abs(v);  if (m != m) return m; }
   return m;
+}
+template <class Real> bool invert(int n, std::vector<Real> &A, void (*factor)(const char *, const int *, Real *, const int *, int *),
+                                  void (*inverse)(const char *, const int *, Real *, const int *, int *)) {
+  // symmetric A; false where it is not positive definite
+  int info;
+  factor("L", &n, A.data(), &n, &info);
+  if (info != 0) return false;
+  inverse("L", &n, A.data(), &n, &info);
+  for (int j = 0; j < n; j++) for (int i = j + 1; i < n; i++) A[(size_t)n * i + j] = A[(size_t)n * j + i];
+  return true;
 }
 inline bool isDiagonal(const Vector &A, int n) { return n > 1 && A.size() == (size_t)n; }
 inline void symmetric(const Vector &A, const Vector &x, Vector &y) {     // y = A x
@@ -127,7 +139,15 @@ class Newton {
   bool made = false;
   Vector D;                                                        // that it is of
   void forget() { made = false;  iterations = 0;  numeric.reset(); }
-  void stiffened(const Vector &S) { rounded.assign(S.begin(), S.end()); }
+  void stiffen(const Vector &C, Vector &S) {                       // S = C^-1; in single precision where iterations are to read it
+    const int size = std::lround(std::sqrt((double)C.size()));
+    S.clear();
+    rounded.assign(C.begin(), C.end());
+    if (size > mostDense && invert(size, rounded, spotrf_, spotri_)) return;
+    S = C;
+    invert(size, S, dpotrf_, dpotri_);
+    rounded.assign(S.begin(), S.end());
+  }
   bool fits(const Rows &B) const { return made && n == B.n && D.size() == (size_t)B.blocks() * B.kinds * B.kinds; }
 
   void make(Rows &B, const Vector &slopes, const Vector &S) {
@@ -168,7 +188,7 @@ class Newton {
     B.pattern();
     P.resize(B.start[n]);
     for (int j = 0; j < n; j++) for (int e = B.start[j]; e < B.start[j + 1]; e++)
-      P[e] = isDiagonal(S, n) ? (B.row[e] == j) * S[j] : S[(size_t)n * j + B.row[e]];
+      P[e] = isDiagonal(S, n) ? (B.row[e] == j) * S[j] : rounded[(size_t)n * j + B.row[e]];
     B.stiffness(D, [&](int t, int, int, double K) { P[B.place[t]] += K; });
     umfpack_di_numeric(B.start.data(), B.row.data(), P.data(), B.symbolic.get(), &made, nullptr, nullptr);
     numeric.reset(made, [](void *s) { umfpack_di_free_numeric(&s); });
@@ -218,8 +238,8 @@ class Problem {
   double enough = 0, sticksBelow = 0;
   int inverses = 0, mostTurns = 4, agreeingFrom = 20;              // inverses, before plain Newton with a line search takes over
 
-  void compliance(int n, const double *given) { C.assign(given, given + (size_t)n * n);  S.clear(); }
-  void looseness(int n, const double *given) { C.assign(given, given + n);  S.clear(); }   // diagonal
+  void compliance(int n, const double *given) { C.assign(given, given + (size_t)n * n);  stiff = false; }
+  void looseness(int n, const double *given) { C.assign(given, given + n);  stiff = false; }   // diagonal
 
   int solve(long mostInverses, long &inversesOfStep) {
     // Newton; with friction on the linearised law, and with a matrix that serves on near the end and at the start of the next solve.
@@ -257,19 +277,14 @@ class Problem {
   }
 
  private:
+  bool stiff = false;                                              // S is C^-1
   Vector C, S, x, t, slopes, unbalance, step, move, sigma;
 
-  static int order(const Vector &A) { return std::lround(std::sqrt((double)A.size())); }
   void stiffen() {                                                 // S = C^-1
-    const int n = order(C);
-    int info;
-    if (isDiagonal(C, B.n)) { S = C;  for (double &s : S) s = 1 / s;  return; }
-    if (n == 0 || S.size() == C.size()) return;
-    S = C;
-    dpotrf_("L", &n, S.data(), &n, &info);
-    dpotri_("L", &n, S.data(), &n, &info);
-    for (int j = 0; j < n; j++) for (int i = j + 1; i < n; i++) S[(size_t)n * i + j] = S[(size_t)n * j + i];
-    newton.stiffened(S);
+    if (stiff || C.empty()) return;
+    stiff = true;
+    if (isDiagonal(C, B.n)) { S = C;  for (double &s : S) s = 1 / s; }
+    else newton.stiffen(C, S);
   }
   void comply(const Vector &f, Vector &way) const {                // B C B^T f
     Vector g, y;
