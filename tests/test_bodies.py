@@ -358,6 +358,8 @@ def test_built_in_scenes_are_assembled(name):
 BAD = [
     ([("body.2.youngg", 1)], "body.2.youngg: '1' belongs to no such key; did you mean young? (accepted: name, shape, position"),
     ([("bodies", 1)], "bodies: '1' belongs to no such key; did you mean modes or body? (accepted: title, script, dimension, body"),
+    ([("friction_static", 1)], "friction_static: '1' belongs to no such key; did you mean contact.friction_static? (accepted: title,"),
+    ([("radius", 1)], "radius: '1' belongs to no such key; did you mean body.1.radius? (accepted: title,"),
     ([("contact.penality", 1)], "contact.penality: '1' belongs to no such key; did you mean penalty?"),
     ([("body.2.young", "soft")], "body.2.young: 'soft' is not a number (accepted: 1e-06 to 1e+18)"),
     ([("body.2.nu", 0.6)], "body.2.nu: 0.6 is out of range (accepted: 0 to 0.5)"),

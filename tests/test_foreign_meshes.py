@@ -500,6 +500,27 @@ def test_names_come_before_numbers(tmp_path):
     assert ((m.points[m.edges, 1].max(axis=1) == 0) == (m.labels == 1)).all() and set(m.labels) == {1, 3}
 
 
+@pytest.mark.parametrize("version", [2.2, 4.1])
+@pytest.mark.parametrize("names", [("contact", "bottom"), ("bottom", "contact"), ("contact", "symmetry")])
+def test_lines_in_two_groups(tmp_path, version, names):
+    """A line that is in `contact` and in another group may touch, whatever their order; one in `symmetry`, too, is refused."""
+    with mesh.gmsh_session() as gmsh:
+        gmsh.model.occ.addRectangle(0, 0, 0, 0.1, 0.1)
+        gmsh.model.occ.synchronize()
+        for name in names:
+            gmsh.model.addPhysicalGroup(1, [1, 2, 3, 4] if name == "contact" else [1], name=name)
+        gmsh.model.addPhysicalGroup(2, [1])
+        gmsh.option.setNumber("Mesh.MeshSizeMax", 0.05)
+        gmsh.option.setNumber("Mesh.MshFileVersion", version)
+        gmsh.model.mesh.generate(2)
+        gmsh.write(str(tmp_path / "m.msh"))
+    if "symmetry" in names:
+        with pytest.raises(BadInput, match="both as contact and as symmetry .accepted: one of them"):
+            gmsh_file.load(tmp_path / "m.msh")
+    else:
+        assert set(load(tmp_path / "m.msh").labels) == {mesh.FREE}
+
+
 HEAD = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"
 NODES = "$Nodes\n4\n1 0 0 0\n2 0.1 0 0\n3 0.1 0.1 {z}\n4 0 0.1 0\n$EndNodes\n"
 

@@ -1,6 +1,7 @@
 """What small obstacles, corners and edges do: elements that resolve them, contact that begins when they touch, penetration that is measured, words that name them."""
 
 import math
+import re
 import tomllib
 from pathlib import Path
 
@@ -35,6 +36,41 @@ def go(tmp_path, *tables, **more) -> run.RunResult:
 
 def said(found: run.RunResult, name: str) -> list[str]:
     return [one for one in found.summary["warnings"] if one.startswith(name + ": ")]
+
+
+@pytest.mark.parametrize("change", [{}, {"velocity": [0, -0.08]}, {"shape": "disc", "radius": 0.05, "position": [0, 0.0501]}], ids=str)
+def test_the_peak_of_a_face_that_strikes_flat_is_named(tmp_path, change):
+    """Its points strike at once: the first steps have a force of the penalty's own, beside rho c v on the face, of plane waves, which the warning tells to a fifth.
+    Of a disc, whose contact grows, there is no such word."""
+    block = {"name": "block", "shape": "rectangle", "width": 0.2, "height": 0.1, "position": [0, 0.05], "velocity": [0, -0.8]}
+    if "radius" in change:
+        block = {"velocity": block["velocity"]}
+    found = go(tmp_path, block | change, FLOOR, accuracy=0.02, density=1000)
+    warned, (flat, *_) = said(found, "peak force"), [*said(found, "peak force"), ""]
+    assert bool(warned) == ("radius" not in change)
+    if warned:
+        speed = -(block | change)["velocity"][1]
+        exact = 0.2 * speed * math.sqrt(1000 * 7e6 * 0.7 / (1.3 * 0.4))
+        assert float(re.search(r"the force is at most (\S+) N/m", flat)[1]) == pytest.approx(exact, rel=0.2) and found.summary["peak_force"] > 1.8 * exact
+
+
+def test_a_normal_impact_does_not_creep(tmp_path):
+    """Round-off moves a body along the plane, and its points less: nothing creeps."""
+    assert not said(go(tmp_path, DISC | {"position": [0, 0.0501]}, FLOOR, accuracy=0.02, contact={"friction_static": 0.3}), "creep")
+
+
+def test_what_turns_strikes_by_its_spin(tmp_path):
+    """A rod that spins towards a peg meets it at the speed of its point there."""
+    rod = {"name": "rod", "shape": "rectangle", "width": 0.4, "height": 0.02, "position": [0, 0], "spin": 50}
+    one, = [each for each in approach.meetings(scene(rod, {"name": "peg", "kind": "circle", "centre": [0.15, 0.06], "radius": 0.01})) if each.time < 0.01][:1]
+    assert 0.15 * 50 < one.closing < 0.17 * 50 and one.time == pytest.approx(0.0051, abs=3e-4)
+
+
+def test_two_discs_that_meet_head_on_part_so(tmp_path):
+    """Soft rubber on steel: single points touch last, somewhere, and do not turn the angle of reflection."""
+    rubber = {"name": "rubber", "shape": "disc", "radius": 0.05, "young": 1e6, "nu": 0.49, "position": [0, 0.101], "velocity": [0, -3]}
+    steel = {"name": "steel", "shape": "disc", "radius": 0.05, "young": 2.1e11, "density": 7850, "position": [0, 0]}
+    assert go(tmp_path, [rubber, steel], [], accuracy=0.02, density=1000).summary["angle_out"] == pytest.approx(90, abs=0.2)
 
 
 @pytest.mark.parametrize("radius", [0.01, 0.005, 0.0025, 0.001])

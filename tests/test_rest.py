@@ -128,6 +128,12 @@ def test_a_pull_to_the_side_is_one(tmp_path):
     assert found.summary["ended"] == "rest" and not any(said.startswith("not over") for said in found.summary["warnings"])
 
 
+def test_what_is_set_down_comes_to_rest(tmp_path):
+    """On the plane from the start, it needs no end_time."""
+    found = bodies(tmp_path, pulled({"shape": "disc", "radius": 0.05, "position": [0.0, 0.05]}, [0.0, 1.0], gravity=9.81))
+    assert found.summary["ended"] == "rest"
+
+
 @pytest.mark.parametrize("shape, friction, said", [
     ({"shape": "rectangle", "width": 0.06, "height": 0.04, "angle": -30.0}, 0.3, "30 degrees to the pull: friction_static 0.3 holds up to 17"),
     ({"shape": "disc", "radius": 0.02}, 0.7, "30 degrees to the pull: what is round rolls down any")], ids=["slides", "rolls"])

@@ -121,6 +121,12 @@ def test_contact_that_is_not_over_is_measured_to_the_end(disc):
     assert 0.95 * 2e-3 < outcome.summary["thresholded_contact_time"] <= 2e-3 and found(outcome, "contact time") == []
 
 
+@pytest.mark.parametrize("speed, gravity", [(8, 0), (8, 9.81), (0, 9.81)])
+def test_an_impact_that_is_not_over_is_named_under_gravity_too(disc, speed, gravity):
+    """At the end_time it is in contact, and the force far above the weight; what lies on the plane is as it should be."""
+    assert bool(found(disc(COARSE | dict(speed=speed, gravity=gravity, end_time=2e-3)), "not over")) == (speed > 0)
+
+
 def test_no_contact_no_contact_time(disc):
     """A flight has neither contact time, and no warning; nor has one whose energy is less than the round-off of its balance."""
     assert [each.split(":")[0] for each in disc(COARSE | dict(speed=0, spin=1e-13, height=1, end_time=1e-3)).summary["warnings"]] == ["no contact"]

@@ -17,15 +17,16 @@ SHORTEST = 1e-9              # m
 
 
 class Table:
-    """The entries `given` of the table `path` ("body.2", "" at the top), of which only the keys `accepted` may be there. Every BadInput
-    names path.key, the value and what is accepted."""
+    """The entries `given` of the table `path` ("body.2", "" at the top), of which only the keys `accepted` may be there; `elsewhere`: the
+    full names of others. Every BadInput names path.key, the value and what is accepted."""
 
-    def __init__(self, path: str, given: dict, accepted: Sequence[str]):
+    def __init__(self, path: str, given: dict, accepted: Sequence[str], elsewhere: dict[str, str] | None = None):
         if not isinstance(given, dict):
             raise BadInput(f"{path}: '{brief(given)}' is no table (accepted: a table with {', '.join(accepted)})")
         for key, value in given.items():
             if key not in accepted:
-                close = difflib.get_close_matches(key, accepted, n=2)
+                meant = (elsewhere or {}).get(key)
+                close = [meant] if meant else difflib.get_close_matches(key, accepted, n=2)
                 hint = f"; did you mean {' or '.join(close)}?" if close else ""
                 raise BadInput(f"{_at(path, brief(key))}: '{brief(value)}' belongs to no such key{hint} (accepted: {', '.join(accepted)})")
         self.path, self.given = path, given

@@ -63,7 +63,8 @@ def draw(table: np.recarray, names: list[str], rigid: list[str]) -> plt.Figure |
     top.set(ylabel="restitution", ylim=(min(0.0, top.get_ylim()[0]), max(1.05, top.get_ylim()[1])))
     top.axhline(1, color=GREY, linewidth=0.6)
     top.legend(ncols=2, loc="lower center", bbox_to_anchor=(0.5, 1))
-    below.set(xlabel="start of the contact [ms]", ylabel="speed before [m/s]", ylim=(0, 1.1 * below.get_ylim()[1]))
+    low, high = below.get_ylim()
+    below.set(xlabel="start of the contact [ms]", ylabel="speed before [m/s]", ylim=(min(0.0, low), 1.1 * high))
     return figure
 
 

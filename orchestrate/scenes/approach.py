@@ -90,8 +90,7 @@ def _rebound(scene: Scene, one: Meeting) -> Scene | None:
             continue
         body = scene.bodies[k]
         shape = one.outlines[0 if k == one.first else 1]
-        arm = point - shape.area_centre
-        lever, mass = arm[0] * n[1] - arm[1] * n[0], body.density * shape.area
+        lever, mass = _lever(shape, point, n), body.density * shape.area
         yields += (1 + lever**2 / shape.gyration) / mass
         closing -= sign * ((body.velocity + fall) @ n + body.spin * lever)
         hit.append((sign, k, shape, lever, mass))
@@ -132,7 +131,20 @@ def _meeting(scene: Scene, first: int, second: int) -> Meeting:
     if not met:                                                # what lets them meet later may turn them in any direction
         return Meeting(first, second, outlines, float(np.linalg.norm(velocity)), 0.0, float(np.linalg.norm(pull)), 0.0, float(radius),
                        math.inf, normal, never)
-    return Meeting(first, second, outlines, *_parts(velocity, normal), *_parts(pull, normal), float(radius), t, normal)
+    one = Meeting(first, second, outlines, *_parts(velocity, normal), *_parts(pull, normal), float(radius), t, normal)
+    if scene.dimension is not PLANE_STRAIN:
+        return one
+    point, spun = _middle(one), velocity @ normal              # of the points that touch: what turns strikes by its spin, too
+    for sign, each, shape in zip((1, -1), (body, other), outlines):
+        if isinstance(each, Body) and abs(lever := _lever(shape, point, normal)) > ECCENTRIC * shape.reach:
+            spun += sign * each.spin * lever
+    return replace(one, closing=float(abs(spun)))
+
+
+def _lever(shape: Shape, point: np.ndarray, n: np.ndarray) -> float:
+    """How far from its centre a force along n at a point of it goes by [m]."""
+    arm = point - shape.area_centre
+    return arm[0] * n[1] - arm[1] * n[0]
 
 
 def turned(scene: Scene) -> Scene:
@@ -163,7 +175,7 @@ def refuse_nothing(scene: Scene, met: list[Meeting]) -> None:
     if scene.values["end_time"] == 0 and all(one.never for one in met):
         raise BadInput("end_time: 0 is the end of the contact, but nothing ever touches: the bodies miss each other and every obstacle "
                        "(accepted: an end_time > 0, or velocities and positions that lead them together)")
-    for one in met if scene.values["end_time"] == 0 else []:
+    for one in met if scene.values["end_time"] == 0 and scene.values["until"] != "rest" else []:
         body = scene.bodies[one.first]
         if one.second < 0 and one.time == 0 and one.closing == 0 and not np.any(body.spin) and _fall(scene) @ one.normal < 0:
             raise BadInput(f"end_time: 0 is the end of the contact, but '{body.name}' is set down on "

@@ -162,7 +162,7 @@ class Asker:
         along, across, pressing, pulling = (float(f"{max((getattr(one, name) for one in self.met), default=0.0):.6g}")
                                             for name in ("closing", "sliding", "pressing", "pulling"))
         soft = min(bodies, key=lambda body: body.young)
-        asked = {name: self.scene.values[name] for name in ("accuracy", "accuracy_of", "end_time")}
+        asked = {name: self.scene.values[name] for name in ("accuracy", "accuracy_of", "end_time", "until")}
         asked |= {"exponent": self.scene.contact["exponent"], "young": soft.young, "nu": soft.nu, "density": soft.density,
                   "radius": radius, "symmetry": "full", "speed": along, "angle": 90.0, "spin": 0.0, "gravity": pressing}
         if slides:

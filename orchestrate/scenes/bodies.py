@@ -72,6 +72,12 @@ def read(tables: list[dict], top: dict, folder: Path, dimension: Dimension = PLA
     return [_body(f"body.{k}", given, top, folder, GEOMETRY[dimension]) for k, given in enumerate(tables, 1)]
 
 
+def keys_of(dimension: Dimension) -> set[str]:
+    """The entries that some body of a dimension may have."""
+    geometry = GEOMETRY[dimension]
+    return {*COMMON, *geometry.MOTION, *(key for keys in geometry.SHAPES.values() for key in keys)}
+
+
 def _body(path: str, given: dict, top: dict, folder: Path, geometry: ModuleType) -> Body:
     shapes = "|".join(geometry.SHAPES)
     if "shape" not in given:

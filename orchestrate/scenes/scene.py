@@ -192,7 +192,8 @@ def _of_tables(given: dict, folder: Path, name: str) -> Scene:
     """That of bodies in tables."""
     of = dimension.of(given)
     own = ("symmetry",) if of is SOLID else ()
-    table = Table("", given, ("title", "script", "dimension", *own, "body", "obstacle", "contact", *MATERIAL, *SIZES, *RUN))
+    table = Table("", given, ("title", "script", "dimension", *own, "body", "obstacle", "contact", *MATERIAL, *SIZES, *RUN),
+                  {key: f"body.1.{key}" for key in bodies.keys_of(of)} | {key: f"contact.{key}" for key in CONTACT})
     all_bodies = bodies.read(listed(given, "body"), given, folder, of)
     if not all_bodies:
         raise BadInput("body: is missing (accepted: one table [[body]] or more)")
