@@ -1,5 +1,6 @@
 """Shared by the tests: a stand-in for FreeFem++, and finished-looking folders made without it."""
 
+import shlex
 import signal
 import sys
 
@@ -14,7 +15,7 @@ signal.signal(signal.SIGINT, signal.default_int_handler)   # a shell lets what i
 def fake(tmp_path, monkeypatch):
     """Puts the stand-in in the place of FreeFem++; fake(mode) picks what it does, fake.starts() counts its runs."""
     program, count = tmp_path / "FreeFem++", tmp_path / "starts"
-    program.write_text(f'#!/bin/sh\nexec {sys.executable} {fake_freefem.__file__} "$@"\n')
+    program.write_text(f'#!/bin/sh\nexec {shlex.join([sys.executable, fake_freefem.__file__])} "$@"\n')
     program.chmod(0o755)
     monkeypatch.setenv("FREEFEM", str(program))
     monkeypatch.setenv("FAKE_REAL", fake_freefem.REAL)

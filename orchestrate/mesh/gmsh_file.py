@@ -63,11 +63,14 @@ def taken(model) -> mesh.Mesh:
         number = {int(tag): k for k, tag in enumerate(used)}
         labelled = {}
         for a, b, label in curves:                       # of a line in several groups the one that says something
-            edge = frozenset((number.get(a, -1), number.get(b, -1)))
+            if a not in number or b not in number:       # beside all triangles
+                continue
+            edge = frozenset((number[a], number[b]))
             if {label, labelled.get(edge)} == set(LABELS.values()):
                 raise BadInput(f"its physical curves ({_names(model)}) have the line of nodes {a} and {b} both as contact and as symmetry "
                                f"(accepted: one of them)")
-            labelled[edge] = label if labelled.get(edge, OTHER) == OTHER else labelled[edge]
+            if labelled.get(edge, OTHER) == OTHER:
+                labelled[edge] = label
         labels = np.array([labelled.get(frozenset(edge), OTHER) for edge in edges.tolist()], dtype=int)
         if not (labels == mesh.FREE).any():
             raise BadInput(f"none of its physical curves ({_names(model)}) has the name 'contact', or without a name the number "

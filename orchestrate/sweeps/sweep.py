@@ -315,7 +315,8 @@ def _units(wanted: Sweep, names: list[str]) -> str:
     """The units of columns of sweep.csv: parameters' and those of the summary, as they stand there."""
     said = describe_results(script=wanted.sample.script)["meanings"]["summary"]
     units = {name: said[key][0] if (key := re.sub("_[0-9]+$", "", name)) in said else sweep_figures.unit_of(name) for name in names}
-    return "units: " + ", ".join(f"{name} {unit}" for name, unit in units.items() if unit not in ("", "-", "1"))
+    found = ", ".join(f"{name} {unit}" for name, unit in units.items() if unit not in ("", "-", "1"))
+    return f"units: {found}" if found else "units: none"
 
 
 def report(wanted: Sweep, rows: pd.DataFrame, out: Path) -> str:
