@@ -70,13 +70,20 @@ struct Rows {
   int n = 0, points = 0, kinds = 1;
   Indices first{0}, column, owner;                                 // of a point its entries; of an entry its column and point
   Vector value, spring;                                            // kinds an entry; stiffness c of the springs
-  // entries of K and the diagonal by columns; where those of stiffness() are
-  Indices start, row, place;
-  std::shared_ptr<void> symbolic;                                  // what UMFPACK makes of that
+  // of rows whose entries stand at `first`, `column`: entries of K and the diagonal by columns; where those of stiffness() are; what UMFPACK
+  // makes of that
+  struct Pattern { Indices first, column, start, row, place;  std::shared_ptr<void> symbolic; };
+  std::shared_ptr<const Pattern> pattern;
 
   int blocks() const { return first.size() - 1; }
   int entries(int b) const { return first[b + 1] - first[b]; }
-  void begin(int unknowns, int kindsOfPoint) { *this = Rows();  n = unknowns;  kinds = kindsOfPoint; }
+  void begin(int unknowns, int kindsOfPoint) {
+    const std::shared_ptr<const Pattern> known = pattern;
+    *this = Rows();
+    n = unknowns;
+    kinds = kindsOfPoint;
+    pattern = known;
+  }
   void entry(int j, int kind, double v) {                          // of the point that is being built
     const int e = std::find(column.begin() + first.back(), column.end(), j) - column.begin();
     if (e == (int)column.size()) { column.push_back(j);  owner.push_back(blocks());  value.resize(value.size() + kinds, 0.); }
@@ -115,20 +122,19 @@ struct Rows {
       }
     }
   }
-  void pattern() {
-    if (symbolic) return;
+  void makePattern() {
+    if (pattern && pattern->start.size() == (size_t)n + 1 && pattern->first == first && pattern->column == column) return;
     Indices I, J;
-    void *made = nullptr;
+    void *symbolic = nullptr;
     for (int b = 0; b < blocks(); b++)
       for (int e = first[b]; e < first[b + 1]; e++)
         for (int o = first[b]; o < first[b + 1]; o++) { I.push_back(column[o]);  J.push_back(column[e]); }
     for (int j = 0; j < n; j++) { I.push_back(j);  J.push_back(j); }
-    start.resize(n + 1);
-    row.resize(I.size());
-    place.resize(I.size());
-    umfpack_di_triplet_to_col(n, n, I.size(), I.data(), J.data(), nullptr, start.data(), row.data(), nullptr, place.data());
-    umfpack_di_symbolic(n, n, start.data(), row.data(), nullptr, &made, nullptr, nullptr);
-    symbolic.reset(made, [](void *s) { umfpack_di_free_symbolic(&s); });
+    Pattern made{first, column, Indices(n + 1), Indices(I.size()), Indices(I.size()), nullptr};
+    umfpack_di_triplet_to_col(n, n, I.size(), I.data(), J.data(), nullptr, made.start.data(), made.row.data(), nullptr, made.place.data());
+    umfpack_di_symbolic(n, n, made.start.data(), made.row.data(), nullptr, &symbolic, nullptr, nullptr);
+    made.symbolic.reset(symbolic, [](void *s) { umfpack_di_free_symbolic(&s); });
+    pattern = std::make_shared<const Pattern>(std::move(made));
   }
 };
 
@@ -138,7 +144,7 @@ class Newton {
   int mostDense = 200, mostIterations = 10;                        // unknowns that are solved with densely; iterations with an older P
   bool made = false;
   Vector D;                                                        // that it is of
-  void forget() { made = false;  iterations = 0;  numeric.reset(); }
+  void forget() { made = false;  numeric.reset(); }
   void stiffen(const Vector &C, Vector &S) {                       // S = C^-1; in single precision where iterations are to read it
     const int size = std::lround(std::sqrt((double)C.size()));
     S.clear();
@@ -154,10 +160,10 @@ class Newton {
     D = slopes;
     n = B.n;
     dense = n <= mostDense && !isDiagonal(S, n);
-    if (dense || isDiagonal(S, n) || iterations > mostIterations) forget();
-    if (dense) factorDense(B, S);
-    else if (!numeric) factorSparse(B, S);
     made = true;
+    if (dense) return factorDense(B, S);
+    B.makePattern();
+    if (!numeric || pattern != B.pattern || iterations > mostIterations) factorSparse(B, S);
   }
   void solve(const Rows &B, const Vector &f, const Vector &S, double goal, Vector &y) {   // to a rest of norm goal [N]
     const int one = 1;
@@ -168,12 +174,13 @@ class Newton {
   }
 
  private:
-  int n = 0, iterations = 0;                                       // of the last solution
+  int n = 0, iterations = 0;                                       // unknowns; of the last solution
   bool dense = false;
   std::vector<float> rounded;                                      // S
   Vector LU, P;                                                    // P: K and, where it has entries, S
   Indices pivots;
-  std::shared_ptr<void> numeric;                                   // the LU of P
+  std::shared_ptr<const Rows::Pattern> pattern;                    // of P
+  std::shared_ptr<void> numeric;                                   // its LU
 
   void factorDense(const Rows &B, const Vector &S) {
     int info;
@@ -183,14 +190,15 @@ class Newton {
     if (n > 0) dgetrf_(&n, &n, LU.data(), &n, pivots.data(), &info);
   }
 
-  void factorSparse(Rows &B, const Vector &S) {
+  void factorSparse(const Rows &B, const Vector &S) {
     void *made = nullptr;
-    B.pattern();
-    P.resize(B.start[n]);
-    for (int j = 0; j < n; j++) for (int e = B.start[j]; e < B.start[j + 1]; e++)
-      P[e] = isDiagonal(S, n) ? (B.row[e] == j) * S[j] : rounded[(size_t)n * j + B.row[e]];
-    B.stiffness(D, [&](int t, int, int, double K) { P[B.place[t]] += K; });
-    umfpack_di_numeric(B.start.data(), B.row.data(), P.data(), B.symbolic.get(), &made, nullptr, nullptr);
+    pattern = B.pattern;
+    const Indices &start = pattern->start, &row = pattern->row;
+    P.resize(start[n]);
+    for (int j = 0; j < n; j++) for (int e = start[j]; e < start[j + 1]; e++)
+      P[e] = isDiagonal(S, n) ? (row[e] == j) * S[j] : rounded[(size_t)n * j + row[e]];
+    B.stiffness(D, [&](int t, int, int, double K) { P[pattern->place[t]] += K; });
+    umfpack_di_numeric(start.data(), row.data(), P.data(), pattern->symbolic.get(), &made, nullptr, nullptr);
     numeric.reset(made, [](void *s) { umfpack_di_free_numeric(&s); });
   }
 
@@ -204,7 +212,8 @@ class Newton {
     y.assign(n, 0.);
     for (iterations = 0; iterations < 200 && norm(left) > goal; iterations++) {
       Vector way(n), image;
-      umfpack_di_solve(UMFPACK_A, B.start.data(), B.row.data(), P.data(), way.data(), left.data(), numeric.get(), control, nullptr);
+      umfpack_di_solve(UMFPACK_A, pattern->start.data(), pattern->row.data(), P.data(), way.data(), left.data(), numeric.get(), control,
+                       nullptr);
       if (isDiagonal(S, n)) symmetric(S, way, image); else symmetric(rounded, way, image);
       B.pull(way, move);
       B.slope(D, move, change);
@@ -245,7 +254,7 @@ class Problem {
     // Newton; with friction on the linearised law, and with a matrix that serves on near the end and at the start of the next solve.
     // Returns the iterations, or -1.
     const int rubs = law.slips > 0;
-    if (!newton.fits(B)) newton.forget();
+    newton.made = newton.fits(B);
     place();
     evaluate(nullptr);
     double biggest = 0, roundOff = 0, errorBefore = newton.made ? 1e300 : 0;

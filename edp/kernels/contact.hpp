@@ -83,17 +83,19 @@ static void setWindow(Ints slots, Ints index, long unknowns, long ns, Ints rowSt
   B.end(copied<double>(springStiffness));
 }
 
-static long solve(Ints slots, Reals q, Reals place, Reals ahead, double dt, long where, double enough, bool known, Ints sticks, Ints turns,
+static long solve(Ints slots, Reals q, Reals place, Reals ahead, double dt, long where, double enough, long known, Ints sticks, Ints turns,
                   Reals k, Reals muStatic, Reals muDynamic, long mostInverses, long &inversesOfStep, Reals tau, Reals force) {
   // Slots of the window; of all slots penetrations at the start, x_w, sides of the jump and how often they changed, stiffness,
-  // coefficients. The springs are unstretched at -ahead. `known`: whether the matrix of the last solve may serve.
+  // coefficients. The springs are unstretched at -ahead. Of the last solve may serve the matrix (known = 2), what preconditions it (1), or
+  // nothing.
   Problem &p = problem;
   const Rows &B = p.B;
   const long points = slots.n, ns = q.n, kinds = B.kinds;
   law.dt = dt;
   law.where = where;
   p.enough = enough;
-  if (!known) p.newton.forget();
+  if (known == 0) p.newton.forget();
+  if (known == 1) p.newton.made = false;
   p.point.resize(points);
   p.turned.resize(points);
   B.pull(copied<double>(ahead), p.start);
