@@ -1,6 +1,7 @@
 """Free flights of rigid bodies, whatever their length, to the first touch, and the end of a run: when they meet nothing any more."""
 
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -173,3 +174,12 @@ def test_what_would_touch_for_ever_is_told(tmp_path):
     assert len(rows) == s["contact_intervals"] == 1 and len(found.history["t"]) == s["steps"] + 1
     for name in ("impulse", "contact_time", "rebound_vy", "vibration_energy", "steps", "max_pressure", "energy_final"):
         assert s[name] == pytest.approx(alone.summary[name], rel=1e-9), name
+
+
+def test_under_gravity_an_impact_ends_with_the_first_flight_that_gravity_bends(tmp_path):
+    """In a bowl a disc would meet the wall again without gravity, too: no flight is marched through that is thrown away afterwards, and the run says when it is back."""
+    bowl = {"kind": "bowl", "centre": [0, 0.3], "radius": 0.3}
+    contacts, found = go(tmp_path, read(DISC | {"position": [0, 0.06], "velocity": [0.5, -4]}, obstacles=(bowl,), gravity=9.81))
+    log = (found.folder / "log.txt").read_text()
+    assert len(contacts) == 1 and max(map(float, re.findall(r"progress \S+ t=(\S+)", log)), default=0) < 0.05
+    assert any(words.startswith("touches again: ") for words in found.summary["warnings"]) and found.summary["cpu_seconds"] < 2
