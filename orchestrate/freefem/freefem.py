@@ -24,6 +24,7 @@ OLDEST = (4, 9)                          # the version in the banner; Debian's 4
 DEBIAN_PLUGINS = "/usr/lib/freefem++"    # where Debian puts the plugins, and its FreeFem++ does not look
 DESCRIBE = "edp/describe.edp"
 CLOCK = ROOT / "edp/clock.c"
+OPEN_FILES = "/proc/self/fd/"
 BANNER = re.compile(r"FreeFem\+\+ v(\d+\.\d\d?)\b")
 SAYS = re.compile(r"progress (\S+) t=(\S+) steps=(\S+)(?: unknowns=(\S+) apart=(\S+))?$")
 UNREAD = 2**20                           # bytes that a process can say while nobody reads; then it waits
@@ -58,9 +59,14 @@ class FreeFem:
         """The command that runs a script."""
         return [self.command, "-nw", "-ne", "-v", "0", str(script), *flags]
 
+    @property
+    def preloaded(self) -> list[int]:
+        """Open files that its environment names."""
+        return [int(number) for number in re.findall(rf"{OPEN_FILES}(\d+)", self.environment.get("LD_PRELOAD", ""))]
+
     def call(self, script: str | Path, *flags: str, **options) -> subprocess.CompletedProcess:
         """A script run to its end; `options` are of subprocess.run."""
-        usual = {"cwd": ROOT, "env": self.environment, "stdin": subprocess.DEVNULL, "capture_output": True}
+        usual = {"cwd": ROOT, "env": self.environment, "stdin": subprocess.DEVNULL, "capture_output": True, "pass_fds": self.preloaded}
         return subprocess.run(self.words(script, *flags), **usual | {"text": True, "errors": "replace"} | options)
 
 
@@ -125,11 +131,9 @@ def _blas_kernels() -> dict[str, str]:
 
 
 def _quick_clock(environment: Mapping[str, str]) -> dict[str, str]:
-    """The preloaded clock() of edp/clock.c, built where it is missing or older; nothing without a compiler, a folder to write in, or on a
-    path that LD_PRELOAD cannot name."""
+    """The preloaded clock() of edp/clock.c, built where it is missing or older; nothing without a compiler or a folder to write in. On a path
+    that LD_PRELOAD, whose names end at blanks and colons, cannot name, it is an open file that processes are handed."""
     library = CLOCK.with_name("libclock.so")
-    if re.search(r"[\s:]", str(library)):
-        return {}
     if not library.exists() or library.stat().st_mtime < CLOCK.stat().st_mtime:
         part = library.with_name(f"{library.name}.{os.getpid()}.part")
         try:
@@ -139,7 +143,8 @@ def _quick_clock(environment: Mapping[str, str]) -> dict[str, str]:
         except (OSError, subprocess.SubprocessError):
             part.unlink(missing_ok=True)
             return {}
-    return {"LD_PRELOAD": ":".join([str(library), *environment.get("LD_PRELOAD", "").split()])}
+    name = f"{OPEN_FILES}{os.open(library, os.O_RDONLY)}" if re.search(r"[\s:]", str(library)) else str(library)
+    return {"LD_PRELOAD": ":".join([name, *environment.get("LD_PRELOAD", "").split()])}
 
 
 def _probe(command: str, environment: dict[str, str]) -> dict | None:
@@ -184,8 +189,8 @@ def start(freefem: FreeFem, script: str, flags: Mapping[str, object], log: Path,
     """
     with open(log, "w") as file, open(os.memfd_create("stderr"), "r+", errors="replace") as errors, subprocess.Popen(
             freefem.words(f"edp/{script}.edp", *words_of(flags)), cwd=ROOT, env=freefem.environment, stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE, stderr=errors, text=True, errors="replace", process_group=0, pass_fds=[] if lock is None else [lock],
-            preexec_fn=partial(die_with_parent, os.getpid(), signal.SIGKILL)) as child:
+            stdout=subprocess.PIPE, stderr=errors, text=True, errors="replace", process_group=0,
+            pass_fds=freefem.preloaded + ([] if lock is None else [lock]), preexec_fn=partial(die_with_parent, os.getpid(), signal.SIGKILL)) as child:
         try:
             with suppress(OSError):
                 fcntl.fcntl(child.stdout, fcntl.F_SETPIPE_SZ, UNREAD)
