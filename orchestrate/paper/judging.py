@@ -68,12 +68,10 @@ class Results:
         """The points of a sweep, from its runs."""
         return sweep.table(loaded(name), self.sweep(name))
 
-    def sweep_runs(self, name: str) -> list[Path]:
-        return [study.place(self.sweep(name), point) for point in loaded(name).runs]
-
     def folders(self, *names: str) -> list[Path]:
         """Those of runs, and of all runs of sweeps."""
-        return [folder for name in names for folder in (self.sweep_runs(name) if name in sweep.built_in() else [self.run(name)])]
+        return [folder for name in names for folder in ([study.place(self.sweep(name), point) for point in loaded(name).runs]
+                                                        if name in sweep.built_in() else [self.run(name)])]
 
     def pair(self, name: str, **values) -> list[Path]:
         """The runs of the point of a sweep with these values: plain and, where the sweep refines, refined."""
