@@ -15,7 +15,8 @@ from ..report.friction_laws import VALUES
 from ..report.impacts import spectrum
 from . import stick_slip
 from ..sweeps import study
-from .judging import CONSTANT, LAWS, OPEN, History, Lost, Results, bar, finished, graded, lost, maxima, of_laws, states, touching
+from ..sweeps.sweep_figures import bars
+from .judging import CONSTANT, LAWS, OPEN, History, Lost, Results, finished, graded, lost, maxima, of_laws, states, touching
 
 JUMP, SPEED, ANGLE = "friction-jump", 12.0, 60.0   # m/s, degrees from the plane: the paper's normal incidence is pi/2
 FLAT = 30.0                 # degrees from the plane, as if the paper's pi/3 were from the normal
@@ -79,17 +80,11 @@ def angles(results: Results, law: str) -> tuple[bool, str]:
     """With a law: where on finished runs they differ by more than a degree and the error bar; neo-Hookean for every ν."""
     rows = finished(results, JUMP if law == "svk" else "oblique")
     rows = rows[(rows.law == law) & (rows.friction_static == STATIC)] if law == "svk" else rows
-    found = [_angle(rows, k) for k in range(len(rows))]
-    return bool(found) and all(abs(out - ANGLE) > APART + error for out, error in found), ", ".join(
-        f"{out:.1f} ± {error:.1g}°" + (f" (ν = {nu:g})" if law != "svk" else "")
-        for (out, error), nu in zip(found, rows.get("nu", [np.nan] * len(rows))))
-
-
-def _angle(rows: pd.DataFrame, k: int) -> tuple[float, float]:
-    """Angle of reflection of the k-th row and its error bar [degrees]."""
-    one = {"index": rows.index[k]}
-    (x, dx), (y, dy) = (bar(rows.assign(index=rows.index), name, **one) for name in ("rebound_vx", "rebound_vy"))
-    return float(np.degrees(np.arctan2(y, x))), float(np.degrees(np.hypot(x * dy, y * dx) / np.hypot(x, y) ** 2))
+    (x, dx), (y, dy) = ((rows[name].to_numpy(), bars(rows, name)) for name in ("rebound_vx", "rebound_vy"))
+    out, error = np.degrees(np.arctan2(y, x)), np.degrees(np.hypot(x * dy, y * dx) / np.hypot(x, y) ** 2)
+    return len(rows) > 0 and bool((abs(out - ANGLE) > APART + error).all()), ", ".join(
+        f"{angle:.1f} ± {off:.1g}°" + (f" (ν = {nu:g})" if law != "svk" else "")
+        for angle, off, nu in zip(out, error, rows.get("nu", [np.nan] * len(rows))))
 
 
 @states("Section 3.1, figure 5a", "the normal force oscillates", JUMP, "disc-oblique-svk/force disc-oblique/force", LOST,

@@ -17,9 +17,8 @@ import numpy as np
 import pandas as pd
 
 from ..output.results import read_frame, read_history, read_scene, read_summary
-from ..sweeps import study
-from ..sweeps import sweep, sweep_figures
 from ..report.impacts import read_modes
+from ..sweeps import study, sweep, sweep_figures
 
 AGREES, DIFFERS, PARTLY, OPEN = "agrees", "does not agree", "partly", "not decided"
 CONSTANT = 1e-9             # of the energy at the start: below, an energy is constant

@@ -136,7 +136,7 @@ def _words(name: str) -> str:
 def _quantity(name: str, per: str = "/m") -> report.Quantity:
     """The row of the report, also of one of several bodies; of what is in none one without a unit."""
     key = re.sub("_[0-9]+$", "", name)
-    return next((quantity for quantity in report.rows(per_metre=bool(per)) if quantity.key == key), report.Quantity(key, key))
+    return next((quantity for quantity in report.rows(per) if quantity.key == key), report.Quantity(key, key))
 
 
 def _unit(name: str, per: str) -> str:
