@@ -8,7 +8,7 @@ Where that law loses ellipticity in a run that decides, its answer depends on th
 whatever the statement is; but not of what every step keeps exactly, on any mesh: the discrete energy and momentum.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import cache, wraps
 from pathlib import Path
@@ -190,6 +190,11 @@ def maxima(values: np.ndarray, least: float) -> int:
             rising, high = True, value
         low, high = min(low, value), max(high, value)
     return count
+
+
+def both(values: Iterable, form: str = "") -> str:
+    """The numbers of both meshes, or steps, in words, each in a format such as ".1f"."""
+    return " and ".join(format(value, form) for value in values)
 
 
 def when(time: float | None, words: str) -> str:

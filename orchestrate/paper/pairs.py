@@ -3,7 +3,7 @@
 
 from pathlib import Path
 
-from .judging import Results, graded, lost, states
+from .judging import Results, both, graded, lost, states
 
 PAIRS = "pairing"
 SAME = 0.01                 # largest difference of rebound velocities over the speed, and of the impulse, for two contacts to be the same
@@ -33,7 +33,7 @@ def search_costs(results: Results) -> tuple[str, str]:
     shares = {pairing: [end["phase_seconds"]["search"] / end["cpu_seconds"] for end in each] for pairing, each in ends.items()}
     dear = [share > DEAR for share in shares["closest-point"]]
     told = "; ".join(f"{words[pairing]} {' and '.join(f'{100 * share:.0f} %' for share in found)} of "
-                     f"{' and '.join(format(end['cpu_seconds'], '.1f') for end in ends[pairing])} s" for pairing, found in shares.items())
+                     f"{both([end['cpu_seconds'] for end in ends[pairing]], '.1f')} s" for pairing, found in shares.items())
     return graded(all(dear), any(dear)), (f"the search's share of the processor time, on two meshes: {told}. More than {100 * DEAR:g} % is "
                                           f"asked; boxes leave few edges to a point.")
 
@@ -55,23 +55,19 @@ def single_point(results: Results) -> tuple[str, str]:
 def _beside_closest(results: Results, width: str | float, words: str) -> tuple[str, str]:
     """Verdict and words of (14), (15) beside closest points, with ε = `width`."""
     nearest = results.summaries(PAIRS, pairing="closest-point", pairing_range=ELEMENT)
-    same, as_often, told = {}, {}, []
+    usual, same, as_often, told = [near["contact_intervals"] for near in nearest], {}, {}, []
     for pairing, how in PRINTED.items():
         ends = results.summaries(PAIRS, pairing=pairing, pairing_range=width)
-        apart = [_apart(*each) for each in zip(ends, nearest)]
-        peaks = " and ".join(f"{end['peak_force'] / near['peak_force']:.2f}" for end, near in zip(ends, nearest))
+        apart, touches = [_apart(*each) for each in zip(ends, nearest)], [end["contact_intervals"] for end in ends]
+        peaks = both([end["peak_force"] / near["peak_force"] for end, near in zip(ends, nearest)], ".2f")
         slip = any("slip through" in said for end in ends for said in end["warnings"])
         same[pairing] = max(apart) <= SAME and not slip
-        as_often[pairing] = all(end["contact_intervals"] <= near["contact_intervals"] for end, near in zip(ends, nearest))
-        told.append(f"{how} {' and '.join(f'{100 * each:.1f} %' for each in apart)} off, touching {_touches(ends)} times, peak force "
+        as_often[pairing] = all(count <= most for count, most in zip(touches, usual))
+        told.append(f"{how} {' and '.join(f'{100 * each:.1f} %' for each in apart)} off, touching {both(touches)} times, peak force "
                     f"{peaks} times that of closest points" + ", points slip through between each other" * slip)
     return graded(same["pairwise-printed"] and as_often["pairwise-printed"], any(same.values())), (
-        f"{words}, on two meshes (closest points touch {_touches(nearest)} times): {'; '.join(told)}. As printed the force jumps to its "
+        f"{words}, on two meshes (closest points touch {both(usual)} times): {'; '.join(told)}. As printed the force jumps to its "
         f"largest where points come within ε.")
-
-
-def _touches(ends: list[dict]) -> str:
-    return " and ".join(str(end["contact_intervals"]) for end in ends)
 
 
 def _apart(end: dict, nearest: dict) -> float:
