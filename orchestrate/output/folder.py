@@ -42,6 +42,7 @@ def result_folder(out: Path) -> Path:
 
 
 def failed_beside(folder: Path) -> Path:
+    """Where a failed run leaves its files if `folder` holds an earlier finished one."""
     return folder.with_name(folder.name + ".failed")
 
 

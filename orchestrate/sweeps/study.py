@@ -21,6 +21,7 @@ from ..failure import BadInput, Busy, Failure, TooLong, Unreadable
 from ..mesh import mesh
 from ..input.parameters import Value
 from ..progress import Line, forward
+from ..output.folder import failed_beside
 from ..output.results import read_json
 
 CORES = freefem.CORES
@@ -139,7 +140,7 @@ def end_after(limit: float) -> None:
 
 def there(folder: Path, wanted: scene.Scene) -> dict | None:
     """The outcome that is in `folder` already: a finished run, or a failure of the same scene and code, which would be repeated."""
-    for place in (folder, folder.with_name(folder.name + ".failed")):
+    for place in (folder, failed_beside(folder)):
         failed = read_json(place / "failure.json")
         made = failed.get("provenance") or {}
         if failed.get("exit_code") in (11, 12) and made.get("code") == run.code_hash() and made.get("asked") == wanted.asked:
