@@ -76,7 +76,7 @@ class Memory(paper_judging.Results):
         return self.given["scene"][name]
 
     def table(self, name):
-        self.read |= set(self.sweep_runs(name))
+        self.read |= set(self.folders(name))
         return self.given["table"][name].copy()
 
     def histories(self, name, **values):

@@ -57,13 +57,13 @@ def test_surface_of_the_whole_and_of_the_cut_ball(ball, symmetry):
 def test_mirror_image_moves_as_a_mirror_image(ball):
     """Displacement and stress of the image: x and u_x change their signs, nothing else."""
     part = vtu.read_solid(vtu.series(ball("quarter").folder / "fields.pvd")[2][1])
-    both, image = solid.mirrored(part, 0)
+    both = solid.whole(part, (0,))
     n = len(part.points)
     for k in range(n, len(both.points), 7):
         twin = np.flatnonzero((np.abs(part.points * (-1, 1, 1) - both.points[k]) < 1e-12).all(axis=1))
         assert len(twin) == 1 and both.fields["displacement"][k] == pytest.approx(part.fields["displacement"][twin[0]] * (-1, 1, 1))
         assert both.fields["von_mises"][k] == part.fields["von_mises"][twin[0]]
-    assert image.sum() == len(part.tetrahedra) == len(both.tetrahedra) / 2
+    assert len(part.tetrahedra) == len(both.tetrahedra) / 2
 
 
 def test_pressure_on_the_surface_bears_the_force(ball):

@@ -138,7 +138,7 @@ def _quick_clock(environment: Mapping[str, str]) -> dict[str, str]:
         part = library.with_name(f"{library.name}.{os.getpid()}.part")
         try:
             subprocess.run(["cc", "-O2", "-shared", "-fPIC", "-o", part, CLOCK], env=environment, check=True, timeout=60,
-                           stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                           **kernels.QUIET)
             os.replace(part, library)
         except (OSError, subprocess.SubprocessError):
             part.unlink(missing_ok=True)

@@ -16,6 +16,7 @@ SOURCES = ROOT / "edp/kernels"
 BUILT = ROOT / "edp/dev"                 # edp/kernels.idp says why it is called so
 LIBRARIES = ("-lcholmod", "-lumfpack")
 THREADS = ("-fopenmp",), ()              # where the compiler has no OpenMP: one thread
+QUIET = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.DEVNULL)
 
 
 def build(command: str, version: str, environment: Mapping[str, str]) -> bool:
@@ -58,12 +59,12 @@ def _build(command: str, maker: Path, plugin: Path, loading: str, environment: M
             source = os.path.relpath((SOURCES / "kernels.cpp").resolve(), Path(folder).resolve())   # ff-c++ lets no ' pass
             for flags in THREADS:
                 made = subprocess.run([maker, *flags, source, *LIBRARIES], cwd=folder, env=environment, check=not flags,
-                                      timeout=300, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                                      timeout=300, **QUIET)
                 if made.returncode == 0:
                     break
             (Path(folder) / "try.edp").write_text('load "./kernels"\n')
             subprocess.run([command, "-nw", "-ne", "-v", "0", "try.edp"], cwd=folder, env=environment, check=True, timeout=60,
-                           stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                           **QUIET)
             os.replace(Path(folder) / "kernels.so", plugin)
     part = BUILT / f"null.{os.getpid()}"
     part.write_text(loading)

@@ -30,6 +30,6 @@ def of(given: dict) -> Dimension:
     return DIMENSIONS[rule.check(given.get("dimension", rule.default))]
 
 
-def per_metre(script: str) -> bool:
-    """Whether forces and energies of a script are per metre of thickness: those of plane strain."""
-    return not any(script in (one.script, *one.cases) for one in (AXISYMMETRIC, SOLID))
+def per_metre(script: str) -> str:
+    """Behind the units of forces and energies of a script: plane strain is per metre of thickness, a ball is not."""
+    return "" if any(script in (one.script, *one.cases) for one in (AXISYMMETRIC, SOLID)) else "/m"

@@ -1,6 +1,5 @@
 """A mesh in gmsh's format as one of ours: its triangles in the plane, its boundary from them, labels from its physical curves."""
 
-import shutil
 import tempfile
 from pathlib import Path
 
@@ -17,21 +16,16 @@ LABELS = {"contact": mesh.FREE, "symmetry": mesh.AXIS}
 
 def load(path: Path) -> bytes:
     """The mesh in a file as FreeFEM's .msh: one of gmsh is converted, one of FreeFEM is taken as it is (what is in it is checked
-    by edp/core/input/mesh-file.idp). BadInput where it cannot be read or is neither."""
+    by edp/core/input/mesh-file.idp). BadInput where it cannot be read, or is one of gmsh that gmsh or we cannot use."""
     try:
         text = path.read_bytes()
     except OSError as error:
         raise BadInput(f"mesh: {path} cannot be read: {error.strerror}") from None
-    if text.startswith(b"$"):
-        return convert(path)
-    return text
-
-
-def convert(path: Path) -> bytes:
-    """FreeFEM's .msh of the gmsh file `path`; BadInput where gmsh or we cannot use it."""
+    if not text.startswith(b"$"):
+        return text
     with tempfile.TemporaryDirectory() as folder:
         copy, made = Path(folder) / "mesh.msh", Path(folder) / "freefem.msh"   # gmsh goes by the ending of the name
-        shutil.copyfile(path, copy)
+        copy.write_bytes(text)
         try:
             mesh.write(mesh.in_own_process(read, copy), made)
         except BadInput as error:

@@ -16,7 +16,6 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cache
-from importlib import metadata
 from pathlib import Path
 from types import ModuleType
 
@@ -77,11 +76,6 @@ def nearest(points: np.ndarray, others: np.ndarray, chunk: int = 500, most: int 
     others = others[::-(-len(others) // most)]
     return np.concatenate([np.sqrt(((points[at:at + chunk, None] - others)**2).sum(axis=2).min(axis=1))
                            for at in range(0, len(points), chunk)])
-
-
-@cache
-def gmsh_version() -> str:
-    return metadata.version("gmsh")
 
 
 def disc(radius: float, mesh_size: float, contact_mesh_size: float, half: bool, contact_arc: float = math.pi / 4) -> Mesh:

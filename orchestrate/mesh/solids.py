@@ -15,7 +15,6 @@ from . import curved, solid_file
 from ..failure import BadInput, brief
 from .solid_mesh import MOST_CELLS, Sizes, SolidMesh, expected_cells, mesh_shape
 from ..input.tables import Table
-from ..geometry.tumbling import rotation
 
 SHAPES = {"ball": ("radius",), "box": ("width", "height", "depth"), "cylinder": ("radius", "height"), "mesh": ("file",)}
 MOTION = ("angle", "turn", "spin")
@@ -187,11 +186,11 @@ class Solid(outlines.Shape):
 
     def turned(self, turn: np.ndarray, spin: np.ndarray, t: float) -> np.ndarray:
         """The matrix at time t of a body that begins with a turn [rad] and a spin [rad/s]."""
-        return tumbling.turned(self.shape.moments, rotation(turn), spin, t)
+        return tumbling.turned(self.shape.moments, tumbling.rotation(turn), spin, t)
 
     def fastest(self, turn: np.ndarray, spin: np.ndarray) -> float:
         """No spin [rad/s] is larger that a turned body comes to which begins with this one."""
-        return tumbling.fastest(self.shape.moments, rotation(turn), spin)
+        return tumbling.fastest(self.shape.moments, tumbling.rotation(turn), spin)
 
     def carried(self, moved: "Solid", points: np.ndarray) -> np.ndarray:
         """Points of this solid carried along to where it is moved."""

@@ -42,6 +42,7 @@ def result_folder(out: Path) -> Path:
 
 
 def failed_beside(folder: Path) -> Path:
+    """Where a failed run leaves its files if `folder` holds an earlier finished one."""
     return folder.with_name(folder.name + ".failed")
 
 
@@ -79,7 +80,9 @@ def staging(folder: Path) -> Iterator[tuple[Path, int]]:
             leaving.callback(os.close, lock := _lock(stage, folder))
         elif folder.exists():
             leaving.callback(os.close, _hold(folder, folder))   # against a run without Python
-        _refuse_files_of_others(stage)
+        # what a run makes has checkpoint.json from the first to the last moment; a folder of that name that lacks it is somebody's
+        if os.listdir(stage) and not (stage / "checkpoint.json").exists():
+            raise Unreadable(f"{stage}, where the run would be made, has files of others in it; choose another --out")
         try:
             yield stage, lock
         finally:
@@ -101,12 +104,6 @@ def _is_complete(stage: Path) -> bool:
         return (stage / "checkpoint.json").exists() and "code" in read_summary(stage).get("provenance", {})   # the last that _finish writes
     except Unreadable:
         return False
-
-
-def _refuse_files_of_others(stage: Path) -> None:
-    """What a run makes has checkpoint.json from the first to the last moment; a folder of that name that lacks it is somebody's."""
-    if os.listdir(stage) and not (stage / "checkpoint.json").exists():
-        raise Unreadable(f"{stage}, where the run would be made, has files of others in it; choose another --out")
 
 
 def _lock(stage: Path, folder: Path) -> int:

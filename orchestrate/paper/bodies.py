@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..output.results import mechanical_energy
-from .judging import CONSTANT, DIFFERS, History, Lost, Results, both_times, finished, graded, lost, states, when
+from .judging import CONSTANT, DIFFERS, Lost, Results, both_times, finished, graded, lost, states, when
 
 BLOCK = {"svk": "disc-block", "neohookean": "disc-block-neohookean"}
 MOMENTUM = 1e-8             # of the disc's momentum: below, that of both bodies is kept
@@ -143,13 +143,8 @@ def accelerations(results: Results) -> tuple[str, str]:
     apart, words = [], []
     for name in (DISC, DISC_NEO, BALL):
         history = results.history(name)
-        force, mass = history["normal_force"], _mass(history)
+        force, mass = history["normal_force"], history["momentum_y"][0] / history["vy"][0]
         apart.append(np.abs(np.diff(history["momentum_y"]) / history["dt"][1:] - force[1:]).max() / force.max())
         words.append(f"{name} {1e-3 * force.max() / mass:.2f} at {1e3 * history['t'][force.argmax()]:.2f} ms")
     return graded(max(apart) < MOMENTUM), (
         f"force and change of momentum are the same to {max(apart):.0e}; largest acceleration [10³ m/s²]: {', '.join(words)}.")
-
-
-def _mass(history: History) -> float:
-    """Of the body [kg, in plane strain kg/m]."""
-    return float(history["momentum_y"][0] / history["vy"][0])

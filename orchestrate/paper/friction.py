@@ -15,7 +15,8 @@ from ..report.friction_laws import VALUES
 from ..report.impacts import spectrum
 from . import stick_slip
 from ..sweeps import study
-from .judging import CONSTANT, LAWS, OPEN, History, Lost, Results, bar, finished, graded, lost, maxima, of_laws, states, touching
+from ..sweeps.sweep_figures import bars
+from .judging import CONSTANT, LAWS, OPEN, History, Lost, Results, both, finished, graded, lost, maxima, of_laws, states, touching
 
 JUMP, SPEED, ANGLE = "friction-jump", 12.0, 60.0   # m/s, degrees from the plane: the paper's normal incidence is pi/2
 FLAT = 30.0                 # degrees from the plane, as if the paper's pi/3 were from the normal
@@ -79,17 +80,11 @@ def angles(results: Results, law: str) -> tuple[bool, str]:
     """With a law: where on finished runs they differ by more than a degree and the error bar; neo-Hookean for every ν."""
     rows = finished(results, JUMP if law == "svk" else "oblique")
     rows = rows[(rows.law == law) & (rows.friction_static == STATIC)] if law == "svk" else rows
-    found = [_angle(rows, k) for k in range(len(rows))]
-    return bool(found) and all(abs(out - ANGLE) > APART + error for out, error in found), ", ".join(
-        f"{out:.1f} ± {error:.1g}°" + (f" (ν = {nu:g})" if law != "svk" else "")
-        for (out, error), nu in zip(found, rows.get("nu", [np.nan] * len(rows))))
-
-
-def _angle(rows: pd.DataFrame, k: int) -> tuple[float, float]:
-    """Angle of reflection of the k-th row and its error bar [degrees]."""
-    one = {"index": rows.index[k]}
-    (x, dx), (y, dy) = (bar(rows.assign(index=rows.index), name, **one) for name in ("rebound_vx", "rebound_vy"))
-    return float(np.degrees(np.arctan2(y, x))), float(np.degrees(np.hypot(x * dy, y * dx) / np.hypot(x, y) ** 2))
+    (x, dx), (y, dy) = ((rows[name].to_numpy(), bars(rows, name)) for name in ("rebound_vx", "rebound_vy"))
+    out, error = np.degrees(np.arctan2(y, x)), np.degrees(np.hypot(x * dy, y * dx) / np.hypot(x, y) ** 2)
+    return len(rows) > 0 and bool((abs(out - ANGLE) > APART + error).all()), ", ".join(
+        f"{angle:.1f} ± {off:.1g}°" + (f" (ν = {nu:g})" if law != "svk" else "")
+        for angle, off, nu in zip(out, error, rows.get("nu", [np.nan] * len(rows))))
 
 
 @states("Section 3.1, figure 5a", "the normal force oscillates", JUMP, "disc-oblique-svk/force disc-oblique/force", LOST,
@@ -97,7 +92,7 @@ def _angle(rows: pd.DataFrame, k: int) -> tuple[float, float]:
 def oscillates(results: Results, law: str) -> tuple[bool, str]:
     """With a law: where the force has several maxima that stand out by more than 5 % of its largest value, on both meshes."""
     counts = [maxima(history["normal_force"], 0.05 * history["normal_force"].max()) for history in impact(results, law)]
-    return min(counts) > 1, f"{' and '.join(map(str, counts))} maxima"
+    return min(counts) > 1, f"{both(counts)} maxima"
 
 
 @states("Section 3.1, figure 5a", "the oscillations are due to the multiple reflections of the impact waves on the disc's boundary",
@@ -146,8 +141,7 @@ def alternates(results: Results, law: str) -> tuple[str, str, str]:
     alternate, more = min(jump) > 2, min(jump) - max(control) > max(np.ptp(jump), np.ptp(control))
     said = "" if more else (" The points alternate between sliding and sticking, but the jump of the coefficient is not what makes "
                             "them: equal coefficients do the same.")
-    return graded(alternate and more, alternate), (f"{' and '.join(f'{n:.1f}' for n in jump)} times, in the control "
-                                                   f"{' and '.join(f'{n:.1f}' for n in control)}"), said
+    return graded(alternate and more, alternate), f"{both(jump, '.1f')} times, in the control {both(control, '.1f')}", said
 
 
 @states("Section 3.1, figure 5b",
@@ -212,8 +206,8 @@ def elastic(results: Results, law: str) -> tuple[str, str, str]:
     before, mirror, most, counts = zip(*map(_exchange, impact(results, law)))
     exchanged, fluctuates = max(before) < CONSTANT and max(mirror) < -0.9, min(counts) > 1
     return graded(exchanged and fluctuates, exchanged), (
-        f"{max(before):.0e} before, in it up to {100 * max(most):.0f} % with {' and '.join(map(str, counts))} maxima, correlation with the "
-        f"kinetic {max(mirror):.3f}"), "" if fluctuates else " With SVK it rises and falls once."
+        f"{max(before):.0e} before, in it up to {100 * max(most):.0f} % with {both(counts)} maxima, correlation with the kinetic "
+        f"{max(mirror):.3f}"), "" if fluctuates else " With SVK it rises and falls once."
 
 
 def _exchange(history: History) -> tuple[float, float, float, int]:

@@ -8,7 +8,7 @@ Where that law loses ellipticity in a run that decides, its answer depends on th
 whatever the statement is; but not of what every step keeps exactly, on any mesh: the discrete energy and momentum.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import cache, wraps
 from pathlib import Path
@@ -17,9 +17,8 @@ import numpy as np
 import pandas as pd
 
 from ..output.results import read_frame, read_history, read_scene, read_summary
-from ..sweeps import study
-from ..sweeps import sweep, sweep_figures
 from ..report.impacts import read_modes
+from ..sweeps import study, sweep, sweep_figures
 
 AGREES, DIFFERS, PARTLY, OPEN = "agrees", "does not agree", "partly", "not decided"
 CONSTANT = 1e-9             # of the energy at the start: below, an energy is constant
@@ -68,12 +67,10 @@ class Results:
         """The points of a sweep, from its runs."""
         return sweep.table(loaded(name), self.sweep(name))
 
-    def sweep_runs(self, name: str) -> list[Path]:
-        return [study.place(self.sweep(name), point) for point in loaded(name).runs]
-
     def folders(self, *names: str) -> list[Path]:
         """Those of runs, and of all runs of sweeps."""
-        return [folder for name in names for folder in (self.sweep_runs(name) if name in sweep.built_in() else [self.run(name)])]
+        return [folder for name in names for folder in ([study.place(self.sweep(name), point) for point in loaded(name).runs]
+                                                        if name in sweep.built_in() else [self.run(name)])]
 
     def pair(self, name: str, **values) -> list[Path]:
         """The runs of the point of a sweep with these values: plain and, where the sweep refines, refined."""
@@ -193,6 +190,11 @@ def maxima(values: np.ndarray, least: float) -> int:
             rising, high = True, value
         low, high = min(low, value), max(high, value)
     return count
+
+
+def both(values: Iterable, form: str = "") -> str:
+    """The numbers of both meshes, or steps, in words, each in a format such as ".1f"."""
+    return " and ".join(format(value, form) for value in values)
 
 
 def when(time: float | None, words: str) -> str:

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 
 from ..sweeps import sweep_figures
-from .judging import Lost, Results, finished, graded, of_laws, states
+from .judging import Lost, Results, both, finished, graded, of_laws, states
 
 STIFFNESS, SLIP = "calibrate", "slip-limit"
 COMPRESSIBLE, INCOMPRESSIBLE = "disc-normal-neohookean", "disc-normal-incompressible"
@@ -20,11 +20,8 @@ def incompressible(results: Results) -> tuple[str, str]:
     return graded(held["volume_change"] < ISOCHORIC), (
         f"the run with law = incompressible keeps the volume of its elements to {held['volume_change']:.0e} (at points J is from "
         f"{held['min_jacobian']:.3f}); the compressible neo-Hookean disc (ν = 0.45, 8 m/s) goes down to J = "
-        f"{free['min_jacobian']:.3f}. Contact lasts {_thresholded(held)} and {_thresholded(free)} ms.")
-
-
-def _thresholded(summary: dict) -> str:
-    return f"{1e3 * summary['thresholded_contact_time']:.3g}"
+        f"{free['min_jacobian']:.3f}. Contact lasts "
+        f"{both([1e3 * end['thresholded_contact_time'] for end in (held, free)], '.3g')} ms.")
 
 
 @states("Section 2.2, equations (7), (10)",

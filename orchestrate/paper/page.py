@@ -13,10 +13,9 @@ from .. import __version__, scene
 from ..input import parameters
 from ..output.results import read_frame, read_json, read_scene
 from ..places import PACKAGE
-from ..run import code_hash
-from ..sweeps import study
-from ..sweeps import sweep
 from ..report.figures import GREEN, ORANGE, STYLE
+from ..run import code_hash
+from ..sweeps import study, sweep
 from .judging import AGREES, DIFFERS, OPEN, PARTLY, Finding
 
 COLOURS = {AGREES: GREEN, DIFFERS: ORANGE, PARTLY: "#b8860b", OPEN: "#777777"}

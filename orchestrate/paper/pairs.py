@@ -1,58 +1,52 @@
 """Section 3.2: closest points (9), what they cost, and contact without a search for them, (14), (15): the disc on the block, on two meshes
 (pairing)."""
 
-from collections.abc import Callable
 from pathlib import Path
 
-from .judging import Results, graded, lost, states
+from .judging import Results, both, graded, lost, states
 
 PAIRS = "pairing"
 SAME = 0.01                 # largest difference of rebound velocities over the speed, and of the impulse, for two contacts to be the same
 DEAR = 0.1                  # share of the processor time from which a search costs some
 PRINTED = {"pairwise": "with a repulsion that vanishes at ε", "pairwise-printed": "as printed"}
-LOST = lost((PAIRS, {"pairing": "closest-point", "pairing_range": "auto"}))
+ELEMENT = "auto"            # ε that is an element where the bodies touch
+LOST = lost((PAIRS, {"pairing": "closest-point", "pairing_range": ELEMENT}))
 
 
-def runs(*widths: Callable) -> Callable[[Results], list[Path]]:
-    """Those of all contacts with these ε, each once."""
-    return lambda results: list(dict.fromkeys(run for width in widths for pairing in ("closest-point", *PRINTED)
-                                              for run in results.pair(PAIRS, pairing=pairing, pairing_range=width(results))))
-
-
-def element(results: Results) -> str:
-    """ε that is an element where the bodies touch."""
-    return "auto"
+def runs(results: Results, *widths: str | float) -> list[Path]:
+    """Those of all contacts with these ε [m], auto (ELEMENT) among them, each once."""
+    return list(dict.fromkeys(run for width in (ELEMENT, *widths) for pairing in ("closest-point", *PRINTED)
+                              for run in results.pair(PAIRS, pairing=pairing, pairing_range=width)))
 
 
 def separation(results: Results) -> float:
     """The smaller ε of the sweep [m]."""
-    return float(next(value for value in results.table(PAIRS).pairing_range.unique() if value != "auto"))
+    return float(next(value for value in results.table(PAIRS).pairing_range.unique() if value != ELEMENT))
 
 
-@states("Section 3.2, equation (9)", "the minimum distance is found at each instant at the cost of CPU time", runs(element), PAIRS, LOST)
+@states("Section 3.2, equation (9)", "the minimum distance is found at each instant at the cost of CPU time", runs, PAIRS, LOST)
 def search_costs(results: Results) -> tuple[str, str]:
     """By shares of each run, which scatter less than seconds: agrees where the search for closest points takes more than a tenth of the
     processor time on both meshes, partly where on one."""
     words = {"closest-point": "closest points (9)"} | {pairing: f"(14), (15) {how}" for pairing, how in PRINTED.items()}
-    ends = {pairing: results.summaries(PAIRS, pairing=pairing, pairing_range="auto") for pairing in words}
+    ends = {pairing: results.summaries(PAIRS, pairing=pairing, pairing_range=ELEMENT) for pairing in words}
     shares = {pairing: [end["phase_seconds"]["search"] / end["cpu_seconds"] for end in each] for pairing, each in ends.items()}
     dear = [share > DEAR for share in shares["closest-point"]]
     told = "; ".join(f"{words[pairing]} {' and '.join(f'{100 * share:.0f} %' for share in found)} of "
-                     f"{' and '.join(format(end['cpu_seconds'], '.1f') for end in ends[pairing])} s" for pairing, found in shares.items())
+                     f"{both([end['cpu_seconds'] for end in ends[pairing]], '.1f')} s" for pairing, found in shares.items())
     return graded(all(dear), any(dear)), (f"the search's share of the processor time, on two meshes: {told}. More than {100 * DEAR:g} % is "
                                           f"asked; boxes leave few edges to a point.")
 
 
-@states("Section 3.2, equations (14), (15)", "a sum over all points nearer than ε takes the place of the closest points", runs(element),
-        PAIRS, LOST)
+@states("Section 3.2, equations (14), (15)", "a sum over all points nearer than ε takes the place of the closest points", runs, PAIRS, LOST)
 def sum_of_points(results: Results) -> tuple[str, str]:
     """As printed, on two meshes: agrees where rebounds and impulse are those of closest points to 1 % and the bodies touch as often; partly
     where the answers are alone, as printed or with a repulsion that vanishes at ε."""
-    return _beside_closest(results, element(results), "ε an element where the bodies touch")
+    return _beside_closest(results, ELEMENT, "ε an element where the bodies touch")
 
 
 @states("Section 3.2, equation (15)", "with ε of the order of the separation of the points and a large k a point meets a single one of the "
-        "other body, and nothing has to be sought", runs(element, separation), PAIRS, LOST)
+        "other body, and nothing has to be sought", lambda results: runs(results, separation(results)), PAIRS, LOST)
 def single_point(results: Results) -> tuple[str, str]:
     """As (14), (15) with that ε: judged by the answers, not by the number of points."""
     return _beside_closest(results, separation(results), "ε the separation of the points")
@@ -60,24 +54,20 @@ def single_point(results: Results) -> tuple[str, str]:
 
 def _beside_closest(results: Results, width: str | float, words: str) -> tuple[str, str]:
     """Verdict and words of (14), (15) beside closest points, with ε = `width`."""
-    nearest = results.summaries(PAIRS, pairing="closest-point", pairing_range="auto")
-    same, as_often, told = {}, {}, []
+    nearest = results.summaries(PAIRS, pairing="closest-point", pairing_range=ELEMENT)
+    usual, same, as_often, told = [near["contact_intervals"] for near in nearest], {}, {}, []
     for pairing, how in PRINTED.items():
         ends = results.summaries(PAIRS, pairing=pairing, pairing_range=width)
-        apart = [_apart(*each) for each in zip(ends, nearest)]
-        peaks = " and ".join(f"{end['peak_force'] / near['peak_force']:.2f}" for end, near in zip(ends, nearest))
+        apart, touches = [_apart(*each) for each in zip(ends, nearest)], [end["contact_intervals"] for end in ends]
+        peaks = both([end["peak_force"] / near["peak_force"] for end, near in zip(ends, nearest)], ".2f")
         slip = any("slip through" in said for end in ends for said in end["warnings"])
         same[pairing] = max(apart) <= SAME and not slip
-        as_often[pairing] = all(end["contact_intervals"] <= near["contact_intervals"] for end, near in zip(ends, nearest))
-        told.append(f"{how} {' and '.join(f'{100 * each:.1f} %' for each in apart)} off, touching {_touches(ends)} times, peak force "
+        as_often[pairing] = all(count <= most for count, most in zip(touches, usual))
+        told.append(f"{how} {' and '.join(f'{100 * each:.1f} %' for each in apart)} off, touching {both(touches)} times, peak force "
                     f"{peaks} times that of closest points" + ", points slip through between each other" * slip)
     return graded(same["pairwise-printed"] and as_often["pairwise-printed"], any(same.values())), (
-        f"{words}, on two meshes (closest points touch {_touches(nearest)} times): {'; '.join(told)}. As printed the force jumps to its "
+        f"{words}, on two meshes (closest points touch {both(usual)} times): {'; '.join(told)}. As printed the force jumps to its "
         f"largest where points come within ε.")
-
-
-def _touches(ends: list[dict]) -> str:
-    return " and ".join(str(end["contact_intervals"]) for end in ends)
 
 
 def _apart(end: dict, nearest: dict) -> float:

@@ -21,10 +21,8 @@ from ..failure import BadInput, Failure, Unreadable
 from ..output.folder import result_folder
 from ..places import COMMAND, RESULTS, ROOT, shown
 from ..progress import Line
-from . import stick_slip
-from ..sweeps import study
-from ..sweeps import sweep
-from . import judging
+from ..sweeps import study, sweep
+from . import judging, stick_slip
 from . import limits, friction, impacts, pairs, bodies, times   # noqa: F401: these register the statements, in this order
 from .page import COLOURS, page, verification
 

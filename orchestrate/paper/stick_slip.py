@@ -112,10 +112,8 @@ def draw(rows: pd.DataFrame, axes: dict[str, tuple[float, ...]], path: Path) -> 
                 here = rows[(rows.law == law) & (rows.angle == angle) & (rows.nu == nu)].set_index(["penalty", "slip_velocity"])
                 picture = _cells(panel, here, axes, low, high)
                 panel.set_title(f"{LAWS[law]}{', coarse P1 mesh' if law == 'svk' else ''}, {angle:g}°, ν = {nu:g}")
-        for panel in grid[-1]:
-            panel.set_xlabel("slip velocity ε [m/s]")
-        for panel in grid[:, 0]:
-            panel.set_ylabel("k [Pa/m]")
+        plt.setp(grid[-1], xlabel="slip velocity ε [m/s]")
+        plt.setp(grid[:, 0], ylabel="k [Pa/m]")
         bar = figure.colorbar(picture, ax=grid, label="contact time [ms]", shrink=0.6)
         bar.ax.axhline(1e3 * PAPER[0], color=ORANGE, linewidth=2)
         figure.suptitle("Share of the normal load that slides [%], a bar each for the first, second and last third of the contact (full "

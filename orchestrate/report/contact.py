@@ -178,8 +178,7 @@ def _maps(figure: plt.Figure, points: np.recarray, rubs: bool, symmetry: str, se
             figure.colorbar(picture, ax=list(grid.flat), shrink=0.7, label=PRESSURE)
         else:
             row[len(shown) // 2].legend(*_keys(states), **ABOVE)
-    for axes in grid[-1]:
-        axes.set_xlabel(labels[0])
+    plt.setp(grid[-1], xlabel=labels[0])
 
 
 def _in_plane(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -149,8 +149,8 @@ def as_written(text: str) -> str:
 
 
 def per_metre(scene: dict[str, Value]) -> str:
-    """Behind units: plane strain is per metre of thickness, a ball is not."""
-    return "/m" if dimension.per_metre(scene.get("script", "")) else ""
+    """Behind the units of forces and energies of a scene."""
+    return dimension.per_metre(scene.get("script", ""))
 
 
 def amid(history: dict[str, np.ndarray], scene: dict[str, Value]) -> np.ndarray:

@@ -55,10 +55,9 @@ def draw(table: np.recarray, names: list[str], rigid: list[str]) -> plt.Figure |
                      label=f"{label}: across, above {HIGHEST:g}")
         slips = rows.slip_before > LEAST_SLIP * np.maximum(rows.approach, np.fmax.reduce(rows.slip_before))
         along = np.where(slips, rows.restitution_tangential, np.nan)
-        if np.isfinite(along).any():
-            top.plot(t, along, "s--", color=colour, markersize=4, linewidth=0.8, fillstyle="none", label=f"{label}: along")
         below.plot(t, rows.approach, "o-", color=colour, markersize=4, linewidth=0.8)
         if np.isfinite(along).any():
+            top.plot(t, along, "s--", color=colour, markersize=4, linewidth=0.8, fillstyle="none", label=f"{label}: along")
             below.plot(t, rows.slip_before, "s--", color=colour, markersize=4, linewidth=0.8, fillstyle="none")
     top.set(ylabel="restitution", ylim=(min(0.0, top.get_ylim()[0]), max(1.05, top.get_ylim()[1])))
     top.axhline(1, color=GREY, linewidth=0.6)

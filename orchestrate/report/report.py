@@ -35,9 +35,8 @@ class Quantity:
         return f"{self.factor * number['value']:{self.digits}}{error} ({source})"
 
 
-def rows(per_metre: bool) -> list[Quantity]:
-    """The key figures; in plane strain forces, impulses and energies are per metre of thickness."""
-    per = "/m" if per_metre else ""
+def rows(per: str) -> list[Quantity]:
+    """The key figures; `per` stands behind the units of forces, impulses and energies: dimension.per_metre()."""
     return [
         Quantity("contact_time", "contact time", "ms", 1e3),
         Quantity("thresholded_contact_time", "  above 1 % of the peak", "ms", 1e3),
@@ -125,8 +124,8 @@ def _of_bodies(quantity: Quantity, scene: dict[str, Value], summary: dict) -> li
 def report(result: RunResult) -> str:
     """The key figures of a run as a table of text, what was skipped, and where the pictures are."""
     summary, scene = result.summary, result.scene
-    script = summary["provenance"]["script"]
     provenance = summary["provenance"]
+    script = provenance["script"]
     # a mesh of the user's is another body
     known = literature.references(script, scene) if provenance.get("gmsh") or not provenance.get("mesh") else {}
     place = shown(result.folder)

@@ -53,22 +53,16 @@ def skin(tetrahedra: np.ndarray) -> vtu.Skin:
     return vtu.split(faces[first[count == 1]].tobytes(), FINE)
 
 
-def mirrored(solid: vtu.Solid, axis: int) -> tuple[vtu.Solid, np.ndarray]:
-    """The body with its mirror image along `axis`, of one mesh with it; and whether a tetrahedron is of the image."""
-    points, n = solid.points, len(solid.points)
-    on_plane = np.abs(points[:, axis]) < 1e-9 * np.ptp(points, axis=0).max()
-    twin = np.where(on_plane, np.arange(n), n + np.cumsum(~on_plane) - 1)
-    flip = np.where(np.arange(3) == axis, -1.0, 1.0)
-    both = lambda field, sign=1.0: np.concatenate([field, sign * field[~on_plane]])   # noqa: E731
-    fields = {"displacement": both(solid.fields["displacement"], flip), "von_mises": both(solid.fields["von_mises"])}
-    count = len(solid.tetrahedra)
-    return vtu.Solid(both(points, flip), np.vstack([solid.tetrahedra, twin[solid.tetrahedra]]), fields), np.arange(2 * count) >= count
-
-
 def whole(solid: vtu.Solid, axes: tuple[int, ...]) -> vtu.Solid:
-    """The body of which the part where the coordinates `axes` are positive was computed."""
+    """The body of which the part where the coordinates `axes` are positive was computed, of one mesh with its mirror images."""
     for axis in axes:
-        solid, _ = mirrored(solid, axis)
+        points, n = solid.points, len(solid.points)
+        on_plane = np.abs(points[:, axis]) < 1e-9 * np.ptp(points, axis=0).max()
+        twin = np.where(on_plane, np.arange(n), n + np.cumsum(~on_plane) - 1)
+        flip = np.where(np.arange(3) == axis, -1.0, 1.0)
+        both = lambda field, sign=1.0: np.concatenate([field, sign * field[~on_plane]])   # noqa: B023, E731
+        fields = {"displacement": both(solid.fields["displacement"], flip), "von_mises": both(solid.fields["von_mises"])}
+        solid = vtu.Solid(both(points, flip), np.vstack([solid.tetrahedra, twin[solid.tetrahedra]]), fields)
     return solid
 
 

@@ -17,11 +17,11 @@ import pandas as pd
 
 from .. import run, scene, stopping
 from ..freefem import freefem
-from ..output import estimate as estimates
 from ..failure import BadInput, Busy, Failure, TooLong, Unreadable
 from ..mesh import mesh
 from ..input.parameters import Value
 from ..progress import Line, forward
+from ..output.folder import failed_beside
 from ..output.results import read_json
 
 CORES = freefem.CORES
@@ -31,38 +31,37 @@ Key = TypeVar("Key", bound=Hashable)
 Point = dict[str, Value]    # the parameters that tell this run from the others of the study
 
 
-def study(points: list[Point], folder: Path, base: Point, limit: float, name: str = "disc-normal", cores: int = CORES,
-          estimate: bool = False) -> pd.DataFrame:
+def study(points: list[Point], folder: Path, base: Point, limit: float, name: str = "disc-normal", cores: int = CORES) -> pd.DataFrame:
     """A row for each of `points`, in their order: its parameters, exit, message, warnings (joined by "; "), reused, and
     the numbers of its summary.
 
     Every run is the scene `name` with `base` and the point's parameters on top, in folder/runs/, and may take `limit` seconds; `cores` of
-    them run at a time; with `estimate` each estimates its error (estimated_error: the largest promised one). What is there already is not
-    run again: finished runs, and failures of the same scene and code. A run that fails is a row like any other, with its exit code and
-    message; NotInstalled, without FreeFem++, is raised. Several studies may share a folder: what one is running, the others leave to it.
+    them run at a time, none estimates its error. What is there already is not run again: finished runs, and failures of the same scene and
+    code. A run that fails is a row like any other, with its exit code and message; NotInstalled, without FreeFem++, is raised. Several
+    studies may share a folder: what one is running, the others leave to it.
     """
     places = [place(folder, point) for point in points]
     given = scene.load(name)
-    found = outcomes(points, folder, base, given, estimate)
+    found = outcomes(points, folder, base, given)
     tasks = {where: given.override(base | point) for where, point in zip(places, points) if where not in found}
     if tasks:
         freefem.find()
         if given.meshed:
             mesh.start_gmsh()     # once for all runs, which are forks of this process
         (folder / "runs").mkdir(parents=True, exist_ok=True)   # here: a run takes away what it had to make if it is interrupted
-    acts = {where: partial(_outcome, where, wanted, estimate, limit) for where, wanted in tasks.items()}
+    acts = {where: partial(_outcome, where, wanted, limit) for where, wanted in tasks.items()}
     for where, outcome in side_by_side(acts, cores, "/".join(folder.parts[-2:]), len(found)):
         found[where] = _row(1, str(outcome), False, {}) if isinstance(outcome, Failure) else outcome
     return pd.DataFrame([point | found[where] for where, point in zip(places, points)])
 
 
-def outcomes(points: list[Point], folder: Path, base: Point, given: scene.Scene, estimate: bool = False) -> dict[Path, dict]:
+def outcomes(points: list[Point], folder: Path, base: Point, given: scene.Scene) -> dict[Path, dict]:
     """By folder what is known of the points without a run: what is there already, and those that the scene `given` refuses."""
     found = {}
     for point in points:
         where = place(folder, point)
         try:
-            outcome = there(where, given.override(base | point), estimate)
+            outcome = there(where, given.override(base | point))
         except BadInput as error:
             outcome = _row(error.code, str(error), False, {})
         found |= {where: outcome} if outcome else {}
@@ -139,28 +138,28 @@ def end_after(limit: float) -> None:
     signal.setitimer(signal.ITIMER_REAL, limit)
 
 
-def there(folder: Path, wanted: scene.Scene, estimate: bool = False) -> dict | None:
+def there(folder: Path, wanted: scene.Scene) -> dict | None:
     """The outcome that is in `folder` already: a finished run, or a failure of the same scene and code, which would be repeated."""
-    for place in (folder, folder.with_name(folder.name + ".failed")):
+    for place in (folder, failed_beside(folder)):
         failed = read_json(place / "failure.json")
         made = failed.get("provenance") or {}
         if failed.get("exit_code") in (11, 12) and made.get("code") == run.code_hash() and made.get("asked") == wanted.asked:
             return _row(failed["exit_code"], str(failed.get("message")), True, failed)
     try:
-        result = run.reusable(wanted, folder, estimate=estimate)
+        result = run.reusable(wanted, folder)
     except Failure:                                      # will be said by the run
         return None
     return result and _row(0, result.summary["message"], True, result.summary)
 
 
-def _outcome(folder: Path, wanted: scene.Scene, estimate: bool, limit: float) -> dict | None:
+def _outcome(folder: Path, wanted: scene.Scene, limit: float) -> dict | None:
     """Exit code, message, whether it was there already, and the numbers of the summary, as far as the run came in `limit` seconds; None
     where another run is at it."""
     end_after(limit)
-    if found := there(folder, wanted, estimate):
+    if found := there(folder, wanted):
         return found
     try:
-        result = run.run(wanted, out=folder, estimate=estimate)
+        result = run.run(wanted, out=folder, estimate=False)
         return _row(0, result.summary["message"], result.reused, result.summary)
     except Busy:
         return None
@@ -172,8 +171,6 @@ def _outcome(folder: Path, wanted: scene.Scene, estimate: bool, limit: float) ->
 
 
 def _row(code: int, message: str, reused: bool, summary: dict) -> dict:
-    if estimated := summary.get("estimated_error"):
-        summary = summary | {"estimated_error": estimates.largest(estimated)}
     numbers = {name: value for name, value in summary.items() if type(value) in (int, float) and name != "exit_code"}
     return {"exit": code, "message": message, "warnings": "; ".join(summary.get("warnings", [])), "reused": reused} | numbers
 

@@ -33,15 +33,13 @@ import numpy as np
 import pandas as pd
 
 from .. import scene
-from ..input import parameters
+from ..input import dimension, parameters
 from ..failure import BadInput, Busy, Failure, Unreadable, brief
 from ..freefem.describe import describe_results
 from ..input.parameters import Value
 from ..output.folder import result_folder
 from ..places import COMMAND, RESULTS, shown
-from ..report.figures import per_metre
-from . import study
-from . import sweep_figures
+from . import study, sweep_figures
 
 SWEEPS = Path(__file__).resolve().parent   # the built-in sweeps are beside us
 LIMIT = 600.0                   # seconds a run may take
@@ -196,7 +194,7 @@ def _sweep(path: Path, given: dict, text: str) -> Sweep:
     if type(limit) not in (int, float) or not 1 <= limit <= 1e6:
         raise BadInput(f"limit: {brief(limit)} (accepted: 1 to 1e6 seconds)")
     figure = sweep_figures.check(tables["figure"], points, wanted,
-                                 of.columns) | {"per": per_metre({"script": of.script})} if tables["figure"] else {}
+                                 of.columns) | {"per": dimension.per_metre(of.script)} if tables["figure"] else {}
     base = {"fields": 0} | base
     return Sweep(path.stem, str(given.get("title", path.stem)), name, base, points, refine, wanted, float(limit), figure, sample, text)
 

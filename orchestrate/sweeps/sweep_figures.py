@@ -125,8 +125,7 @@ def findings(sweep, rows: pd.DataFrame, out: Path) -> list[str]:
 
 def label(name: str, per: str = "/m") -> str:
     """The words and the unit of a parameter or a number of the summary, for an axis; per: "/m" in plane strain, "" of a ball."""
-    parameter, unit = _parameter(name), _quantity(name, per).unit
-    unit = unit or (parameter.unit if parameter else "")
+    unit = _quantity(name, per).unit or unit_of(name)
     return _words(name) if unit in ("-", "", "of the start") else f"{_words(name)} [{unit}]"
 
 
@@ -137,12 +136,7 @@ def _words(name: str) -> str:
 def _quantity(name: str, per: str = "/m") -> report.Quantity:
     """The row of the report, also of one of several bodies; of what is in none one without a unit."""
     key = re.sub("_[0-9]+$", "", name)
-    return next((quantity for quantity in report.rows(per_metre=bool(per)) if quantity.key == key), report.Quantity(key, key))
-
-
-def _parameter(name: str) -> parameters.Parameter | None:
-    """The row of the table, of body.2.young that of young."""
-    return parameters.table().get(name.rpartition(".")[2])
+    return next((quantity for quantity in report.rows(per) if quantity.key == key), report.Quantity(key, key))
 
 
 def _unit(name: str, per: str) -> str:
@@ -152,17 +146,18 @@ def _unit(name: str, per: str) -> str:
 
 def _value(name: str, value) -> str:
     """A value of a parameter in words, with its unit."""
-    if isinstance(value, str) and value != "auto":
-        return LAWS.get(value, value)
     if value == "auto":
         return f"{_words(name)} auto"
+    if isinstance(value, str):
+        return LAWS.get(value, value)
     unit = unit_of(name)
     return f"{_words(name)} = {value:g}" + f" {unit}" * (unit != "-")
 
 
 def unit_of(name: str) -> str:
-    """The unit of a parameter, "-" of what has none."""
-    return parameter.unit if (parameter := _parameter(name)) else "-"
+    """The unit of a parameter, of body.2.young that of young; "-" of what has none."""
+    parameter = parameters.table().get(name.rpartition(".")[2])
+    return parameter.unit if parameter else "-"
 
 
 def _groups(sweep, rows: pd.DataFrame, key: str) -> Iterator[tuple[str, pd.DataFrame]]:
@@ -332,10 +327,8 @@ def _map(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
         axes.set_yticks(range(len(table.index)), [_tick(value) for value in table.index])
         axes.set_title(words)
         axes.spines[:].set_visible(False)
-    for axes in grid[-1]:
-        axes.set_xlabel(label(x))
-    for axes in grid[:, 0]:
-        axes.set_ylabel(label(y))
+    plt.setp(grid[-1], xlabel=label(x))
+    plt.setp(grid[:, 0], ylabel=label(y))
     figure.colorbar(picture, ax=grid, label=label(colour, wanted["per"]))
     return figure
 
