@@ -103,7 +103,7 @@ def _list(options: argparse.Namespace) -> None:
     names = scene.built_in()
     for name in names:
         one = scene.load(name)
-        print(f"{name:<{2 + max(map(len, names))}}{f'edp/{one.script}.edp':<27}{one.title}")
+        print(f"{name:<{2 + max(map(len, names))}}{f'edp/{one.script}.edp':<29}{one.title}")
 
 
 def _parameters(options: argparse.Namespace) -> None:

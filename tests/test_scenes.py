@@ -441,6 +441,15 @@ def test_what_a_scene_of_bodies_fixed_follows():
     assert assembly.assemble(own).used["contact"]["pair"][0]["friction_dynamic"] == 0.2
 
 
+def test_an_entry_that_no_body_takes_is_refused():
+    """At the top an entry is for bodies without their own: where all have one it would change nothing, in a sweep neither."""
+    given = scene.load("disc-bowl").given
+    own = read_scene(given | {"body": [given["body"][0] | {"young": 7e6}]}, Path("."), "own")
+    with pytest.raises(BadInput, match=r"young: changes nothing, as every body has its own \(accepted: body.1.young and so on\)"):
+        own.override({"young": 1e6})
+    assert scene.load("disc-bowl").override({"young": 1e6}).bodies[0].young == 1e6
+
+
 def test_a_sweep_over_friction_sets_both(tmp_path):
     """Every point of an axis friction_static is of one coefficient where the dynamic one is not set; with it set, of two."""
     for more, wanted in (("", [0.7, 0.3]), ("[set]\nfriction_dynamic = 0.2\n", [0.2, 0.2])):

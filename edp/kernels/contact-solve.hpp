@@ -70,8 +70,8 @@ struct Rows {
   int n = 0, points = 0, kinds = 1;
   Indices first{0}, column, owner;                                 // of a point its entries; of an entry its column and point
   Vector value, spring;                                            // kinds an entry; stiffness c of the springs
-  // Of rows with entries at `first`, `column`: those of K and the diagonal by columns, where those of stiffness() are, what UMFPACK makes of
-  // that.
+  // Of rows with entries at `first`, `column`: those of K and the diagonal by columns, where those of stiffness() are, what UMFPACK makes
+  // of that.
   struct Pattern { Indices first, column, start, row, place;  std::shared_ptr<void> symbolic; };
   std::shared_ptr<const Pattern> pattern;
 

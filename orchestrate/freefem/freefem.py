@@ -131,8 +131,8 @@ def _blas_kernels() -> dict[str, str]:
 
 
 def _quick_clock(environment: Mapping[str, str]) -> dict[str, str]:
-    """The preloaded clock() of edp/clock.c, built where it is missing or older; nothing without a compiler or a folder to write in. On a path
-    that LD_PRELOAD, whose names end at blanks and colons, cannot name, it is an open file that processes are handed."""
+    """The preloaded clock() of edp/clock.c, built where it is missing or older; nothing without a compiler or a folder to write in. On a
+    path that LD_PRELOAD, whose names end at blanks and colons, cannot name, it is an open file that processes are handed."""
     library = CLOCK.with_name("libclock.so")
     if not library.exists() or library.stat().st_mtime < CLOCK.stat().st_mtime:
         part = library.with_name(f"{library.name}.{os.getpid()}.part")
@@ -190,7 +190,8 @@ def start(freefem: FreeFem, script: str, flags: Mapping[str, object], log: Path,
     with open(log, "w") as file, open(os.memfd_create("stderr"), "r+", errors="replace") as errors, subprocess.Popen(
             freefem.words(f"edp/{script}.edp", *words_of(flags)), cwd=ROOT, env=freefem.environment, stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE, stderr=errors, text=True, errors="replace", process_group=0,
-            pass_fds=freefem.preloaded + ([] if lock is None else [lock]), preexec_fn=partial(die_with_parent, os.getpid(), signal.SIGKILL)) as child:
+            pass_fds=freefem.preloaded + ([] if lock is None else [lock]),
+            preexec_fn=partial(die_with_parent, os.getpid(), signal.SIGKILL)) as child:
         try:
             with suppress(OSError):
                 fcntl.fcntl(child.stdout, fcntl.F_SETPIPE_SZ, UNREAD)

@@ -144,7 +144,12 @@ def other(values: Mapping[str, Value], used: Mapping[str, Value], factor: float,
     if own_mesh:
         sizes["mesh_size"] = min(sizes["mesh_size"], used["radius"])
     kept = {name: used[name] for name in ("penalty", "slip_velocity", "friction_dynamic")}
-    return dict(values) | kept | sizes | {"accuracy": min(LARGEST, factor**2 * used["accuracy"]), "fields": 0, "modes": 0}
+    return dict(values) | kept | sizes | {"accuracy": loosened(used["accuracy"], factor), "fields": 0, "modes": 0}
+
+
+def loosened(accuracy: float, factor: float) -> float:
+    """What `factor` times the elements and steps are asked for, in as many digits as a reader wants."""
+    return min(LARGEST, float(f"{factor**2 * accuracy:.9g}"))
 
 
 def difference(fine: Mapping, coarse: Mapping, speed: float, radius: float | None) -> dict[str, float]:

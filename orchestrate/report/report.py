@@ -11,8 +11,9 @@ from ..output.results import RunResult, body_names, suffixes
 from . import literature
 
 
-LEFT_OUT_AT_ZERO = ("friction_work", "creep_work", "rotation_energy", "impulse_ratio", "rebound_vx", "rebound_vz", "rebound_spin_x",
-                    "rebound_spin_y", "rebound_spin", "sliding_time", "sticking_time", "reverse_slip_time", "unsolved_jumps")
+LEFT_OUT_AT_ZERO = ("external_work", "friction_work", "creep_work", "rotation_energy", "impulse_ratio", "rebound_vx", "rebound_vz",
+                    "rebound_spin_x", "rebound_spin_y", "rebound_spin", "sliding_time", "sticking_time", "reverse_slip_time",
+                    "unsolved_jumps")
 
 
 @dataclass(frozen=True)
@@ -52,18 +53,20 @@ def rows(per: str) -> list[Quantity]:
         Quantity("restitution", "restitution"),
         Quantity("restitution_tangential", "  tangential"),
         Quantity("impulse_ratio", "  impulse ratio"),
-        Quantity("angle_out", "angle of reflection", "degrees"),
+        Quantity("angle_in", "angle of incidence", "degrees"),
+        Quantity("angle_out", "  of reflection", "degrees"),
         Quantity("sliding_time", "load slides for", "ms", 1e3),
         Quantity("reverse_slip_time", "  of it backwards", "ms", 1e3),
         Quantity("sticking_time", "load sticks for", "ms", 1e3),
         Quantity("energy_initial", "energy at the start", f"J{per}"),
+        Quantity("external_work", "work of gravity, obstacles", f"J{per}"),
         Quantity("translation_energy", "left in translation", f"J{per}"),
         Quantity("rotation_energy", "  in rotation", f"J{per}"),
         Quantity("vibration_energy", "  in vibration", f"J{per}"),
         Quantity("friction_work", "lost to friction", f"J{per}"),
         Quantity("creep_work", "  of it in creep", f"J{per}"),
         Quantity("viscous_work", "lost to viscosity", f"J{per}"),
-        Quantity("energy_drift", "energy drift", "of the start", digits=".1e"),
+        Quantity("energy_drift", "energy drift", "of the start or the touch", digits=".1e"),
         Quantity("max_penetration", "largest penetration", "mm", 1e3, ".3g"),
         Quantity("min_jacobian", "smallest det F", digits=".3f"),
         Quantity("min_stretch", "smallest stretch", digits=".3f"),
@@ -101,16 +104,25 @@ def stiffness(contact: dict[str, Value]) -> str:
 
 
 def _scene(scene: dict[str, Value]) -> list[str]:
-    """What was run: materials, speed, contact."""
+    """What was run: bodies, speed, contact."""
     contact = scene.get("contact", scene)
-    words = f"penalty {stiffness(contact)}"
-    if contact.get("friction_static"):
-        words += f", friction {contact['friction_static']:g} static, {contact['friction_dynamic']:g} dynamic"
+    pull = f"gravity {scene['gravity']:g} m/s2, " if scene.get("gravity") else ""
+    words = f"{pull}penalty {stiffness(contact)}{_friction(contact)}"
+    own = [f"{' and '.join(pair['bodies'])}: penalty {stiffness(contact | pair)}{_friction(contact | pair) or ', no friction'}"
+           for pair in contact.get("pair", [])]
     if "body" not in scene:
-        return [f"{scene['law']}, nu = {scene['nu']:g}, {scene['speed']:g} m/s, angle {scene.get('angle', 90):g} degrees, {words}"]
-    return [*(f"{body['name']}: {body['shape']}, {body['law']}, young = {body['young']:g} Pa, nu = {body['nu']:g}"
-              for body in scene["body"]),
-            *(f"{one['name']}: rigid {one['kind']}" for one in scene["obstacle"]), words]
+        return [f"radius {scene['radius']:g} m, {_material(scene)}, {scene['speed']:g} m/s, angle {scene.get('angle', 90):g} degrees", words]
+    return [*(f"{body['name']}: {body['shape']}, {_material(body)}" for body in scene["body"]),
+            *(f"{one['name']}: rigid {one['kind']}" for one in scene["obstacle"]), words, *own]
+
+
+def _material(body: dict[str, Value]) -> str:
+    return f"{body['law']}, young = {body['young']:g} Pa, nu = {body['nu']:g}, density = {body['density']:g} kg/m3"
+
+
+def _friction(contact: dict[str, Value]) -> str:
+    given = contact.get("friction_static")
+    return f", friction {given:g} static, {contact['friction_dynamic']:g} dynamic" if given else ""
 
 
 def _of_bodies(quantity: Quantity, scene: dict[str, Value], summary: dict) -> list[Quantity]:

@@ -76,9 +76,12 @@ class Scene:
         """The given entries of such a scene, by dotted names, converted; BadInput where there is no such place."""
         if not self.bodies:
             return parameters.check(given, self.script)
-        found = {name: toml_value(value) for name, value in given.items()}
+        found, changed = {name: toml_value(value) for name, value in given.items()}, self.given
         for name, value in found.items():
-            set_entry(self.given, name, value)
+            changed = set_entry(changed, name, value)
+        for name in found:                       # at the top it is for bodies without their own
+            if name in (*MATERIAL, *SIZES) and all(name in body for body in changed["body"]):
+                raise BadInput(f"{name}: changes nothing, as every body has its own (accepted: body.1.{name} and so on)")
         return found
 
     @property
@@ -168,7 +171,7 @@ class Scene:
                 found |= {f"body.{k}.mesh_size": bulk, f"body.{k}.contact_mesh_size": min(bulk, factor * given["contact_mesh_size"])}
         if used["dt"] > 0:
             found["dt"] = factor * used["dt"]
-        return found | {"accuracy": min(estimate.LARGEST, factor**2 * used["accuracy"]), "fields": 0, "modes": 0}
+        return found | {"accuracy": estimate.loosened(used["accuracy"], factor), "fields": 0, "modes": 0}
 
 
 def read(given: dict, folder: Path, name: str) -> Scene:
