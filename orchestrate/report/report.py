@@ -111,7 +111,8 @@ def _scene(scene: dict[str, Value]) -> list[str]:
     own = [f"{' and '.join(pair['bodies'])}: penalty {stiffness(contact | pair)}{_friction(contact | pair) or ', no friction'}"
            for pair in contact.get("pair", [])]
     if "body" not in scene:
-        return [f"radius {scene['radius']:g} m, {_material(scene)}, {scene['speed']:g} m/s, angle {scene.get('angle', 90):g} degrees", words]
+        return [f"radius {scene['radius']:g} m, {_material(scene)}, {scene['speed']:g} m/s, angle {scene.get('angle', 90):g} degrees",
+                words]
     return [*(f"{body['name']}: {body['shape']}, {_material(body)}" for body in scene["body"]),
             *(f"{one['name']}: rigid {one['kind']}" for one in scene["obstacle"]), words, *own]
 

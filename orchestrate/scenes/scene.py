@@ -80,7 +80,7 @@ class Scene:
         for name, value in found.items():
             changed = set_entry(changed, name, value)
         for name in found:                       # at the top it is for bodies without their own
-            if name in (*MATERIAL, *SIZES) and all(name in body for body in changed["body"]):
+            if name in (*MATERIAL, *SIZES) and all(name in body for body in listed(changed, "body")):
                 raise BadInput(f"{name}: changes nothing, as every body has its own (accepted: body.1.{name} and so on)")
         return found
 
