@@ -82,9 +82,9 @@ def test_a_title_is_shown_as_written(tmp_path):
     """Dollars are no formula, control characters are blanks, what is too long is wrapped and cut."""
     body = dict(law="svk", young=7e6, nu=0.4, density=1722)
     scene = dict(title="from $5 to $\\frac{$ \0", body=[body | dict(name=f"body{k}") for k in range(1000)])
-    text = bodies.title(scene)
+    text = drawing.wrapped(bodies.title(scene), 8)
     assert r"from \$5 to \$\frac{\$" in text and text.isprintable() is False and "\0" not in text
-    assert max(map(len, text.split("\n"))) <= bodies.WIDEST and text.count("\n") <= bodies.MOST_LINES
+    assert max(map(len, text.split("\n"))) <= 8 * drawing.LETTERS and text.count("\n") <= drawing.MOST_LINES
     figure = figures.plt.figure()
     figure.suptitle(text)
     figure.savefig(tmp_path / "title.png")

@@ -3,7 +3,6 @@ obstacles."""
 
 from collections.abc import Sequence
 from pathlib import Path
-from textwrap import wrap
 
 import numpy as np
 from matplotlib.transforms import AffineDeltaTransform
@@ -21,7 +20,6 @@ from .figures import (BAND, BLACK, BLUE, COLOURED, GREEN, GREY, ORANGE, ORIGIN, 
 ALONE = ("disc-plane", "ball-axisymmetric", "ball-plane")     # scripts of one body on the plane
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, "#56b4e9", "#e69f00")    # of bodies
 ACROSS = 3       # panels side by side
-WIDEST, MOST_LINES = 120, 4       # of each part of a title: letters in a line, lines
 NAMED = 6        # of many bodies the first and the last that titles and legends name
 PLANE = Obstacle("plane", "plane", (0.0, 0.0, 0.0, 0.0, 1.0, 0.0), np.zeros(3))      # y = 0, of a scene of one body
 GRID = 200       # points along each side of a picture, at which obstacles are looked for
@@ -42,7 +40,7 @@ def title(scene: dict[str, Value]) -> str:
     for body in scene["body"]:
         materials.setdefault(material(body), []).append(body["name"])
     lines = [as_written(scene["title"]), *(f"{', '.join(ends(of, '...'))}: {words}" for words, of in materials.items())]
-    return "\n".join("\n".join(wrap(line, WIDEST)[:MOST_LINES]) for line in lines)
+    return "\n".join(lines)
 
 
 def ends(items: list, between=None) -> list:

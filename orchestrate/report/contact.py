@@ -17,6 +17,7 @@ PRESSURE = "contact pressure [MPa]"
 SLIP = {"slides back": BLUE, "sticks": STICKS, "slides forward": ORANGE}    # v_T < 0, > 0: on the plane along x
 RADIAL = {"slides inwards": BLUE, "sticks": STICKS, "slides outwards": ORANGE}    # from the axis
 SLIDES = {"sticks": STICKS, "slides": ORANGE}
+FAR = 3                          # usual distances of points between two contacts
 MAPS = 5                         # instants at most
 ALONG = "along the outline"
 ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 1), "ncols": 3, "fontsize": 6.5, "handlelength": 1.0, "columnspacing": 0.8}
@@ -74,7 +75,7 @@ def draw(table: np.recarray, names: list[str], half: bool, free: np.ndarray, bal
         for axes in [panels[name] for name in ("pressure", "slip") if name in panels]:
             axes.set(ylabel=f"{words} [mm]", xlabel="time [ms]", ylim=(0, None) if words != ALONG else (None, None))
         if "history" in shown:
-            _history(panels["history"], history, f"_{body}" if len(names) > 1 else "")
+            _history(panels["history"], history, f"_{body}" if len(names) > 1 else "", "contact radius" if ball else "half-width")
         if len(names) > 1:
             panels["pressure"].set_title(f"{names[0]} on {names[1]}" if alone else names[body - 1])
         if maps:
@@ -126,11 +127,11 @@ def _radial(points: np.recarray, ball: dict[str, Value] | None) -> tuple[np.reca
     return own, words, states
 
 
-def _history(axes: plt.Axes, history: dict[str, np.ndarray], of: str) -> None:
-    """Half-width [mm] and, on the right, largest pressure [MPa] of the contact over time; in the flight neither."""
+def _history(axes: plt.Axes, history: dict[str, np.ndarray], of: str, width: str) -> None:
+    """Half-width, in these words, [mm] and, on the right, largest pressure [MPa] of the contact over time; in the flight neither."""
     touches = history[f"contact_half_width{of}"] > 0
     other = axes.twinx()
-    for where, name, scale, colour, label in ((axes, "contact_half_width", 1e3, BLUE, "half-width [mm]"),
+    for where, name, scale, colour, label in ((axes, "contact_half_width", 1e3, BLUE, f"{width} [mm]"),
                                               (other, "max_pressure", 1e-6, ORANGE, "largest pressure [MPa]")):
         where.plot(1e3 * history["t"], np.where(touches, scale * history[name + of], np.nan), color=colour, linewidth=1)
         where.set_ylim(0, None)
@@ -202,10 +203,15 @@ def _profiles(axes: plt.Axes, own: np.recarray, words: str, line: str) -> None:
     outline's own functions, where it is more than nothing; without a line the points."""
     for t, now, colour in _instants(own):
         now = now[np.argsort(now.s, kind="stable")]
+        values = now.projected_pressure if line else now.pressure
         if line:
-            now = now[np.abs(now.projected_pressure) > 0.01 * now.projected_pressure.max()]
-        axes.plot(1e3 * now.s, 1e-6 * (now.projected_pressure if line else now.pressure), color=colour, linestyle=line,
-                  marker="" if line else ".", linewidth=1.1, markersize=2.5, label=f"{1e3 * t:.3g} ms")
+            seen = np.abs(values) > 0.01 * values.max()
+            gap = _between(now.s[seen])[0]                              # where a line is broken
+            s, values = np.append(now.s[seen], gap), np.append(values[seen], np.full(len(gap), np.nan))
+            order = np.argsort(s, kind="stable")
+            axes.plot(1e3 * s[order], 1e-6 * values[order], color=colour, linestyle=line, linewidth=1.1, label=f"{1e3 * t:.3g} ms")
+        else:
+            axes.plot(1e3 * now.s, 1e-6 * values, color=colour, linestyle="", marker=".", markersize=2.5, label=f"{1e3 * t:.3g} ms")
     axes.set(xlabel=f"{words} [mm]", ylabel=PRESSURE, ylim=(0, None))
     axes.legend(**ABOVE)
 
@@ -233,11 +239,19 @@ def hertz(force: float, ball: dict[str, Value]) -> tuple[np.ndarray, np.ndarray]
     return r, 3 * force / (2 * np.pi * a**2) * np.sqrt(np.maximum(1 - (r / a) ** 2, 0))
 
 
+def _between(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Of places in their order (n): a usual distance behind the last and before the first of every two far from each other."""
+    usual = np.median(np.diff(places)) if len(places) > 1 else 0.0
+    far = np.flatnonzero(np.diff(places) > FAR * usual)
+    return places[far] + usual, places[far + 1] - usual
+
+
 def _over_time(axes: plt.Axes, own: np.recarray, instants: np.ndarray, values: np.ndarray, **colours) -> QuadMesh:
     """The values of the points over the instants [s] and their places, nothing where there is no load."""
-    places, place = np.unique(own.s, return_inverse=True)
+    places, between = np.unique(own.s), _between(np.unique(own.s))
+    places = np.sort(np.concatenate([places, *between]))                # empty rows between two contacts
     found = np.full((len(places), len(instants)), np.nan)
-    found[place, np.searchsorted(instants, own.t)] = values
+    found[np.searchsorted(places, own.s), np.searchsorted(instants, own.t)] = values
     return axes.pcolormesh(1e3 * instants, 1e3 * places, found, shading="nearest", rasterized=True, **colours)
 
 

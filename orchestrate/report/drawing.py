@@ -1,6 +1,7 @@
 """All figures of a finished run, each with its title and the run's warnings."""
 
 from pathlib import Path
+from textwrap import wrap
 
 import numpy as np
 
@@ -12,6 +13,8 @@ from ..output.results import Contents, body_names, check_files, read_history, re
 from ..places import COMMAND
 from . import bodies, contact as contacts, impacts, solid
 from .figures import BODY, STYLE, as_written, footer, is_half, material, per_metre, plt, save, touched
+
+LETTERS, MOST_LINES = 14, 4       # of a title: letters an inch, lines of each of its parts
 
 
 def draw(folder: Path, warnings: list[str]) -> list[Path]:
@@ -46,7 +49,7 @@ def draw(folder: Path, warnings: list[str]) -> list[Path]:
             drawn["vibration"] = impacts.vibration(impacts.read_modes(folder), history, per_metre(scene))
         drawn = {name: figure for name, figure in drawn.items() if figure}
         for name, figure in reversed(drawn.items()):
-            figure.suptitle(title(scene))
+            figure.suptitle(wrapped(title(scene), figure.get_figwidth()))
             footer(figure, warnings)
             save(figure, target / f"{name}.png")
     return [target / f"{name}.png" for name in drawn]
@@ -67,3 +70,8 @@ def title(scene: dict[str, Value]) -> str:
         text += (f"\nfriction {scene['friction_static']:g} static, {scene['friction_dynamic']:g} dynamic, "
                  f"{scene['regularization']}, ε = {scene['slip_velocity']:g} m/s")
     return text
+
+
+def wrapped(text: str, width: float) -> str:
+    """Each line of a title in as many as fit the width [inches] of a figure, but no more than MOST_LINES."""
+    return "\n".join("\n".join(wrap(line, int(LETTERS * width))[:MOST_LINES]) for line in text.split("\n"))

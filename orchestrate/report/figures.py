@@ -171,7 +171,7 @@ def over_time(panels: list[plt.Axes], history: dict[str, np.ndarray], scene: dic
     t, touches = 1e3 * history["t"], history["normal_force"] > 0
     last = 1e3 * scene["touched"][1] if scene.get("touched") else t[-1]
     for axes in panels:
-        axes.set_xlim(0 if t[0] < 0.05 * t[-1] else t[0], t[-1])
+        axes.set_xlim(0 if t[0] < 0.05 * t[-1] else t[0] - 0.02 * np.ptp(t), t[-1])
         if t[-1] - last > np.diff(t[touches]).max(initial=0.0):
             axes.axvline(last, color=BLACK, linestyle=":", linewidth=0.8, label=f"end of the contact, {last:.4g} ms"
                          if axes is panels[0] else None)

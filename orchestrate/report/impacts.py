@@ -49,15 +49,16 @@ def draw(table: np.recarray, names: list[str], rigid: list[str]) -> plt.Figure |
         label = f"{names[body - 1]} – {names[partner - 1] if partner > 0 else rigid[-partner - 1]}"
         across = np.where(rows.approach > LEAST_APPROACH * np.fmax.reduce(rows.approach), rows.restitution, np.nan)
         pushed = across > HIGHEST
-        top.plot(t, np.where(pushed, np.nan, across), "o-", color=colour, markersize=4, linewidth=0.8, label=f"{label}: across")
+        top.plot(t, np.where(pushed, np.nan, across), "o-", color=colour, markersize=4, linewidth=0.8,
+                 label=f"{label}: normal" if np.isfinite(across).any() else None)
         if pushed.any():
             top.plot(t[pushed], np.full(pushed.sum(), HIGHEST), "^", color=colour, markersize=5,
-                     label=f"{label}: across, above {HIGHEST:g}")
+                     label=f"{label}: normal, above {HIGHEST:g}")
         slips = rows.slip_before > LEAST_SLIP * np.maximum(rows.approach, np.fmax.reduce(rows.slip_before))
         along = np.where(slips, rows.restitution_tangential, np.nan)
         below.plot(t, rows.approach, "o-", color=colour, markersize=4, linewidth=0.8)
         if np.isfinite(along).any():
-            top.plot(t, along, "s--", color=colour, markersize=4, linewidth=0.8, fillstyle="none", label=f"{label}: along")
+            top.plot(t, along, "s--", color=colour, markersize=4, linewidth=0.8, fillstyle="none", label=f"{label}: tangential")
             below.plot(t, rows.slip_before, "s--", color=colour, markersize=4, linewidth=0.8, fillstyle="none")
     top.set(ylabel="restitution", ylim=(min(0.0, top.get_ylim()[0]), max(1.05, top.get_ylim()[1])))
     top.axhline(1, color=GREY, linewidth=0.6)
@@ -70,15 +71,20 @@ def draw(table: np.recarray, names: list[str], rigid: list[str]) -> plt.Figure |
 def with_flights(history: dict[str, np.ndarray]) -> Contents:
     """The history with rows inside its flights, of which a run has one each. With s from 0 to 1 in a flight of duration T, in which every
     velocity changes by dv = g T, all is linear in s but places, less by s (1 - s) dv T/2, and kinetic energy and work of gravity, less by
-    s (1 - s) m dv^2/2."""
+    s (1 - s) m dv^2/2. No force acts from its very beginning on."""
     t = history["t"]
     flies = (history["newton_iterations"][1:] == 0) & (history["normal_force"][1:] == 0)
-    inside = np.linspace(t[:-1][flies], t[1:][flies], INSIDE + 2)[1:-1].ravel()
+    shares = np.append(np.linspace(0, 1, INSIDE + 2)[1:-1], 1e-6)
+    inside = (t[:-1][flies] + np.outer(shares, np.diff(t)[flies])).ravel()
     times = np.sort(np.concatenate([t, inside]))
     step = np.clip(np.searchsorted(t, times, side="right") - 1, 0, len(t) - 2)
     share = (times - t[step]) / np.diff(t)[step]
     bend = np.where(flies[step], share * (1 - share) / 2, 0)
     filled = {name: np.interp(times, t, column) for name, column in history.items()}
+    filled["dt"][1:] = np.diff(times)
+    for name in filled:
+        if "force" in name:
+            filled[name][flies[step] & (share > 0)] = 0
     for of in ("", *(name.removeprefix("kinetic") for name in history if name.startswith("kinetic_"))):
         gained = np.zeros(len(t) - 1)
         for axis in (axis for axis in "xyz" if axis + of in history):
