@@ -315,18 +315,11 @@ def folding(corners: np.ndarray, thickness: float, revolved: bool) -> float:
     return float(least)
 
 
-def crossing_sides(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """Pairs (k, 2) of sides, one of each polygon, that cross or touch, counted from 0."""
-    import shapely
-    one, other = (shapely.linestrings(np.stack([of, np.roll(of, -1, axis=0)], axis=1)) for of in (first, second))
-    pairs = shapely.STRtree(other).query(one, predicate="intersects").T
-    return pairs[np.lexsort(pairs.T[::-1])]
-
-
 def self_crossing(corners: np.ndarray) -> tuple[int, int] | None:
     """Two sides of a polygon, counted from 0, that cross, touch away from a common corner, or fold back on each other."""
-    n = len(corners)
-    for i, j in crossing_sides(corners, corners):
+    import shapely
+    n, sides = len(corners), shapely.linestrings(np.stack([corners, np.roll(corners, -1, axis=0)], axis=1))
+    for i, j in sorted(shapely.STRtree(sides).query(sides, predicate="intersects").T.tolist()):
         if (j - i) % n not in (0, 1, n - 1):
             return int(min(i, j)), int(max(i, j))
     along = np.roll(corners, -1, axis=0) - corners

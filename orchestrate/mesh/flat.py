@@ -11,7 +11,7 @@ from ..input import parameters
 from . import gmsh_file, mesh
 from ..freefem.describe import describe
 from ..failure import BadInput, brief
-from ..geometry.outlines import Loop, Outline, circle_loop, crossing_sides, ellipse_loop, polygon_loop, self_crossing
+from ..geometry.outlines import Loop, Outline, circle_loop, ellipse_loop, polygon_loop, self_crossing
 from ..input.tables import LONGEST, SHORTEST, Table
 
 SHAPES = {"disc": ("radius",), "ellipse": ("semi_axes",), "rectangle": ("width", "height"), "ring": ("radius", "inner_radius"),
@@ -68,19 +68,19 @@ def _outline(table: Table) -> Outline:
 
 def _polygon(table: Table) -> Outline:
     """The polygon with its holes; BadInput where it crosses itself, or a hole is not inside it and apart from the others."""
+    import shapely      # here: other bodies need none
     outer, holes = table.points("vertices"), table.polygons("holes")
     named = [(f"{table.path}.vertices", outer), *((f"{table.path}.holes.{k}", hole) for k, hole in enumerate(holes, 1))]
     for path, corners in named:
         check_simple(path, corners)
-    loops = [polygon_loop(corners) for _, corners in named]
-    for k, (path, hole) in enumerate(named[1:], 1):
-        for other in range(k):
-            crossing = len(crossing_sides(hole, named[other][1])) > 0
-            if other == 0 and (crossing or (loops[0].gap(hole) > 0).any()):
-                raise BadInput(f"{path}: is not inside {named[0][0]} (accepted: holes that neither cross nor touch the outline)")
-            if other > 0 and (crossing or loops[other].gap(hole[:1]) < 0 or loops[k].gap(named[other][1][:1]) < 0):
+    areas = [shapely.Polygon(corners) for _, corners in named]
+    for k, (path, _) in enumerate(named[1:], 1):
+        if not areas[0].contains_properly(areas[k]):
+            raise BadInput(f"{path}: is not inside {named[0][0]} (accepted: holes that neither cross nor touch the outline)")
+        for other in range(1, k):
+            if areas[k].intersects(areas[other]):
                 raise BadInput(f"{path}: overlaps {named[other][0]} (accepted: holes apart from each other)")
-    return Outline(tuple(loops))
+    return Outline(tuple(polygon_loop(corners) for _, corners in named))
 
 
 def check_simple(path: str, corners: np.ndarray) -> None:
