@@ -36,8 +36,8 @@ HARMLESS = {"failure", "places", "freefem/describe", "freefem/freefem", "output/
 ESTIMATING = ("output/estimate", "output/results")   # what decides the stated errors besides
 
 
-def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | None = None, *,
-        mesh_file: Path | None = None, force: bool = False, progress: bool | None = None, estimate: bool = True) -> RunResult:
+def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | str | None = None, *,
+        mesh_file: Path | str | None = None, force: bool = False, progress: bool | None = None, estimate: bool = True) -> RunResult:
     """Runs `scene` with some parameters overridden in the folder `out` (default results/<scene>), or reuses it.
 
     Raises Failure with the exit code of the run contract. `force` runs again, from the start, even if the folder is up to date; else a run
@@ -46,8 +46,8 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | Non
     """
     started = time.monotonic()
     scene = scene.override(overrides or {})
-    folder = result_folder(out or RESULTS / scene.name)
-    mesh_file = mesh_file and _mesh_path(mesh_file)
+    folder = result_folder(Path(out or RESULTS / scene.name))
+    mesh_file = mesh_file and _mesh_path(Path(mesh_file))
     foreign = gmsh_file.load(mesh_file) if mesh_file else None
     scene.description(foreign, mesh_file)   # BadInput before anything is made
     finished = finished_in(folder, force)

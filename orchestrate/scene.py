@@ -29,14 +29,16 @@ def read_toml(path: Path, missing: str) -> tuple[str, dict]:
         raise BadInput(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
 
 
-def load(name: str) -> Scene:
+def load(name: str | Path) -> Scene:
     """A built-in scene, or the scene of a TOML file: title, script and any parameters, all at top level; or one with bodies.
 
     The scene.toml of a result folder is such a file too. BadInput when there is no such scene, on a TOML error
     and on an unknown key.
     """
+    name = str(name)
     path = SCENES / f"{name}.toml" if name in built_in() else Path(name)
-    _, given = read_toml(path, f"{name}: no such scene (built in: {', '.join(built_in())}; or the path of a TOML file)")
+    words = "no such file" if name.endswith(".toml") else f"no such scene (built in: {', '.join(built_in())}; or the path of a TOML file)"
+    _, given = read_toml(path, f"{name}: {words}")
     try:
         return read(given, path.parent, path.stem)
     except BadInput as error:

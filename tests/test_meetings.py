@@ -191,3 +191,31 @@ def test_a_contact_that_begins_at_a_corner_is_named(tmp_path, angle, share):
     block = {"name": "block", "shape": "rectangle", "width": 0.1, "height": 0.05, "angle": angle, "position": [0, 0.075], "velocity": [0, -2]}
     found = go(tmp_path, block, FLOOR, accuracy=0.02)
     assert found.summary["corner_share"] == pytest.approx(share, abs=0.05) and len(said(found, "corner")) == share
+
+
+@pytest.mark.parametrize("thickness, obstacle, through", [
+    (1e-3, lambda t: {"kind": "polyline", "vertices": [[-0.3, 0], [0.3, 0], [0.3, -t], [-0.3, -t]], "closed": True}, True),
+    (1e-3, lambda t: {"kind": "implicit", "distance": f"abs(y+{t / 2})-{t / 2}"}, True),
+    (1e-2, lambda t: {"kind": "polyline", "vertices": [[-0.3, 0], [0.3, 0], [0.3, -t], [-0.3, -t]], "closed": True}, False)], ids=["thin", "implicit", "thick"])
+def test_a_body_that_is_pressed_through_a_thin_obstacle_is_named(tmp_path, thickness, obstacle, through):
+    """Deeper than half its thickness points are pushed out on the far side: the body goes through, and a warning says so."""
+    found = go(tmp_path, {"name": "disc", "shape": "disc", "radius": 0.05, "position": [0, 0.06], "velocity": [0, -20]}, {"name": "plate"} | obstacle(thickness))
+    assert (found.summary["rebound_vy"] < 0) == through == bool(said(found, "through"))
+    if through:
+        assert "points went through plate" in said(found, "through")[0]
+
+
+def test_points_at_a_vertex_know_both_its_edges(tmp_path):
+    """A point beyond the end of an edge near the search's reach is outside of the body there: no force appears between two steps, and energy is kept
+    (40 m/s on a plate that is 100 times as stiff)."""
+    disc = {"name": "disc", "shape": "disc", "radius": 0.05, "young": 1e6, "nu": 0.45, "position": [0, 0.0501], "velocity": [0, -40]}
+    plate = {"name": "plate", "shape": "rectangle", "width": 0.15, "height": 0.02, "young": 1e8, "nu": 0.45, "position": [0.0355, -0.01]}
+    found = go(tmp_path, [disc, plate], [], accuracy=0.2, end_time=8e-4, contact={"friction_static": 0.3})
+    assert found.summary["energy_drift"] < 1e-9
+
+
+def test_the_bottom_of_a_bowl_may_lie_where_its_expression_has_no_slope(tmp_path):
+    """A root has none at 0, which the top of the disc passes as it falls: the first touch is found as in the bowl that is meant."""
+    disc = {"name": "disc", "shape": "disc", "radius": 0.05, "position": [0, 0.051], "velocity": [0, -4]}
+    runs = [go(tmp_path / kind["kind"], disc, kind) for kind in ({"kind": "implicit", "distance": "0.1-sqrt(x^2+(y-0.1)^2)"}, {"kind": "bowl", "centre": [0, 0.1], "radius": 0.1})]
+    assert runs[0].summary["impulse"] == pytest.approx(runs[1].summary["impulse"], rel=2e-3)

@@ -31,6 +31,12 @@ def test_finished_run_is_complete(fake, tmp_path):
     assert not list(tmp_path.glob("out.*"))
 
 
+def test_python_takes_numbers_of_numpy_and_paths_as_text(fake, tmp_path):
+    """Scripts loop over np.linspace, and name folders and scenes as they like."""
+    found = run.run(scene.load(Path("disc-normal")), {"speed": np.linspace(1, 4, 2)[1], "fields": np.int64(2)}, str(tmp_path / "out"), estimate=False)
+    assert found.scene["speed"] == 4 and found.scene["fields"] == 2 and found.folder == tmp_path / "out"
+
+
 def test_mesh_has_the_described_sizes(fake, tmp_path):
     """The mesh that Python makes has the sizes that the scripts describe."""
     used = go(tmp_path / "out").scene

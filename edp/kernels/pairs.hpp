@@ -2,6 +2,7 @@
 // another body (edges in the plane, faces in space, A components), the closest points of these, the rows of the conserving gap, and the
 // springs at vertices.
 #pragma once
+#include <map>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -167,7 +168,13 @@ struct AnyPairs {
 
 template<int A> class Pairs : public AnyPairs {
 public:
-  explicit Pairs(Surface given) : surface(std::move(given)) {}
+  explicit Pairs(Surface given) : surface(std::move(given)), beside(A == 2 ? 2 * surface.cells : 0, -1) {
+    std::map<int, size_t> first;             // of a vertex the first edge's end there
+    for (size_t k = 0; k < beside.size(); k++) {
+      const auto [at, is_new] = first.insert({node(int(k / 2), 0, int(k % 2)), k});
+      if (!is_new) { beside[k] = int(at->second / 2);  beside[at->second] = int(k / 2); }
+    }
+  }
 
   long search(const double *x, double reach) {
     const Surface &s = surface;
@@ -182,6 +189,7 @@ public:
         join(x, e, c, found);
       }
     std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
     slot.clear();  first.clear();  cell.clear();
     for (const auto &one : found) {
       if (slot.empty() || slot.back() != one.first) { slot.push_back(one.first);  first.push_back(int(cell.size())); }
@@ -269,6 +277,7 @@ private:
   struct Before { int cell;  double r, length;  Vector<A> n; };   // at the evaluation before; cell -1: there is none in this step
 
   Surface surface;
+  std::vector<int> beside;                 // of an edge in the plane those at its two ends; -1: none
   double reach = 0, roundOff = 0;          // [m]
   std::vector<Vector<A>> low, high;        // (cells) boxes, with half of the reach
   std::vector<long> slot;                  // (n)
@@ -360,7 +369,7 @@ private:
     return -place.gap <= std::min(reach, 0.1 * length(apart)) ? place.gap : -place.gap;
   }
 
-  // Points of a cell within reach of the box of another.
+  // Points of a cell within reach of the box of another; in the plane they know the edges beside that, too: on a vertex both tell the side.
   void join(const double *x, int own, int other, std::vector<std::pair<long, int>> &found) const {
     const Surface &s = surface;
     const int partner = s.obstacles + (s.body[other] == s.body[own] ? s.bodies - 1 : s.body[other] - (s.body[other] > s.body[own] ? 1 : 0));
@@ -368,7 +377,11 @@ private:
       const Vector<A> y = pointPlace(x, p);
       bool near = true;
       for (int i = 0; i < A; i++) near = near && y[i] >= low[other][i] - reach / 2 && y[i] <= high[other][i] + reach / 2;
-      if (near) found.push_back({long(partner) * s.np + p, other});
+      if (!near) continue;
+      found.push_back({long(partner) * s.np + p, other});
+      for (size_t k = 2 * other; A == 2 && k < size_t(2 * other + 2); k++)
+        if (beside[k] >= 0 && (s.body[other] != s.body[own] || sightOf(own, beside[k]) > 0))
+          found.push_back({long(partner) * s.np + p, beside[k]});
     }
   }
 

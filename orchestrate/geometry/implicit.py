@@ -13,6 +13,7 @@ ACCEPTED = "numbers, {axes}, + - * / ^, sin cos sqrt exp abs min max and parenth
 LONGEST = 1000               # characters of an expression
 TWO = {ast.Add: 4, ast.Sub: 5, ast.Mult: 6, ast.Div: 7, ast.Pow: 8, "min": 9, "max": 10}
 ONE = {ast.USub: 11, "sin": 12, "cos": 13, "sqrt": 14, "exp": 15, "abs": 16}
+TINY = 1e-300                   # so that the slope of a root of 0 is that of what is in it, where this has none
 TURNS = 60                   # towards the closest point, at most
 CLOSE = 1e-9                 # of `limit`: how near it is at last
 SAMPLES = 4000               # points at which steepness and curvature are looked for
@@ -74,7 +75,7 @@ OPERATIONS = {
     8: lambda a, b, side: (a**b, np.where(b == 0, 0, b * a**np.where(b == 0, 1, b - 1)), 0),
     9: lambda a, b, side: (np.where(side, a, b), side, 1 - side), 10: lambda a, b, side: (np.where(side, a, b), side, 1 - side),
     11: lambda a, b, side: (-a, -1, 0), 12: lambda a, b, side: (np.sin(a), np.cos(a), 0), 13: lambda a, b, side: (np.cos(a), -np.sin(a), 0),
-    14: lambda a, b, side: (np.sqrt(a), 0.5 / np.sqrt(a), 0), 15: lambda a, b, side: (np.exp(a), np.exp(a), 0),
+    14: lambda a, b, side: (np.sqrt(a), 0.5 / (np.sqrt(a) + TINY), 0), 15: lambda a, b, side: (np.exp(a), np.exp(a), 0),
     16: lambda a, b, side: (a * side, side, 0)}
 SIDES = {9: lambda a, b: (a < b) * 1.0, 10: lambda a, b: (a >= b) * 1.0, 16: lambda a, b: np.where(a < 0, -1.0, 1.0)}
 

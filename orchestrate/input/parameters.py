@@ -46,7 +46,9 @@ class Parameter:
         return "|".join(self.words) if self.kind == "word" else ", ".join([*self.words, f"{self.low:g} to {self.high:g}"])
 
     def check(self, given: Value) -> Value:
-        """`given` (text, or a TOML value) as float, int or word; BadInput where it is not accepted."""
+        """`given` (text, a TOML value or a number of numpy) as float, int or word; BadInput where it is not accepted."""
+        if type(given).__module__ == "numpy" and hasattr(given, "item"):
+            given = given.tolist()
         if isinstance(given, str) and given in self.words:
             return given
         if self.kind == "word":

@@ -317,7 +317,7 @@ def _apart(found: Scene) -> None:
 def _refuse_overlap(path: str, body: Body, other_path: str, other: str, gap: float) -> None:
     if gap < -TOUCHING * body.outline.half_thickness:
         raise BadInput(f"{path}.position: '{body.name}' overlaps '{other}' ({other_path}) by {-gap:.3g} m at the start "
-                       f"(accepted: apart or touching)")
+                       f"(accepted: apart or touching{'' if other_path.startswith('body') else ', on the side that its normal points to'})")
 
 
 def gap_between(first: Shape, second: Shape) -> float:
