@@ -38,8 +38,8 @@ def test_spin_of_two_discs(tmp_path):
     path = tmp_path / "spinning.toml"
     path.write_text("accuracy = 0.1\n" + text.replace("velocity = [3, 0]", "velocity = [3, 0]\nspin = 200").replace("velocity = [-3, 0]", "velocity = [-3, 0]\nspin = 150"))
     row, found = go(tmp_path / "out", str(path), {"fields": 0})
-    assert row.approach == pytest.approx(6 * math.sqrt(0.1**2 - 0.02**2) / 0.1, rel=2e-3)
-    assert row.slip_before == pytest.approx(abs(6 * 0.2 - 350 * RADIUS), rel=5e-3)
+    assert row.approach == pytest.approx(6 * math.sqrt(0.1**2 - 0.02**2) / 0.1, rel=2e-4)
+    assert row.slip_before == pytest.approx(abs(6 * 0.2 - 350 * RADIUS), rel=2e-4)
 
 
 def test_no_reverse_slip_of_many_bodies(tmp_path):
