@@ -94,7 +94,8 @@ def draw(result: RunResult) -> None:
         from . import drawing   # matplotlib: only where something is drawn
         drawing.draw(result.folder, result.summary["warnings"])
     except Exception as error:
-        print(f"ffimpact: the figures could not be drawn: {error!r}", file=sys.stderr)
+        why = f"{error.filename or result.folder}: {error.strerror}" if isinstance(error, OSError) and error.strerror else repr(error)
+        print(f"ffimpact: the figures could not be drawn: {why}", file=sys.stderr)
 
 
 def stiffness(contact: dict[str, Value]) -> str:
