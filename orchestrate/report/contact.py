@@ -209,7 +209,8 @@ def _profiles(axes: plt.Axes, own: np.recarray, words: str, line: str) -> None:
             gap = _between(now.s[seen])[0]                              # where a line is broken
             s, values = np.append(now.s[seen], gap), np.append(values[seen], np.full(len(gap), np.nan))
             order = np.argsort(s, kind="stable")
-            axes.plot(1e3 * s[order], 1e-6 * values[order], color=colour, linestyle=line, linewidth=1.1, label=f"{1e3 * t:.3g} ms")
+            axes.plot(1e3 * s[order], 1e-6 * values[order], color=colour, linestyle=line, marker="", linewidth=1.1,
+                      label=f"{1e3 * t:.3g} ms")
         else:
             axes.plot(1e3 * now.s, 1e-6 * values, color=colour, linestyle="", marker=".", markersize=2.5, label=f"{1e3 * t:.3g} ms")
     axes.set(xlabel=f"{words} [mm]", ylabel=PRESSURE, ylim=(0, None))

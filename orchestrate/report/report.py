@@ -59,7 +59,7 @@ def rows(per: str) -> list[Quantity]:
         Quantity("reverse_slip_time", "  of it backwards", "ms", 1e3),
         Quantity("sticking_time", "load sticks for", "ms", 1e3),
         Quantity("energy_initial", "energy at the start", f"J{per}"),
-        Quantity("external_work", "work of gravity, obstacles", f"J{per}"),
+        Quantity("external_work", "external work", f"J{per}"),
         Quantity("translation_energy", "left in translation", f"J{per}"),
         Quantity("rotation_energy", "  in rotation", f"J{per}"),
         Quantity("vibration_energy", "  in vibration", f"J{per}"),
