@@ -7,10 +7,9 @@ import pytest
 
 from orchestrate.output import vtu
 from verification import test_stress
+from verification.test_residual_and_tangent import MOONEY, OGDEN
 
-MOONEY = {"law": "mooney-rivlin", "law_parameters": "0.3"}
-TERMS = ((1.3, 0.5), (5.0, 0.2), (-2.0, 0.3))                    # exponents and shares
-OGDEN = {"law": "ogden", "law_parameters": ",".join(f"{number:g}" for term in TERMS for number in term)}
+TERMS = ((1.3, 0.5), (5.0, 0.2), (-2.0, 0.3))                    # exponents and shares of OGDEN
 NEOHOOKEAN = {"mooney-rivlin": "0", "ogden": "2,1"}              # law_parameters with which they are neo-Hookean
 NU = 0.45
 SCRIPTS = {"disc-plane": {"accuracy": 0.1}, "ball-axisymmetric": {"accuracy": 0.1}, "ball-plane": {"accuracy": 0.2, "mesh_size": 0.03, "contact_mesh_size": 0.015}}
@@ -72,14 +71,6 @@ def test_bad_terms_are_refused(disc, numbers, said):
     """Exponents without shares, of 0 or too many, shares below 0 or without the sum 1: one line."""
     with pytest.raises(Exception, match=re.escape(said)):
         disc(law="ogden", law_parameters=numbers, accuracy=0.2)
-
-
-@pytest.mark.parametrize("given", [MOONEY, OGDEN], ids=lambda given: given["law"])
-@pytest.mark.parametrize("body", ["disc", "ball", "3d"])
-def test_tangent_is_the_derivative_of_the_residual(measure, body, given):
-    """Moduli D = 2 dS/dC, on curved elements in the plane, of revolution and in space, to 1e-6 of central differences."""
-    coarse = {"accuracy": 0.1} if body != "3d" else {"mesh_size": 0.025, "contact_mesh_size": 0.015}
-    assert measure(f"tangent-{body}", degree=2, integrator="midpoint", **coarse, **given)["tangent"] < 1e-6
 
 
 @pytest.mark.parametrize("own", [MOONEY, OGDEN], ids=lambda given: given["law"])
