@@ -329,28 +329,19 @@ def test_pairs_inherit_from_contact():
 
 @pytest.mark.parametrize("name", [name for name in built_in() if load(name).bodies])
 def test_the_scene_as_used_is_the_same_scene(name, tmp_path):
-    """scene.toml, which has everything that was left open, makes the same mesh, data and values, byte for byte."""
-    first, second = tmp_path / "first", tmp_path / "second"
+    """Every scene that comes with the program makes a sound mesh of its bodies; scene.toml, which has everything that was left open, makes the same mesh, data and
+    values, byte for byte."""
+    first, second, scene = tmp_path / "first", tmp_path / "second", load(name)
     for folder, source in ((first, name), (second, str(first / "scene.toml"))):
         folder.mkdir()
         built = assembly.assemble(load(source))
+        assert built.mesh.volumes.min() > 0 if scene.dimension.axes == 3 else areas(built.mesh).min() > 0 and smallest_angle(built.mesh) > 20
+        assert set(built.regions) == set(range(len(scene.bodies)))
         assert "auto" not in {name: value for name, value in built.values.items() if name != "pairing_range"}.values()
         built.write(folder)
         (folder / "scene.toml").write_text(to_toml(built.used))
-    for file in (load(name).mesh_name, "scene.dat", "scene.toml"):
+    for file in (scene.mesh_name, "scene.dat", "scene.toml"):
         assert (first / file).read_text() == (second / file).read_text(), file
-
-
-@pytest.mark.parametrize("name", [name for name in built_in() if load(name).bodies])
-def test_built_in_scenes_are_assembled(name):
-    """Every scene that comes with the program makes a sound mesh of its bodies."""
-    scene = load(name)
-    built = assembly.assemble(scene)
-    if scene.dimension.axes == 3:
-        assert built.mesh.volumes.min() > 0
-    else:
-        assert areas(built.mesh).min() > 0 and smallest_angle(built.mesh) > 20
-    assert set(built.regions) == set(range(len(scene.bodies)))
 
 
 # ---- what is refused

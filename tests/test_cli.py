@@ -90,23 +90,6 @@ def test_quiet_is_quiet(fake, tmp_path):
     assert call("run", "disc-normal", "--quiet", "--set", "speed=4", "fields=0", "--out", str(tmp_path / "out")) == (0, "", "")
 
 
-@pytest.mark.parametrize("arguments, code, line", [
-    (["run", "disc-nowhere"], 10, "ffimpact: disc-nowhere: no such scene"),
-    (["run", "disc-normal", "--set", "speed=8x"], 10, "ffimpact: speed: '8x' is not a number (accepted: 0 to 1e+09)"),
-    (["run", "disc-normal", "--set", "speed"], 10, "ffimpact: --set: 'speed' is not of the form name=value"),
-    (["run", "disc-normal", "--set", "sped=8"], 10, "ffimpact: sped: no such parameter; did you mean speed"),
-    (["run", "disc-normal", "--mesh", "nowhere.msh"], 10, "ffimpact: mesh: "),
-    (["run", "disc-normal", "--out", "orchestrate"], 14, "ffimpact: "),
-    (["run", "disc-normal", "--out", "/proc/nowhere"], 14, "ffimpact: "),
-    (["figures", "nowhere"], 14, "ffimpact: "),
-    (["swep"], 10, "ffimpact: argument COMMAND: invalid choice: 'swep' (choose from 'run', 'list', 'parameters', 'figures', 'sweep', "),
-])
-def test_expected_errors_are_one_line(fake, arguments, code, line):
-    """An expected error is one line on stderr and its exit code; no traceback."""
-    returned, out, err = call(*arguments)
-    assert returned == code and err.startswith(line) and err.count("\n") == 1, err
-
-
 def test_failure_of_the_script_is_passed_on(fake, tmp_path):
     """The script's own line arrives on stderr as it is, with its exit code; stdout says where the files are."""
     fake("step")

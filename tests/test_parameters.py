@@ -37,12 +37,8 @@ def test_numbers_that_are_accepted(given, value):
 
 @pytest.mark.parametrize("name, given, message", [
     ("speed", "8x", "speed: '8x' is not a number (accepted: 0 to 1e+09)"),
-    ("speed", "", "speed: '' is not a number (accepted: 0 to 1e+09)"),
-    ("speed", "1_000", "speed: '1_000' is not a number (accepted: 0 to 1e+09)"),
-    ("speed", "nan", "speed: 'nan' is not a number (accepted: 0 to 1e+09)"),
     ("speed", float("nan"), "speed: nan is out of range (accepted: 0 to 1e+09)"),
     ("speed", True, "speed: 'True' is not a number (accepted: 0 to 1e+09)"),
-    ("speed", "-1", "speed: -1 is out of range (accepted: 0 to 1e+09)"),
     ("fields", "2.5", "fields: '2.5' is not a whole number (accepted: 0 to 10000)"),
     ("law", "hooke", "law: 'hooke' is not known (accepted: " + "|".join(parameters.table()["law"].words) + ")"),
 ])

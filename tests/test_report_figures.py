@@ -172,13 +172,6 @@ def test_failed_points_have_rows_of_their_own():
         assert star.get_xdata() == [8] and star.get_ydata() == pytest.approx([4.8])
 
 
-@pytest.mark.parametrize("name", sweep.built_in())
-def test_every_sweep_says_nu(name):
-    """In its title, or as what varies."""
-    wanted = sweep.load(name)
-    assert "nu" in wanted.axes or "ν = " in sweep_figures._constants(wanted)
-
-
 # ---- cut of a body in three dimensions
 
 def block(low: float, high: float, count: int) -> vtu.Solid:

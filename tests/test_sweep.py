@@ -126,18 +126,13 @@ def test_unknown_sweep_and_run():
 
 @pytest.mark.parametrize("name", sweep.built_in())
 def test_built_in_sweeps_are_sound(name):
-    """Each loads, has a title and a figure, and has its target in the Makefile."""
+    """Each loads, has a title and a figure, says nu in its title or as what varies, and has its target in the Makefile. No point leaves open what its scene fixes: an axis
+    over the static coefficient has the dynamic one beside it."""
     wanted = sweep.load(name)
+    given = sweep.scene.load(wanted.scene)
+    assert not {said for point in wanted.points for said in given.override(wanted.base | point).released}
+    assert "nu" in wanted.axes or "ν = " in sweep_figures._constants(wanted)
     assert wanted.title != name and wanted.figure and f" {name}" in (parameters.ROOT / "Makefile").read_text()
-
-
-def test_the_papers_sweeps_cover_what_it_draws():
-    """Figures 6b and 8: at least 40 speeds from 0.5 to 11 m/s and beyond; both for nu = 0.3 and 0.45 with error bars."""
-    for name in ("contact-time-svk", "contact-time-neohookean"):
-        wanted = sweep.load(name)
-        speeds = {point["speed"] for point in wanted.points if point["speed"] <= 11}
-        assert len(speeds) >= 40 and min(speeds) == 0.5 and max(speeds) > 10.75 and wanted.refine
-        assert {point["nu"] for point in wanted.points} == {0.3, 0.45}
 
 
 # ---- the table
@@ -414,11 +409,3 @@ def test_a_refused_point_keeps_no_other(fake, tmp_path, capsys):
     assert list(rows.exit) == [10, 0] and rows.contact_time.notna().tolist() == [False, True]
     assert "first: angle=60.0,symmetry=half: symmetry: half" in said.err and said.err.count("\n") == 1 and "failed, exit 10: angle=60.0,symmetry=half" in said.out
     assert main(["sweep", str(write(tmp_path, 'scene = "two.toml"\n[product]\n"body.1.position.1" = [0.05, 0.06]\n')), "--list"]) == 10   # none is left
-
-
-@pytest.mark.parametrize("name", sweep.built_in())
-def test_the_sweeps_of_the_paper_say_all_that_they_set(name):
-    """No point of a built-in sweep leaves open what its scene fixes: an axis over the static coefficient has the dynamic one beside it."""
-    wanted = sweep.load(name)
-    given = sweep.scene.load(wanted.scene)
-    assert not {said for point in wanted.points for said in given.override(wanted.base | point).released}
