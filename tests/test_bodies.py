@@ -17,6 +17,7 @@ from orchestrate.failure import BadInput
 from orchestrate.geometry.outlines import crossing_sides, ellipse_loop, polygon_loop, self_crossing
 from orchestrate.scene import SCENES, Scene, built_in, load, read as read_scene
 from orchestrate.input.tables import to_toml
+from triangles import areas, smallest_angle
 
 DISC = {"name": "disc", "shape": "disc", "radius": 0.5, "position": [0, 1.5], "velocity": [0, -10]}
 BLOCK = {"name": "block", "shape": "rectangle", "width": 10, "height": 2, "position": [0, 0]}
@@ -39,19 +40,6 @@ def changed(*entries: tuple) -> dict:
     for name, value in entries:
         given = set_entry(given, name, value)
     return given
-
-
-def areas(m: mesh.Mesh) -> np.ndarray:
-    a, b, c = (m.points[m.triangles[:, k]] for k in range(3))
-    return ((b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])) / 2
-
-
-def smallest_angle(m: mesh.Mesh) -> float:
-    corners, angles = m.points[m.triangles], []
-    for k in range(3):
-        u, v = corners[:, (k + 1) % 3] - corners[:, k], corners[:, (k + 2) % 3] - corners[:, k]
-        angles.append(np.degrees(np.arccos((u * v).sum(1) / np.linalg.norm(u, axis=1) / np.linalg.norm(v, axis=1))).min())
-    return min(angles)
 
 
 # ---- shapes
