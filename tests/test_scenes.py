@@ -3,12 +3,12 @@
 import json
 import math
 import subprocess
-import sys
 
 import numpy as np
 import pytest
 
 from orchestrate import run, scene
+from orchestrate.__main__ import main
 from orchestrate.freefem import freefem
 from orchestrate.input import parameters
 from orchestrate.mesh import mesh
@@ -116,12 +116,11 @@ def test_the_folder_of_a_scene_of_ones_own(mine, tmp_path):
     assert s["rebound_vx_2"] != 0 and s["energy_drift"] < 1e-8 and s["estimated_error"] is not None
 
 
-def test_entries_are_set_on_the_command_line(mine):
+def test_entries_are_set_on_the_command_line(mine, capsys):
     """--set body.2.young=... arrives in the scene as used, and a direct run on the folder's files gives the same answer."""
     found, path = mine
     out = path.parent / "set"
-    done = call("run", str(path), "--set", "body.2.young=8e6", "fields=0", "--out", str(out), "--quiet")
-    assert done.returncode == 0, done.stderr
+    assert main(["run", str(path), "--set", "body.2.young=8e6", "fields=0", "--out", str(out), "--quiet"]) == 0, capsys.readouterr().err
     other = json.loads((out / "summary.json").read_text())
     assert other["impulse"] > found.summary["impulse"] and run.read_scene(out)["body"][1]["young"] == 8e6
     direct = freefem_run("-mesh", str(out / "mesh.msh"), "-bodies", str(out / "scene.dat"), *freefem.words_of(values(out)), "-out", str(path.parent / "direct"))
@@ -204,10 +203,6 @@ def test_bodies_are_drawn_where_they_are(mine):
 
 # ---- what is refused
 
-def call(*words: str) -> subprocess.CompletedProcess:
-    return subprocess.run([sys.executable, "-m", "orchestrate", *words], cwd=parameters.ROOT, capture_output=True, text=True)
-
-
 def freefem_run(*flags: str, script: str = "bodies") -> subprocess.CompletedProcess:
     return freefem.find().call(f"edp/{script}.edp", *flags)
 
@@ -227,11 +222,12 @@ def values(folder) -> dict:
     (("two-discs", "--set", "body.1.position=[0,0]"), "body.1.position: 'left' overlaps 'right' (body.2)"),
     (("two-discs", "--set", "contact.friction_dynamic=0.5"), "contact.friction_dynamic: 0.5 is larger than friction_static 0.3"),
 ])
-def test_what_python_refuses(words, said, tmp_path):
+def test_what_python_refuses(words, said, tmp_path, capsys):
     """Exit code 10, one line, nothing left behind."""
-    (tmp_path / "m.msh").write_text((MESH := "4 2 4\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n1 2 3 0\n1 3 4 0\n1 2 1\n2 3 1\n3 4 1\n4 1 1\n"))
-    done = call("run", *(str(tmp_path / "m.msh") if word == "MESH" else word for word in words), "--out", str(tmp_path / "out"), "--quiet")
-    assert done.returncode == 10 and done.stderr.count("\n") == 1 and said in done.stderr, done.stderr + MESH
+    (tmp_path / "m.msh").write_text("4 2 4\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n1 2 3 0\n1 3 4 0\n1 2 1\n2 3 1\n3 4 1\n4 1 1\n")
+    code = main(["run", *(str(tmp_path / "m.msh") if word == "MESH" else word for word in words), "--out", str(tmp_path / "out"), "--quiet"])
+    error = capsys.readouterr().err
+    assert code == 10 and error.count("\n") == 1 and said in error, error
     assert [path.name for path in tmp_path.iterdir()] == ["m.msh"]
 
 
@@ -330,14 +326,8 @@ def inputs(tmp_path_factory):
     ("scene.dat", " -0.06 0.0 ", " 0.0 0.0 ", "overlap by 0.0"),
     ("scene.dat", "circles 2\n0", "circles 2\n9", "circle 1 of body 9, of 0 to 1"),
     ("scene.dat", "obstacles 0", "obstacles 1\nfloor plane 3 0 0 1 0 0", "an obstacle 'plane' of 3 numbers (a plane has 4"),
-    ("scene.dat", "obstacles 0", "obstacles 1\nfloor implicit 2 1 1 0 0", "obstacle 1, 'implicit', is not of two lengths above 0 and a program"),
-    ("scene.dat", "obstacles 0", "obstacles 1\nfloor implicit 3 1 0 2 0 0", "obstacle 1, 'implicit', is not of two lengths above 0 and a program"),
-    ("scene.dat", "obstacles 0", "obstacles 1\nfloor implicit 3 1 1 17 0 0", "obstacle 1, 'implicit', is not of two lengths above 0 and a program"),
-    ("scene.dat", "obstacles 0", "obstacles 1\nfloor implicit 3 1 1 2.5 0 0", "obstacle 1, 'implicit', is not of two lengths above 0 and a program"),
-    ("scene.dat", "obstacles 0", "obstacles 1\nfloor implicit 3 1 1 3 0 0", "obstacle 1, 'implicit', is not of two lengths above 0 and a program"),
-    ("scene.dat", "obstacles 0", "obstacles 1\nfloor implicit 3 1 1 0 0 0", "obstacle 1, 'implicit', is not of two lengths above 0 and a program"),
-    ("scene.dat", "obstacles 0", "obstacles 1\nfloor implicit 4 1 1 2 1 0 0", "obstacle 1, 'implicit', is not of two lengths above 0 and a program"),
-    ("scene.dat", "obstacles 0", "obstacles 1\nfloor implicit 4 1 1 2 4 0 0", "obstacle 1, 'implicit', is not of two lengths above 0 and a program"),
+    *(("scene.dat", "obstacles 0", f"obstacles 1\nfloor implicit {program} 0 0", "obstacle 1, 'implicit', is not of two lengths above 0 and a program")
+      for program in ("2 1 1", "3 1 0 2", "3 1 1 17", "3 1 1 2.5", "3 1 1 3", "3 1 1 0", "4 1 1 2 1", "4 1 1 2 4")),
     ("scene.dat", "obstacles 0", "obstacles 1\nfloor plane 4 0 0 0 0 0 0", "an obstacle 'plane' whose normal is 0"),
     ("scene.dat", "obstacles 0", "obstacles 1\nwall polyline 6 0 0 1 1 1 1 0 0", "with two vertices at one place"),
     ("scene.dat", "pairs 0", "pairs 1\n0 -2 1e9 0 0", "pair 1 is of 0 and -2, not of a body, 0 to 1"),
