@@ -9,7 +9,6 @@ from orchestrate import run, scene
 from orchestrate.input import parameters
 from orchestrate.output import results, vtu
 from orchestrate.__main__ import main
-from orchestrate.failure import BadInput
 from orchestrate.report import compare, drawing, figures, report
 from orchestrate.sweeps import study
 from orchestrate.scenes.scene import RUN
@@ -42,15 +41,6 @@ def test_scenes_of_the_paper():
     assert stated.items() <= converged.items() and stated.items() <= printed.items()
     assert {name for name in converged if converged[name] != printed[name]} == {
         "law", "breakdown", "degree", "mesh_size", "contact_mesh_size", "accuracy"}
-
-
-def test_a_script_without_a_march_is_no_scene(tmp_path):
-    """A scene of a script that makes no run is refused, and the scripts that do are listed."""
-    path = tmp_path / "wrong.toml"
-    path.write_text('script = "friction-laws"\n')
-    with pytest.raises(BadInput, match=r"'friction-laws' is not known \(accepted: [^)]*disc-plane") as caught:
-        scene.load(str(path))
-    assert "|friction-laws" not in str(caught.value)
 
 
 def test_oblique_impact_closes_its_balance(oblique):
@@ -164,12 +154,6 @@ def test_compare_goes_on_after_a_failure(fake, tmp_path, capsys):
     assert 2 <= fake.starts() <= 4             # beside each, where there are two cores, the run that estimates its error, if it comes to it
     captured = capsys.readouterr()
     assert captured.out.count("failed: step: no convergence") == 2 and captured.err.count("\n") == 1
-
-
-@pytest.mark.parametrize("scenes", [["disc-oblique"], ["disc-oblique", "disc-oblique"]])
-def test_compare_wants_two_scenes(capsys, scenes):
-    """One scene, or one twice, is bad input."""
-    assert main(["compare", *scenes]) == 10 and "two or more different scenes" in capsys.readouterr().err
 
 
 def test_comparison_of_frictional_runs(oblique, tmp_path):

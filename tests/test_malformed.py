@@ -30,7 +30,7 @@ NAMES = ["sped", "SPEED", "spéed", "out2", "velocity", "speed ", "young's"]
 SENSELESS = {   # what is accepted by itself, but not together: these reach the scripts
     "speed: 0 without spin, gravity or body force": {"speed": "0"}, "symmetry: half": {"angle": "60", "symmetry": "half"},
     "symmetry: half needs": {"spin": "1", "symmetry": "half"}, "mesh_size: 0.06 is larger than the radius 0.05": {"mesh_size": "0.06"},
-    "contact_mesh_size: 0.02 is larger than mesh_size 0.01": {"mesh_size": "0.01", "contact_mesh_size": "0.02"},
+    r"mesh_size: 0\.06 is larger than the radius": {"contact_mesh_size": "0.06"}, "contact_mesh_size: 0.02 is larger than mesh_size 0.01": {"mesh_size": "0.01", "contact_mesh_size": "0.02"},
     "contact_mesh_size: 1e-07 is too small .*accepted: from": {"contact_mesh_size": "1e-7"},
     "(?<!contact_)mesh_size: 1e-09 is too small": {"mesh_size": "1e-9"}, "end_time: a body that is set down on the plane": {"angle": "0"}, "dt: ": {"dt": "1e-300"}, "end_time: ": {"end_time": "1e6"},
     "friction_static: ": {"friction_static": "0.1", "friction_dynamic": "0.2"}}
@@ -262,7 +262,8 @@ COMMANDS = {
     ("run", "disc-normal", "--set", ""): "--set: ''", ("run", "disc-normal", "--speed", "8"): "--speed", ("run", "disc-normal", "--checkpoint-every", "often"): "checkpoint_every: 'often'",
     ("run", "disc-normal", "--checkpoint-every", "-1"): "checkpoint_every: -1", ("run", "disc-normal", "--out"): "--out", ("sweep",): "SWEEP",
     ("sweep", "nothing"): "nothing: no such sweep", ("sweep", "oblique", "--run", "x"): "--run: 'x'", ("movie", "disc-oblique", "--frames", "٣"): "--frames",
-    ("compare", "disc-normal"): "compare", ("run", "disc-normal\n"): "no such scene"}
+    ("compare", "disc-normal"): "two or more different scenes", ("compare", "disc-oblique", "disc-oblique"): "two or more different scenes",
+    ("run", "disc-normal\n"): "no such scene"}
 
 
 @pytest.mark.parametrize("arguments", COMMANDS)

@@ -8,7 +8,6 @@ from orchestrate.freefem import freefem
 from orchestrate.input import parameters
 from orchestrate.mesh import mesh
 from orchestrate.freefem.describe import describe
-from orchestrate.failure import BadInput
 from triangles import areas, smallest_angle
 
 CASES = [
@@ -157,18 +156,6 @@ def test_no_mesh_depends_on_the_unit_of_length():
     """In metres and in millimetres a disc has the same mesh, but for round-off."""
     metres, millimetres = (mesh.disc(0.05 * metre, 0.011313708499 * metre, 0.0028 * metre, False, 1.2) for metre in (1, 1000))
     assert metres.points.shape == millimetres.points.shape and abs(1000 * metres.points - millimetres.points).max() < 1e-11 * 50
-
-
-@pytest.mark.parametrize("values, words", [
-    ({"mesh_size": 0.001, "contact_mesh_size": 0.002}, "contact_mesh_size: 0.002 is larger than mesh_size 0.001"),
-    ({"mesh_size": 0.06}, "mesh_size: 0.06 is larger than the radius 0.05"),
-    ({"contact_mesh_size": 0.06}, "mesh_size: 0.06 is larger than the radius 0.05"),
-    ({"contact_mesh_size": 1e-9}, "too small"),
-])
-def test_sizes_that_do_not_fit_are_named(values, words):
-    """Sizes that contradict each other or the disc are bad input, named with the limit."""
-    with pytest.raises(BadInput, match=words):
-        describe(values)
 
 
 def sizes(**values) -> tuple[float, float]:
