@@ -9,7 +9,6 @@ import tomllib
 import numpy as np
 import pytest
 
-from orchestrate.freefem import freefem
 from orchestrate.mesh import mesh
 from orchestrate.scenes import approach, assembly
 from orchestrate.scenes.entries import set_entry
@@ -253,41 +252,6 @@ def test_a_hole_touches_only_what_is_in_it():
         assert set(m.labels) == labels
         inner = np.hypot(*m.points[m.edges].mean(axis=1).T) < 0.85
         assert set(m.labels[inner]) == labels - {1} or labels == {1}
-
-
-def test_freefem_reads_what_is_written(tmp_path):
-    """FreeFEM finds each body's area in its region and the outlines' length on label 1, and reads scene.dat word by word."""
-    scene = read(changed(("obstacle.1.friction_static", 0.2)))
-    built = assembly.assemble(scene)
-    built.write(tmp_path)
-    (tmp_path / "read.edp").write_text(f'''
-mesh Th = readmesh("{tmp_path}/mesh.msh"); cout.precision(15);
-for (int k = 0; k < 2; k++) cout << int2d(Th)(1. * (region == k)) << " ";
-cout << int1d(Th, 1)(1.) << endl;
-ifstream file("{tmp_path}/scene.dat");
-string word, law, name; int n, version;
-file >> word >> version; cout << word << " " << version << " ";
-{{ real[int] v(7); file >> word; for (int i = 0; i < 7; i++) file >> v[i]; cout << word; for (int i = 0; i < 7; i++) cout << " " << v[i]; cout << endl; }}
-file >> word >> n; cout << word << " " << n << endl;
-for (int k = 0; k < n; k++) {{ real[int] v(11); file >> name >> law; for (int i = 0; i < 11; i++) file >> v[i]; cout << name << " " << law << " "; for (int i = 0; i < 11; i++) cout << v[i] << " "; cout << endl; }}
-file >> word >> n; cout << word << " " << n << " ";
-for (int k = 0; k < n; k++) {{ int b; real x, y, r; file >> b >> x >> y >> r; cout << b << " " << x << " " << y << " " << r << endl; }}
-file >> word >> n; cout << word << " " << n << endl;
-file >> word >> n; cout << word << " " << n << " ";
-for (int k = 0; k < n; k++) {{ int m; file >> name >> word >> m; cout << name << " "; real[int] v(m + 2); for (int i = 0; i < m + 2; i++) file >> v[i]; cout << word << " " << m << " "; for (int i = 0; i < m + 2; i++) cout << v[i] << " "; cout << endl; }}
-file >> word >> n; cout << word << " " << n << endl;
-for (int k = 0; k < n; k++) {{ int a, b; real[int] v(3); file >> a >> b; for (int i = 0; i < 3; i++) file >> v[i]; cout << a << " " << b << " " << v[1] << " " << v[2] << endl; }}
-''')
-    lines = freefem.find().call(tmp_path / "read.edp").stdout.splitlines()
-    outline = np.linalg.norm(built.mesh.points[built.mesh.edges[:, 1]] - built.mesh.points[built.mesh.edges[:, 0]], axis=1).sum()
-    regions = [areas(built.mesh)[built.regions == k].sum() for k in range(2)]
-    assert list(map(float, lines[0].split())) == pytest.approx([*regions, outline], rel=1e-12)
-    assert lines[1].startswith("ffimpact-bodies 1 disc 0.5 7000000 0.45 1722 10") and lines[2] == "bodies 2"
-    assert lines[3].split() == "disc svk 7000000 0.45 1722 0 0 0 1.5 0 0 -10 0".split()
-    assert lines[4].split()[:2] == ["block", "svk"] and float(lines[4].split()[5]) == pytest.approx(built.centres[1, 0])
-    assert lines[5].split() == ["circles", "1", "0", "0", "0", "0.5"]
-    assert lines[6] == "files 0" and lines[7].split() == "obstacles 1 floor plane 4 0 -1 0 1 0 0".split()
-    assert lines[8] == "pairs 2" and lines[9:11] == ["0 -1 0.2 0.2", "1 -1 0.2 0.2"]
 
 
 def test_open_values_follow_the_scripts_rule():

@@ -104,9 +104,12 @@ def test_lost_ellipticity_is_a_warning(block):
 # ---- a file of one's own
 
 def test_the_folder_of_a_scene_of_ones_own(mine, tmp_path):
-    """Mesh, data file, scene as used, with the mesh's checksum: read again they are the same scene, which is not run again."""
+    """Mesh, data file, scene as used, with the mesh's checksum: read again they are the same scene, which is not run again; FreeFEM found each body where and of what
+    it is."""
     found, path = mine
-    s = found.summary
+    s, h = found.summary, found.history
+    assert (s["mass_1"], s["mass_2"]) == pytest.approx((1722 * math.pi * 0.05**2, 1722 * math.pi * 0.04**2), rel=1e-4)
+    assert (h["x_1"][0], h["y_1"][0], h["x_2"][0], h["y_2"][0], h["vx_1"][0], h["vx_2"][0]) == pytest.approx((-0.052, 0, 0.04, 0, 4, 0), abs=1e-5)
     assert {"mesh.msh", "scene.dat", "scene.toml", "history.csv", "summary.json", "fields.pvd"} <= {each.name for each in found.folder.iterdir()}
     assert s["provenance"]["mesh"] == run._sha256(found.folder / "mesh.msh") and s["provenance"]["gmsh"]
     assembly.prepare(scene.load(str(found.folder / "scene.toml")), tmp_path)
