@@ -83,10 +83,11 @@ def test_what_a_run_does_not_load():
         assert known.stdout == said, known.stderr
 
 
-def test_published_numbers_are_not_shown_beside_another_scene(fake, tmp_path):
+def test_published_numbers_are_not_shown_beside_another_scene(fake, tmp_path, capsys):
     """At another speed the paper has no number, and none is shown."""
-    _, out, _ = call("run", "disc-normal", "--set", "speed=4", "--set", "fields=0", "--out", str(tmp_path / "out"))
-    assert "paper" not in out and "NGSolve" not in out
+    assert main(["run", "disc-normal", "--set", "speed=4", "--set", "fields=0", "--out", str(tmp_path / "out")]) == 0
+    out = capsys.readouterr().out
+    assert "contact time" in out and "paper" not in out and "NGSolve" not in out
 
 
 def test_quiet_is_quiet(fake, tmp_path):
@@ -143,10 +144,11 @@ def test_progress_is_shown_on_a_terminal_only(fake, tmp_path):
     assert "main run 1 of 2, mesh" in seen and "coarser run 2 of 2" in seen
 
 
-def test_lists():
+def test_lists(capsys):
     """Scenes and parameters are listed, every one."""
-    assert "disc-normal" in call("list")[1]
-    out = call("parameters")[1]
+    assert main(["list"]) == 0 and "disc-normal" in capsys.readouterr().out
+    assert main(["parameters"]) == 0
+    out = capsys.readouterr().out
     assert all(re.search(rf"^{name} ", out, re.MULTILINE) for name in parameters.names())
 
 

@@ -185,7 +185,7 @@ def test_a_parameter_with_the_name_of_a_result_keeps_its_values(fake, tmp_path):
 @pytest.mark.parametrize("text", ["[]", '{"exit_code": 11}', '{"exit_code": 11, "provenance": {}}', '{"exit_code": 12, "provenance": null}'])
 def test_damaged_folders_are_run_again(fake, tmp_path, text):
     """A failure.json that is none stops nothing."""
-    path, out = write(tmp_path, SIX), tmp_path / "out"
+    path, out = write(tmp_path, COARSE + "[product]\nspeed = [4]\n"), tmp_path / "out"
     wanted = sweep.load(str(path))
     place = study.place(out, wanted.points[0])
     place.mkdir(parents=True)
