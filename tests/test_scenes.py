@@ -11,6 +11,7 @@ from orchestrate import run, scene
 from orchestrate.__main__ import main
 from orchestrate.freefem import freefem
 from orchestrate.input import parameters
+from orchestrate.input.tables import to_toml
 from orchestrate.mesh import mesh
 from orchestrate.output import vtu
 from orchestrate.scenes import assembly
@@ -20,38 +21,11 @@ from orchestrate.report import bodies, drawing, figures, impacts, report
 from orchestrate.sweeps import sweep
 from orchestrate.scene import read as read_scene
 
-MINE = """
-title = "A disc meets a soft one and a moving post"
-law = "neohookean"
-young = 7e6
-nu = 0.4
-density = 1722
-accuracy = 0.4
-fields = 3
-[[body]]
-name = "striker"
-shape = "disc"
-radius = 0.05
-position = [-0.052, 0]
-velocity = [4, 0]
-[[body]]
-name = "target"
-shape = "disc"
-radius = 0.04
-position = [0.04, 0]
-young = 4e6
-[[obstacle]]
-name = "post"
-kind = "circle"
-centre = [0.11, 0]
-radius = 0.02
-velocity = [-1, 0]
-[contact]
-friction_static = 0.2
-[[contact.pair]]
-bodies = ["target", "post"]
-friction_static = 0
-"""
+MINE = {"title": "A disc meets a soft one and a moving post", "law": "neohookean", "young": 7e6, "nu": 0.4, "density": 1722, "accuracy": 0.4, "fields": 3,
+        "body": [{"name": "striker", "shape": "disc", "radius": 0.05, "position": [-0.052, 0], "velocity": [4, 0]},
+                 {"name": "target", "shape": "disc", "radius": 0.04, "position": [0.04, 0], "young": 4e6}],
+        "obstacle": [{"name": "post", "kind": "circle", "centre": [0.11, 0], "radius": 0.02, "velocity": [-1, 0]}],
+        "contact": {"friction_static": 0.2, "pair": [{"bodies": ["target", "post"], "friction_static": 0}]}}
 
 
 @pytest.fixture(scope="module")
@@ -66,7 +40,7 @@ def block(tmp_path_factory):
 def mine(tmp_path_factory):
     """The file above, run, with the file's path."""
     folder = tmp_path_factory.mktemp("mine")
-    (folder / "mine.toml").write_text(MINE)
+    (folder / "mine.toml").write_text(to_toml(MINE))
     found = run.run(scene.load(str(folder / "mine.toml")), {}, folder / "run")
     report.draw(found)
     return found, folder / "mine.toml"
