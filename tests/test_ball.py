@@ -10,12 +10,11 @@ from orchestrate.input import parameters
 from orchestrate.output import estimate, vtu
 from orchestrate.failure import BadInput
 from orchestrate.report import contact, figures, report
-from test_checkpoint import assert_same, kill_at
-from test_direct import call, start
+from test_direct import call
+from triangles import areas
 
 SCRIPT = "ball-plane"
 MASS = 4 / 3 * math.pi * 0.05**3 * 1722
-COARSE = ("-law", "neohookean", "-mesh_size", "0.03", "-contact_mesh_size", "0.015", "-accuracy", "0.2")
 
 
 @pytest.fixture(scope="module")
@@ -66,8 +65,7 @@ def test_snapshots_are_cuts_through_the_middle(result, oblique):
     """Of the quarter the half x >= 0 of the disc z = 0, of the half all of it; triangles counter-clockwise that fill it; the plane stays a plane."""
     for found, share in ((result, 0.5), (oblique, 1.0)):
         snapshot = vtu.read(vtu.series(found.folder / "fields.pvd")[-1][1])
-        (ax, ay), (bx, by), (cx, cy) = (snapshot.points[snapshot.triangles[:, k]].T for k in range(3))
-        area = ((bx - ax) * (cy - ay) - (by - ay) * (cx - ax)) / 2
+        area = areas(snapshot)
         assert (area > 0).all() and area.sum() == pytest.approx(share * math.pi * 0.05**2, rel=0.05)
         assert np.abs(snapshot.fields["displacement"][:, 2]).max() < 1e-15
         assert snapshot.fields["cauchy_stress"].shape[1] == 6 and np.abs(snapshot.fields["cauchy_stress"][:, 2]).max() > 0
@@ -102,14 +100,3 @@ def test_a_disc_has_no_quarter(tmp_path):
     """symmetry = quarter is of three dimensions."""
     with pytest.raises(BadInput, match="symmetry: quarter, which only a body in three dimensions has .accepted: auto.full.half"):
         scene.load("disc-normal").override({"symmetry": "quarter"}).description()
-
-
-@pytest.mark.parametrize("more", [(), ("-angle", "60", "-friction_static", "0.5", "-friction_dynamic", "0.4")])
-def test_a_killed_run_and_the_rest_are_the_whole(tmp_path, more):
-    """A run that is killed and goes on from its checkpoint leaves the history and snapshots of the straight one."""
-    given = (*COARSE, *more, "-fields", "2", "-end_time", "0.001", "-dt", "2e-5")
-    assert call(*given, "-out", "straight", cwd=tmp_path, script=SCRIPT)[0] == 0
-    given = (*given, "-checkpoint_every", "7", "-out", "out")
-    kill_at(start(*given, cwd=tmp_path, script=SCRIPT), tmp_path / "out/checkpoint", 20)
-    assert call(*given, "-restart", "out/checkpoint", cwd=tmp_path, script=SCRIPT)[0] == 0
-    assert_same(tmp_path / "out", tmp_path / "straight")

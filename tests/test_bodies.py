@@ -9,7 +9,6 @@ import tomllib
 import numpy as np
 import pytest
 
-from orchestrate.freefem import freefem
 from orchestrate.mesh import mesh
 from orchestrate.scenes import approach, assembly
 from orchestrate.scenes.entries import set_entry
@@ -17,6 +16,7 @@ from orchestrate.failure import BadInput
 from orchestrate.geometry.outlines import ellipse_loop, polygon_loop, self_crossing
 from orchestrate.scene import SCENES, Scene, built_in, load, read as read_scene
 from orchestrate.input.tables import to_toml
+from triangles import areas, smallest_angle
 
 DISC = {"name": "disc", "shape": "disc", "radius": 0.5, "position": [0, 1.5], "velocity": [0, -10]}
 BLOCK = {"name": "block", "shape": "rectangle", "width": 10, "height": 2, "position": [0, 0]}
@@ -39,19 +39,6 @@ def changed(*entries: tuple) -> dict:
     for name, value in entries:
         given = set_entry(given, name, value)
     return given
-
-
-def areas(m: mesh.Mesh) -> np.ndarray:
-    a, b, c = (m.points[m.triangles[:, k]] for k in range(3))
-    return ((b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])) / 2
-
-
-def smallest_angle(m: mesh.Mesh) -> float:
-    corners, angles = m.points[m.triangles], []
-    for k in range(3):
-        u, v = corners[:, (k + 1) % 3] - corners[:, k], corners[:, (k + 2) % 3] - corners[:, k]
-        angles.append(np.degrees(np.arccos((u * v).sum(1) / np.linalg.norm(u, axis=1) / np.linalg.norm(v, axis=1))).min())
-    return min(angles)
 
 
 # ---- shapes
@@ -267,41 +254,6 @@ def test_a_hole_touches_only_what_is_in_it():
         assert set(m.labels[inner]) == labels - {1} or labels == {1}
 
 
-def test_freefem_reads_what_is_written(tmp_path):
-    """FreeFEM finds each body's area in its region and the outlines' length on label 1, and reads scene.dat word by word."""
-    scene = read(changed(("obstacle.1.friction_static", 0.2)))
-    built = assembly.assemble(scene)
-    built.write(tmp_path)
-    (tmp_path / "read.edp").write_text(f'''
-mesh Th = readmesh("{tmp_path}/mesh.msh"); cout.precision(15);
-for (int k = 0; k < 2; k++) cout << int2d(Th)(1. * (region == k)) << " ";
-cout << int1d(Th, 1)(1.) << endl;
-ifstream file("{tmp_path}/scene.dat");
-string word, law, name; int n, version;
-file >> word >> version; cout << word << " " << version << " ";
-{{ real[int] v(7); file >> word; for (int i = 0; i < 7; i++) file >> v[i]; cout << word; for (int i = 0; i < 7; i++) cout << " " << v[i]; cout << endl; }}
-file >> word >> n; cout << word << " " << n << endl;
-for (int k = 0; k < n; k++) {{ real[int] v(11); file >> name >> law; for (int i = 0; i < 11; i++) file >> v[i]; cout << name << " " << law << " "; for (int i = 0; i < 11; i++) cout << v[i] << " "; cout << endl; }}
-file >> word >> n; cout << word << " " << n << " ";
-for (int k = 0; k < n; k++) {{ int b; real x, y, r; file >> b >> x >> y >> r; cout << b << " " << x << " " << y << " " << r << endl; }}
-file >> word >> n; cout << word << " " << n << endl;
-file >> word >> n; cout << word << " " << n << " ";
-for (int k = 0; k < n; k++) {{ int m; file >> name >> word >> m; cout << name << " "; real[int] v(m + 2); for (int i = 0; i < m + 2; i++) file >> v[i]; cout << word << " " << m << " "; for (int i = 0; i < m + 2; i++) cout << v[i] << " "; cout << endl; }}
-file >> word >> n; cout << word << " " << n << endl;
-for (int k = 0; k < n; k++) {{ int a, b; real[int] v(3); file >> a >> b; for (int i = 0; i < 3; i++) file >> v[i]; cout << a << " " << b << " " << v[1] << " " << v[2] << endl; }}
-''')
-    lines = freefem.find().call(tmp_path / "read.edp").stdout.splitlines()
-    outline = np.linalg.norm(built.mesh.points[built.mesh.edges[:, 1]] - built.mesh.points[built.mesh.edges[:, 0]], axis=1).sum()
-    regions = [areas(built.mesh)[built.regions == k].sum() for k in range(2)]
-    assert list(map(float, lines[0].split())) == pytest.approx([*regions, outline], rel=1e-12)
-    assert lines[1].startswith("ffimpact-bodies 1 disc 0.5 7000000 0.45 1722 10") and lines[2] == "bodies 2"
-    assert lines[3].split() == "disc svk 7000000 0.45 1722 0 0 0 1.5 0 0 -10 0".split()
-    assert lines[4].split()[:2] == ["block", "svk"] and float(lines[4].split()[5]) == pytest.approx(built.centres[1, 0])
-    assert lines[5].split() == ["circles", "1", "0", "0", "0", "0.5"]
-    assert lines[6] == "files 0" and lines[7].split() == "obstacles 1 floor plane 4 0 -1 0 1 0 0".split()
-    assert lines[8] == "pairs 2" and lines[9:11] == ["0 -1 0.2 0.2", "1 -1 0.2 0.2"]
-
-
 def test_open_values_follow_the_scripts_rule():
     """auto penalty: that of a disc of the softest body's material and the smallest radius at the largest closing speed; friction_dynamic
     follows friction_static; what is given stays."""
@@ -329,28 +281,19 @@ def test_pairs_inherit_from_contact():
 
 @pytest.mark.parametrize("name", [name for name in built_in() if load(name).bodies])
 def test_the_scene_as_used_is_the_same_scene(name, tmp_path):
-    """scene.toml, which has everything that was left open, makes the same mesh, data and values, byte for byte."""
-    first, second = tmp_path / "first", tmp_path / "second"
+    """Every scene that comes with the program makes a sound mesh of its bodies; scene.toml, which has everything that was left open, makes the same mesh, data and
+    values, byte for byte."""
+    first, second, scene = tmp_path / "first", tmp_path / "second", load(name)
     for folder, source in ((first, name), (second, str(first / "scene.toml"))):
         folder.mkdir()
         built = assembly.assemble(load(source))
+        assert built.mesh.volumes.min() > 0 if scene.dimension.axes == 3 else areas(built.mesh).min() > 0 and smallest_angle(built.mesh) > 20
+        assert set(built.regions) == set(range(len(scene.bodies)))
         assert "auto" not in {name: value for name, value in built.values.items() if name != "pairing_range"}.values()
         built.write(folder)
         (folder / "scene.toml").write_text(to_toml(built.used))
-    for file in (load(name).mesh_name, "scene.dat", "scene.toml"):
+    for file in (scene.mesh_name, "scene.dat", "scene.toml"):
         assert (first / file).read_text() == (second / file).read_text(), file
-
-
-@pytest.mark.parametrize("name", [name for name in built_in() if load(name).bodies])
-def test_built_in_scenes_are_assembled(name):
-    """Every scene that comes with the program makes a sound mesh of its bodies."""
-    scene = load(name)
-    built = assembly.assemble(scene)
-    if scene.dimension.axes == 3:
-        assert built.mesh.volumes.min() > 0
-    else:
-        assert areas(built.mesh).min() > 0 and smallest_angle(built.mesh) > 20
-    assert set(built.regions) == set(range(len(scene.bodies)))
 
 
 # ---- what is refused

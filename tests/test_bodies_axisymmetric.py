@@ -15,6 +15,7 @@ from orchestrate.report import report
 from orchestrate.scene import SCENES, Scene, load, read as read_scene
 from orchestrate.input.tables import to_toml
 from test_direct import call
+from triangles import areas
 
 SCRIPT = "bodies-axisymmetric"
 BALL = {"name": "ball", "shape": "ball", "radius": 0.5, "position": [0, 1.5], "velocity": -10}
@@ -28,10 +29,8 @@ def read(*tables: dict, obstacles=(FLOOR,), folder=SCENES, **top) -> Scene:
 
 def volumes(m: mesh.Mesh) -> tuple[float, float]:
     """The volume that a section's half makes about x = 0, and the height of its centre."""
-    a, b, c = (m.points[m.triangles[:, k]] for k in range(3))
-    area = ((b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])) / 2
-    corners = m.points[m.triangles]
-    x, y = corners[..., 0], corners[..., 1]
+    x, y = np.moveaxis(m.points[m.triangles], 2, 0)
+    area = areas(m)
     volume = (2 * math.pi * area * x.mean(axis=1)).sum()
     return volume, (2 * math.pi * area / 12 * (x.sum(axis=1) * y.sum(axis=1) + (x * y).sum(axis=1))).sum() / volume
 

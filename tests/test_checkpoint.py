@@ -113,17 +113,25 @@ def test_half_a_run_and_the_rest_are_the_whole(tmp_path, name):
     assert not {path.name for path in out.iterdir()} - {"scene.toml", "history.csv", "contacts.csv", "summary.json", "fields", "fields.pvd"}
 
 
-def test_bodies_go_on_to_the_last_bit(tmp_path):
-    """Two balls of revolution on a surface of its own expression: what steps have learnt of gaps and of the contact's window goes on with the run."""
+BALL = COARSE | dict(mesh_size=0.03, contact_mesh_size=0.015, accuracy=0.2, fields=2, end_time=1e-3, dt=2e-5, checkpoint_every=7)
+
+
+@pytest.mark.parametrize("script, flags", [
+    ("bodies-axisymmetric", {}), ("disc-block", COARSE | dict(radius=0.5, speed=10, accuracy=0.02, pairing="pairwise", checkpoint_every=10)),
+    ("ball-plane", BALL), ("ball-plane", BALL | dict(angle=60, friction_static=0.5, friction_dynamic=0.4))])
+def test_bodies_go_on_to_the_last_bit(tmp_path, script, flags):
+    """Two balls of revolution on a surface of its own expression, a disc on a block by pairs of points, and balls in space: what steps have learnt of gaps and of the
+    contact's window goes on with the run."""
     ball = {"shape": "ball", "radius": 0.04, "law": "neohookean", "young": 2e6, "nu": 0.4, "density": 1000.0, "mesh_size": 0.015, "contact_mesh_size": 0.006}
-    flags = prepared(tmp_path, {
+    flags = flags or prepared(tmp_path, {
         "dimension": "axisymmetric", "accuracy": 0.2, "end_time": 6e-3, "checkpoint_every": 4, "obstacle": [{"kind": "implicit", "distance": "y + 10*x^2"}],
         "body": [ball | {"name": name, "position": [0.0, y], "velocity": [0.0, v]} for name, y, v in (("a", 0.0403, -3.0), ("b", 0.1205, -5.0))]})
-    script, out = "bodies-axisymmetric", tmp_path / "out"
+    out = tmp_path / "out"
     assert direct(flags, tmp_path / "straight", script).communicate(timeout=120)
     rows = len(results.read_history(tmp_path / "straight")["t"])
     kill_at(direct(flags, out, script), out / "checkpoint", rows // 2)
     assert direct(flags | {"restart": out / "checkpoint"}, out, script).communicate(timeout=120)
+    assert_same(out, tmp_path / "straight")
     assert results.read_summary(out)["resumed_at"] > 0 and (out / "history.csv").read_bytes() == (tmp_path / "straight/history.csv").read_bytes()
 
 

@@ -10,7 +10,7 @@ from orchestrate.input import parameters
 from orchestrate.output import results
 
 EXACTLY = ("core/step/project.idp", "enough = exact ? 0 : (last ? 1e-10 * contactForce.l2 : 2e-3 * residual.l2);", "enough = 0;")
-BALL = dict(law="neohookean", speed=12, angle=60, slip_velocity=0.1, accuracy=0.2, mesh_size=0.03, contact_mesh_size=0.015)
+BALL = dict(law="neohookean", speed=12, angle=60, slip_velocity=0.1, accuracy=0.2, mesh_size=0.03, contact_mesh_size=0.015, end_time=3e-3)
 SMOOTH = BALL | dict(friction_static=0.6, friction_dynamic=0.6)   # no jump of the law: a step has one solution
 
 

@@ -118,8 +118,6 @@ def test_bounces_are_drawn(tmp_path):
     light = rows.assign(impulse=[1.0] + [1e-3] * (len(rows) - 1)).to_records()
     assert impacts.draw(light, ["body"], ["plane"]) is None and impacts.draw(rows[:1].to_records(), ["body"], ["plane"]) is None
     (found.folder / "contacts.csv").write_text("body\n1\n")
-    with pytest.raises(Unreadable, match="contacts.csv cannot be read: it is not as the run has written it"):
-        impacts.read(found.folder)
     (found.folder / "summary.json").unlink()
     with pytest.raises(Unreadable, match="contacts.csv cannot be read: it lacks the columns partner, start"):
         impacts.read(found.folder)

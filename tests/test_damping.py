@@ -145,14 +145,3 @@ def test_integrators_that_would_not_count_it_are_refused(tmp_path):
     """Damping is of the integrators that take forces in the middle of a step."""
     with pytest.raises(Exception, match="integrator: newmark takes no viscosity"):
         disc(tmp_path, viscosity=1, integrator="newmark")
-
-
-@pytest.mark.parametrize("law, integrator", [("svk", "energy-momentum"), ("neohookean", "midpoint")])
-@pytest.mark.parametrize("script, flags", [("tangent-disc", {"accuracy": 0.1}), ("tangent-ball", {"accuracy": 0.1}),
-                                           ("tangent-3d", {"mesh_size": 0.025, "contact_mesh_size": 0.015})])
-def test_kernels_are_the_scripts(script, flags, law, integrator):
-    """Residual, tangent and factor with viscosity and relaxation are the same in kernels and scripts, to round-off."""
-    found = measure(script, law=law, nu=0.3, integrator=integrator, viscosity=50, bulk_viscosity=30, relaxation_modulus=2e6, relaxation_time=1e-4, **flags)
-    if not found["built"]:
-        pytest.skip("no compiler here")
-    assert found["refused"] == 0 and max(found[name] for name in ("deformed", "forces", "product", "solve")) < 1e-12

@@ -10,6 +10,7 @@ import pytest
 from orchestrate import run, scene
 from orchestrate.freefem import freefem
 from orchestrate.mesh import gmsh_file, mesh
+from orchestrate.scene import read as read_scene
 from orchestrate.input.parameters import ROOT
 
 COARSE = {"law": "neohookean", "accuracy": 0.1, "fields": 0}
@@ -142,30 +143,8 @@ def test_reverse_slip_is_the_same_elsewhere(tmp_path):
 
 def test_a_spin_about_x_strains_too(tmp_path):
     """The flight to the touch is of an unstressed body: what its spin would strain it by is said, about whichever axis."""
-    path = tmp_path / "ball.toml"
-    path.write_text('''title = "A ball that spins about x"
-dimension = "3d"
-law = "neohookean"
-young = 7e6
-nu = 0.45
-density = 1722
-accuracy = 0.2
-degree = 1
-mesh_size = 0.03
-contact_mesh_size = 0.02
-dt = 5e-5
-end_time = 0.0107
-[[body]]
-shape = "ball"
-radius = 0.05
-position = [0, 0.06, 0]
-velocity = [0, -1, 0]
-spin = [700, 0, 0]
-[[obstacle]]
-name = "floor"
-kind = "plane"
-point = [0, 0, 0]
-normal = [0, 1, 0]
-''')
-    found = go(tmp_path / "out", str(path), {"fields": 0})[1]
+    ball = {"shape": "ball", "radius": 0.05, "position": [0, 0.06, 0], "velocity": [0, -1, 0], "spin": [700, 0, 0], "mesh_size": 0.03, "contact_mesh_size": 0.02}
+    given = {"dimension": "3d", "law": "neohookean", "young": 7e6, "nu": 0.45, "density": 1722, "accuracy": 0.2, "degree": 1, "dt": 5e-5, "end_time": 0.0107,
+             "body": [ball], "obstacle": [{"kind": "plane", "point": [0, 0, 0], "normal": [0, 1, 0]}]}
+    found = run.run(read_scene(given, tmp_path, "ball"), {"fields": 0}, tmp_path / "out", estimate=False)
     assert any(warning.startswith("flight: ") and "by 30 %" in warning for warning in found.summary["warnings"])

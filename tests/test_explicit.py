@@ -83,7 +83,7 @@ def test_a_step_that_is_given_is_parted(runs, tmp_path):
 @pytest.mark.parametrize("name, settings", [("two-discs", {}), ("disc-corner", {}), ("ball", {"end_time": 2e-3}), ("ball-axisymmetric", {})], ids=str)
 def test_every_kind_of_scene_conserves(tmp_path, name, settings):
     """Rows that turn with two bodies are iterated until momenta are exact; so they are at several obstacles, in space and of revolution."""
-    conserves(run.run(scene.load(name), settings | EXPLICIT | {"accuracy": 0.2}, tmp_path / "out"), 5e-3)
+    conserves(run.run(scene.load(name), settings | EXPLICIT | {"accuracy": 0.2}, tmp_path / "out", estimate=False), 5e-3)
 
 
 def test_kernels_do_what_the_scripts_say(tmp_path):

@@ -27,18 +27,6 @@ def test_regularisations_are_their_closed_forms(laws, law):
     assert points.ratio.to_numpy() == pytest.approx(CLOSED_FORMS[law](points.size_.to_numpy()), abs=1e-12)
 
 
-@pytest.mark.parametrize("panel, law, how", [("b", "sqrt", "jump"), ("b", "tanh", "jump"), ("b", "linear", "jump"),
-                                             ("c", "linear", "jump"), ("c", "linear", "smooth")])
-def test_slope_is_the_derivative(laws, panel, law, how):
-    """The slope is the derivative of the ratio, by differences, away from kinks and jumps."""
-    points = laws[(laws.panel == panel) & (laws.law == law) & (laws.transition == how) & (abs(laws.size_) > 0.005)]
-    points = points.iloc[np.flatnonzero(np.diff(points.size_, prepend=-np.inf) > 0.005)]
-    v, ratio, slope = (points[name].to_numpy() for name in ("v", "ratio", "slope"))
-    smooth = (abs(abs(points.size_.to_numpy()) - 1) > 0.03) & (abs(abs(points.size_.to_numpy()) - 2) > 0.03)
-    smooth &= abs(points.size_.to_numpy()) > 0.03
-    assert np.gradient(ratio, v)[smooth][1:-1] == pytest.approx(slope[smooth][1:-1], abs=1e-3 / EPSILON)
-
-
 def test_coulomb_is_the_limit(laws):
     """For a small slip velocity the law is Coulomb's step: the sign of the velocity, any value between at rest."""
     points = laws[laws.panel == "a"]

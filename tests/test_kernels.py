@@ -8,6 +8,7 @@ from orchestrate import run, scene
 from orchestrate.failure import BadInput
 from orchestrate.freefem import freefem, kernels
 from verification.measure import disc, measure, prepared
+from verification.test_residual_and_tangent import COARSE, MOONEY, OGDEN, kernels_are_the_scripts
 
 
 @pytest.fixture
@@ -51,24 +52,20 @@ def test_where_they_cannot_be_built_nothing_loads_them(copy, monkeypatch):
     assert not kernels.build(program.command, program.version, {"PATH": os.environ["PATH"]}) and not (copy / "null").exists()
     assert not kernels.build("/no/such/FreeFem++", program.version, {})
 
-SAME = 1e-12
-PLACES = {"plane": ("tangent-disc", {"accuracy": 0.1}), "axisymmetric": ("tangent-ball", {"accuracy": 0.1}),
-          "3d": ("tangent-3d", {"mesh_size": 0.025, "contact_mesh_size": 0.015})}
 
-
-OWN = {"mooney-rivlin": "0.3", "ogden": "1.3,0.5,5,0.2,-2,0.3"}
 VISCOUS = {"viscosity": 50, "bulk_viscosity": 30, "relaxation_modulus": 1e6, "relaxation_time": 1e-3}
+FLAGS = [*({"law": law} for law in ("svk", "neohookean")), MOONEY, OGDEN, {"law": "svk"} | VISCOUS, {"law": "neohookean", "integrator": "midpoint"} | VISCOUS,
+         MOONEY | VISCOUS, OGDEN | VISCOUS, {"law": "ogden", "law_parameters": "2.5,1"}, {"law": "ogden", "law_parameters": "8,0.4,-3,0.6", "integrator": "newmark"},
+         {"law": "neohookean", "nu": 0.46}, {"law": "svk", "nu": 0.46}, OGDEN | {"nu": 0.46}]
 
 
-@pytest.mark.parametrize("law, integrator, more", [("svk", "newmark", {}), ("svk", "energy-momentum", {}), *((law, integrator, {}) for law in ("neohookean", *OWN)
-                         for integrator in ("energy-momentum", "midpoint")), *((law, "energy-momentum", VISCOUS) for law in OWN),
-                         ("ogden", "energy-momentum", {"law_parameters": "2.5,1"}), ("ogden", "newmark", {"law_parameters": "8,0.4,-3,0.6"})])
-@pytest.mark.parametrize("place", PLACES)
-def test_forces_tangent_and_factor_are_those_of_the_scripts(place, law, integrator, more):
-    """In any dimension, under every law, damped as undamped, and wherever in the step the stress is taken: to round-off."""
-    script, flags = PLACES[place]
-    own = {"law_parameters": OWN[law]} if law in OWN else {}
-    equal(measure(script, **{"law": law, "nu": 0.3, "integrator": integrator} | own | flags | more))
+@pytest.mark.parametrize("flags", FLAGS, ids=str)
+@pytest.mark.parametrize("body", COARSE)
+def test_forces_tangent_and_factor_are_those_of_the_scripts(body, flags):
+    """In any dimension, under every law, damped as undamped, volume in the mean of elements or at points, and wherever in the step the stress is taken: to round-off;
+    other cases are among the tangents of verification/test_residual_and_tangent.py."""
+    given = {"nu": 0.3, "integrator": "energy-momentum"} | COARSE[body] | flags
+    kernels_are_the_scripts(measure(f"tangent-{body}", **given), factor=given["nu"] == 0.3 or flags["law"] == "neohookean")
 
 
 @pytest.mark.parametrize("integrator", ["newmark", "energy-momentum"])
@@ -76,13 +73,7 @@ def test_two_bodies_of_different_laws(tmp_path, integrator):
     """Every point has the law of its own body."""
     bodies = [{"name": name, "shape": "disc", "radius": 0.05, "position": [0, y], "velocity": [0, 0], "law": law, "young": young, "nu": 0.3, "density": 1722.0}
               for name, y, law, young in (("lower", 0.05, "svk", 7e6), ("upper", 0.151, "neohookean", 2e7))]
-    equal(measure("kernels-bodies", **prepared(tmp_path, {"accuracy": 0.1, "body": bodies}) | {"integrator": integrator}))
-
-
-def equal(found: dict) -> None:
-    if not found["built"]:
-        pytest.skip("no compiler here")
-    assert found["refused"] == 0 and max(found[name] for name in ("deformed", "forces", "product", "solve", "response", "compliance")) < SAME
+    kernels_are_the_scripts(measure("kernels-bodies", **prepared(tmp_path, {"accuracy": 0.1, "body": bodies}) | {"integrator": integrator}))
 
 
 def test_numbers_are_those_of_a_stream(tmp_path):
@@ -95,25 +86,23 @@ def test_numbers_are_those_of_a_stream(tmp_path):
 
 TIGHT = {"law": "neohookean", "nu": 0.4, "accuracy": 0.3, "tolerance": 1e-14}
 RUBBED = {"friction_static": 0.3, "angle": 60}
-MARCHES = {"disc": ("disc-plane", {}), "rubbing disc": ("disc-plane", RUBBED), "svk": ("disc-plane", {"law": "svk", "integrator": "midpoint", "speed": 2, "end_time": 1e-3}),
+MARCHES = {"disc": ("disc-plane", {}), "svk": ("disc-plane", {"law": "svk", "integrator": "midpoint", "speed": 2, "end_time": 1e-3}),
            "explicit": ("disc-plane", {"integrator": "central-difference", "end_time": 2e-4}), "ball of revolution": ("ball-axisymmetric", {}),
-           "mooney-rivlin": ("disc-plane", {"law": "mooney-rivlin", "law_parameters": OWN["mooney-rivlin"]}),
-           "ogden": ("ball-axisymmetric", {"law": "ogden", "law_parameters": OWN["ogden"], "viscosity": 50}),
-           "incompressible ogden": ("disc-plane", {"law": "ogden", "law_parameters": OWN["ogden"], "nu": 0.5, "accuracy": 0.2, "end_time": 1e-3}),
-           "ball": ("ball-plane", RUBBED | {"end_time": 1e-3}), "two bodies": ("disc-block", RUBBED | {"end_time": 1e-3})}
+           "mooney-rivlin": ("disc-plane", MOONEY),
+           "ogden": ("ball-axisymmetric", OGDEN | {"viscosity": 50}),
+           "incompressible ogden": ("disc-plane", OGDEN | {"nu": 0.5, "accuracy": 0.2, "end_time": 1e-3}),
+           "two bodies": ("disc-block", RUBBED | {"end_time": 1e-3})}
 WATCHED = ["t", "normal_force", "friction_force", "kinetic", "elastic", "vx", "vy", "min_jacobian", "min_stretch", "min_ellipticity"]
 
 
 @pytest.mark.parametrize("name", MARCHES)
 def test_marches_are_those_of_the_scripts(tmp_path, name):
-    """The same history with kernels and without, up to round-off, and with them to the byte the same again; the summary says which served."""
+    """The same history with kernels and without, up to round-off, with friction among test_kernels_contact.py's; the summary says which served."""
     script, flags = MARCHES[name]
-    runs = {folder: disc(tmp_path / folder, script, **TIGHT | flags, without=without)
-            for folder, without in (("with", "none"), ("again", "none"), ("without", "kernels"))}
+    runs = {folder: disc(tmp_path / folder, script, **TIGHT | flags, without=without) for folder, without in (("with", "none"), ("without", "kernels"))}
     if not runs["with"].summary["kernels"]:
         pytest.skip("no compiler here")
     assert not runs["without"].summary["kernels"]
-    assert (tmp_path / "with/history.csv").read_bytes() == (tmp_path / "again/history.csv").read_bytes()
     for column in WATCHED:
         ours, theirs = (runs[folder].history[column] for folder in ("with", "without"))
         assert ours == pytest.approx(theirs, rel=0, abs=1e-9 * max(abs(theirs))), column

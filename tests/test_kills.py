@@ -16,6 +16,7 @@ import pytest
 
 from orchestrate.freefem import freefem
 from orchestrate.input import parameters
+from test_cli import hear_interrupts
 
 COARSE = {"law": "neohookean", "nu": "0.4", "accuracy": "0.2", "fields": "5"}
 SWEEP = """collect = ["impulse", "rebound_vy"]
@@ -54,8 +55,6 @@ def command(route: str, out: Path, speed: str = "8", **changed: str) -> list[str
 
 
 def start(words: list[str]) -> subprocess.Popen:
-    def hear_interrupts():   # a shell's background job has SIGINT ignored, and hands that on
-        signal.signal(signal.SIGINT, signal.SIG_DFL)
     return subprocess.Popen(words, cwd=parameters.ROOT, env=freefem.find().environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                             stderr=subprocess.PIPE, text=True, start_new_session=True, preexec_fn=hear_interrupts)
 

@@ -89,7 +89,7 @@ def test_bench_of_two_bodies(tmp_path, monkeypatch):
 
 def answers(folder, name="disc-normal", **settings) -> np.ndarray:
     """Impulse and rebound of a coarse run."""
-    end = run.run(scene.load(name), {"fields": 0} | settings, folder).summary
+    end = run.run(scene.load(name), {"fields": 0} | settings, folder, estimate=False).summary
     return np.array([end["impulse"], end["rebound_vy"]])
 
 
@@ -118,7 +118,7 @@ def test_one_impact_in_other_units_and_materials(tmp_path, world):
 def test_what_is_left_out_is_not_called_skipped(tmp_path, without, said):
     """`skipped` in the summary tells what a run really skipped."""
     settings = {"accuracy": 0.2, "height": 1e-3, "end_time": 5e-4}
-    full, left_out = (run.run(scene.load("disc-normal"), settings | {"without": word, "fields": 0}, tmp_path / word)
+    full, left_out = (run.run(scene.load("disc-normal"), settings | {"without": word, "fields": 0}, tmp_path / word, estimate=False)
                       for word in ("none", without))
     assert said in full.summary["skipped"] and said not in left_out.summary["skipped"]
     assert left_out.summary["energy_drift"] < 1e-9
@@ -138,7 +138,7 @@ def test_a_step_takes_few_iterations(tmp_path, name, without):
 
 def test_phases_add_up_to_the_wall_time(tmp_path):
     """phase_seconds is the whole wall time, and `other` is not negative beyond the clock's 10 ms."""
-    end = run.run(scene.load("disc-normal"), {"accuracy": 0.1, "fields": 0}, tmp_path / "a").summary
+    end = run.run(scene.load("disc-normal"), {"accuracy": 0.1, "fields": 0}, tmp_path / "a", estimate=False).summary
     assert sum(end["phase_seconds"].values()) == pytest.approx(end["wall_seconds"], abs=1e-9) and end["phase_seconds"]["other"] > -0.02
     assert set(end["phase_seconds"]) == {"assembly", "factor", "solve", "contact", "search", "output", "audit", "setup", "other"}
     assert end["residual_evaluations"] >= end["newton_iterations"] and 1e6 < end["peak_memory"] < 1e9

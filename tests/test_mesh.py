@@ -8,7 +8,7 @@ from orchestrate.freefem import freefem
 from orchestrate.input import parameters
 from orchestrate.mesh import mesh
 from orchestrate.freefem.describe import describe
-from orchestrate.failure import BadInput
+from triangles import areas, smallest_angle
 
 CASES = [
     pytest.param((0.05, 0.05 / 8, 0.05 / 25, True), id="half, default size"),
@@ -20,20 +20,6 @@ CASES = [
 ]
 
 
-def twice_areas(m: mesh.Mesh) -> np.ndarray:
-    a, b, c = (m.points[m.triangles[:, k]] for k in range(3))
-    return (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
-
-
-def smallest_angle(m: mesh.Mesh) -> float:
-    corners = m.points[m.triangles]
-    angles = []
-    for k in range(3):
-        u, v = corners[:, (k + 1) % 3] - corners[:, k], corners[:, (k + 2) % 3] - corners[:, k]
-        angles.append(np.arccos((u * v).sum(1) / np.linalg.norm(u, axis=1) / np.linalg.norm(v, axis=1)))
-    return float(np.degrees(np.min(angles)))
-
-
 @pytest.fixture(scope="module", params=CASES)
 def case(request):
     return *request.param, mesh.disc(*request.param)
@@ -42,7 +28,7 @@ def case(request):
 def test_triangles_are_sound(case):
     """Every triangle is counter-clockwise and has no angle below 20 degrees."""
     *_, m = case
-    assert twice_areas(m).min() > 0
+    assert areas(m).min() > 0
     assert smallest_angle(m) > 20
 
 
@@ -51,7 +37,7 @@ def test_triangles_fill_the_polygon(case):
     *_, m = case
     a, b = m.points[m.edges[:, 0]], m.points[m.edges[:, 1]]
     enclosed = abs((a[:, 0] * b[:, 1] - b[:, 0] * a[:, 1]).sum())
-    assert twice_areas(m).sum() == pytest.approx(enclosed, rel=1e-12)
+    assert areas(m).sum() == pytest.approx(enclosed / 2, rel=1e-12)
     assert set(m.triangles.flat) == set(range(len(m.points)))
 
 
@@ -98,7 +84,7 @@ def test_freefem_reads_it(tmp_path):
         'cout << Th.area << " " << int1d(Th, 1)(1.) << " " << int1d(Th, 2)(1.) << " " << Th.nv << endl;\n')
     answer = freefem.find().call(tmp_path / "read.edp", check=True).stdout
     length = np.linalg.norm(m.points[m.edges[:, 1]] - m.points[m.edges[:, 0]], axis=1)
-    expected = [twice_areas(m).sum() / 2, length[m.labels == 1].sum(), length[m.labels == 2].sum(), len(m.points)]
+    expected = [areas(m).sum(), length[m.labels == 1].sum(), length[m.labels == 2].sum(), len(m.points)]
     assert list(map(float, answer.split())) == pytest.approx(expected, rel=1e-12)
     assert length[m.labels == 2].sum() == pytest.approx(0.1, rel=1e-12)
 
@@ -137,9 +123,9 @@ def test_own_mesh_is_sound(own):
     """The scripts' own mesh: triangles counter-clockwise, no angle below 15 degrees, that fill the polygon of the labelled edges; the
     circle's vertices on it to rounding, the axis' on x = 0, none below the plane, the lowest point a vertex at (0, 0)."""
     m, *_, half = own
-    assert twice_areas(m).min() > 0 and smallest_angle(m) > 15
+    assert areas(m).min() > 0 and smallest_angle(m) > 15
     a, b = m.points[m.edges[:, 0]], m.points[m.edges[:, 1]]
-    assert twice_areas(m).sum() == pytest.approx(abs((a[:, 0] * b[:, 1] - b[:, 0] * a[:, 1]).sum()), rel=1e-12)
+    assert areas(m).sum() == pytest.approx(abs((a[:, 0] * b[:, 1] - b[:, 0] * a[:, 1]).sum()) / 2, rel=1e-12)
     assert set(m.triangles.flat) == set(range(len(m.points)))
     assert set(m.labels) == ({mesh.FREE, mesh.AXIS} if half else {mesh.FREE})
     assert abs(np.hypot(m.points[:, 0], m.points[:, 1] - 1)[m.edges[m.labels == mesh.FREE]] - 1).max() < 1e-14
@@ -170,18 +156,6 @@ def test_no_mesh_depends_on_the_unit_of_length():
     """In metres and in millimetres a disc has the same mesh, but for round-off."""
     metres, millimetres = (mesh.disc(0.05 * metre, 0.011313708499 * metre, 0.0028 * metre, False, 1.2) for metre in (1, 1000))
     assert metres.points.shape == millimetres.points.shape and abs(1000 * metres.points - millimetres.points).max() < 1e-11 * 50
-
-
-@pytest.mark.parametrize("values, words", [
-    ({"mesh_size": 0.001, "contact_mesh_size": 0.002}, "contact_mesh_size: 0.002 is larger than mesh_size 0.001"),
-    ({"mesh_size": 0.06}, "mesh_size: 0.06 is larger than the radius 0.05"),
-    ({"contact_mesh_size": 0.06}, "mesh_size: 0.06 is larger than the radius 0.05"),
-    ({"contact_mesh_size": 1e-9}, "too small"),
-])
-def test_sizes_that_do_not_fit_are_named(values, words):
-    """Sizes that contradict each other or the disc are bad input, named with the limit."""
-    with pytest.raises(BadInput, match=words):
-        describe(values)
 
 
 def sizes(**values) -> tuple[float, float]:

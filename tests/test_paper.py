@@ -170,7 +170,7 @@ CASES = {
     "sliding_first": [(SAME, DIFFERS, "SVK: 0 of 2 runs"), (SAME, DIFFERS, "0.21 with the e = 0.837"), (searched(order=[True, True, False, False]), PARTLY, "2 of 2 runs, 1 of them"),
                       (searched(order=[False, False, False, True]), AGREES, "With SVK the order appears only at 30° from the plane"), (SAME, DIFFERS, "At 30° from the plane it would end at 0.6"),
                       (searched(order=True, quiet=True), AGREES, "2 of 2 runs, 2 of them"), (searched(order=True, quiet=True, ellipticity_lost_time=LOST), PARTLY, "SVK loses ellipticity")],
-    "rolls": [(SAME, DIFFERS, "v_x = 3."), (impacts("svk", "neohookean", **ROLLING), AGREES, ""), (both(impacts("svk", "neohookean", **ROLLING), LOSES), PARTLY, "SVK loses ellipticity"), (impacts("svk", **ROLLING), PARTLY, ""), (impacts("svk", meshes=(0,), **ROLLING), DIFFERS, "")],
+    "rolls": [(SAME, DIFFERS, "v_x = 3."), (impacts("neohookean", **ROLLING), DIFFERS, ""), (impacts("svk", "neohookean", **ROLLING), AGREES, ""), (both(impacts("svk", "neohookean", **ROLLING), LOSES), PARTLY, "SVK loses ellipticity"), (impacts("svk", **ROLLING), PARTLY, ""), (impacts("svk", meshes=(0,), **ROLLING), DIFFERS, "")],
     "smooth_slip": [(SAME, AGREES, "SVK: 18 % and 18 %"), (LOSES, PARTLY, "SVK loses ellipticity"), (impacts("svk", sliding_fraction=np.full(14, 0.9)), DIFFERS, "SVK: 0 % and 0 %")],
     "stepped": [(SAME, AGREES, "2 of 5 steps rise, 2 of them by more than their error bar, 2 "), (curve(SVK, FALLS[:2] + [4.9e-3, 4.5e-3]), PARTLY, "not told from the errors"),
                 (curve(SVK, [5e-3, 4.8e-3, 4.9e-3, 4.5e-3, 4.6e-3, 4e-3], 6e-5), PARTLY, "2 of them by more than their error bar, 0 "),
@@ -311,17 +311,12 @@ def test_only_statements_have_cases():
     assert set(CASES) == set(FIND) and len(FIND) == len(STATEMENTS)
 
 
-def test_words_of_a_law_are_of_its_runs(tmp_path):
-    """A statement on St. Venant-Kirchhoff does not come to agree by neo-Hookean numbers: with those alone good it does not agree."""
-    given = base()
-    impacts("neohookean", **ROLLING)(given)
-    assert FIND["rolls"](Memory(tmp_path, given)).verdict == DIFFERS
-
-
 def test_figures_6b_and_8_are_over_the_same_speeds():
-    """One grid of speeds and ν, with the time above 1 % of the peak force and the loss of ellipticity."""
+    """One grid, with the time above 1 % of the peak force and the loss of ellipticity: at least 40 speeds from 0.5 to 11 m/s and beyond, for ν = 0.3 and 0.45 with error bars."""
     svk, neo = (sweep.load(name) for name in (SVK, NEO))
-    assert svk.points == neo.points and svk.refine == neo.refine
+    assert svk.points == neo.points and svk.refine == neo.refine != {} and {point["nu"] for point in svk.points} == {0.3, 0.45}
+    found = {point["speed"] for point in svk.points if point["speed"] <= 11}
+    assert len(found) >= 40 and min(found) == 0.5 and max(found) > 10.75
     for each in (svk, neo, sweep.load("calibrate")):
         assert {"thresholded_contact_time", "ellipticity_lost_time"} <= set(each.collect)
 

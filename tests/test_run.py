@@ -13,7 +13,7 @@ from orchestrate.mesh import mesh
 from orchestrate.output import folder, results
 from orchestrate.freefem.describe import describe
 from orchestrate.report import figures
-from orchestrate.failure import BadInput, Failure, NotInstalled, Unreadable
+from orchestrate.failure import Failure, NotInstalled, Unreadable
 
 
 def go(out: Path, overrides: dict | None = None, **options) -> results.RunResult:
@@ -52,13 +52,6 @@ def test_half_is_meshed_where_it_is_enough(fake, tmp_path, given, half):
     """Half a disc is meshed unless direction, spin or the user ask for the whole."""
     m = mesh.read(go(tmp_path / "out", given).folder / "mesh.msh")
     assert (m.points[:, 0].min() >= 0) == half
-
-
-def test_half_of_an_oblique_impact_is_refused(fake, tmp_path):
-    """Half a disc cannot stand for an oblique impact."""
-    with pytest.raises(BadInput, match="symmetry: half needs a normal impact"):
-        go(tmp_path / "out", {"symmetry": "half", "angle": 60})
-    assert fake.starts() == 0
 
 
 def test_same_scene_and_code_is_reused(fake, tmp_path, monkeypatch):
@@ -231,13 +224,6 @@ def test_stage_with_files_of_others_is_refused(fake, tmp_path):
     with pytest.raises(Unreadable, match="files of others"):
         go(tmp_path / "out", force=True)
     assert (tmp_path / "out.part/thesis.tex").exists()
-
-
-def test_bad_input_that_only_the_script_finds_leaves_nothing(tmp_path):
-    """Neither a folder nor those above it that were made for it, nor a failed run beside an earlier result."""
-    with pytest.raises(Failure, match="speed|end_time") as error:
-        go(tmp_path / "a/b/out", {"speed": 0})
-    assert error.value.code == 10 and not list(tmp_path.iterdir())
 
 
 def test_what_another_run_makes_meanwhile_stays(tmp_path):

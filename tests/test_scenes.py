@@ -3,15 +3,16 @@
 import json
 import math
 import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from orchestrate import run, scene
+from orchestrate.__main__ import main
 from orchestrate.freefem import freefem
 from orchestrate.input import parameters
+from orchestrate.input.tables import to_toml
 from orchestrate.mesh import mesh
 from orchestrate.output import vtu
 from orchestrate.scenes import assembly
@@ -21,38 +22,11 @@ from orchestrate.report import bodies, drawing, figures, impacts, report
 from orchestrate.sweeps import sweep
 from orchestrate.scene import read as read_scene
 
-MINE = """
-title = "A disc meets a soft one and a moving post"
-law = "neohookean"
-young = 7e6
-nu = 0.4
-density = 1722
-accuracy = 0.4
-fields = 3
-[[body]]
-name = "striker"
-shape = "disc"
-radius = 0.05
-position = [-0.052, 0]
-velocity = [4, 0]
-[[body]]
-name = "target"
-shape = "disc"
-radius = 0.04
-position = [0.04, 0]
-young = 4e6
-[[obstacle]]
-name = "post"
-kind = "circle"
-centre = [0.11, 0]
-radius = 0.02
-velocity = [-1, 0]
-[contact]
-friction_static = 0.2
-[[contact.pair]]
-bodies = ["target", "post"]
-friction_static = 0
-"""
+MINE = {"title": "A disc meets a soft one and a moving post", "law": "neohookean", "young": 7e6, "nu": 0.4, "density": 1722, "accuracy": 0.4, "fields": 3,
+        "body": [{"name": "striker", "shape": "disc", "radius": 0.05, "position": [-0.052, 0], "velocity": [4, 0]},
+                 {"name": "target", "shape": "disc", "radius": 0.04, "position": [0.04, 0], "young": 4e6}],
+        "obstacle": [{"name": "post", "kind": "circle", "centre": [0.11, 0], "radius": 0.02, "velocity": [-1, 0]}],
+        "contact": {"friction_static": 0.2, "pair": [{"bodies": ["target", "post"], "friction_static": 0}]}}
 
 
 @pytest.fixture(scope="module")
@@ -67,7 +41,7 @@ def block(tmp_path_factory):
 def mine(tmp_path_factory):
     """The file above, run, with the file's path."""
     folder = tmp_path_factory.mktemp("mine")
-    (folder / "mine.toml").write_text(MINE)
+    (folder / "mine.toml").write_text(to_toml(MINE))
     found = run.run(scene.load(str(folder / "mine.toml")), {}, folder / "run")
     report.draw(found)
     return found, folder / "mine.toml"
@@ -105,9 +79,12 @@ def test_lost_ellipticity_is_a_warning(block):
 # ---- a file of one's own
 
 def test_the_folder_of_a_scene_of_ones_own(mine, tmp_path):
-    """Mesh, data file, scene as used, with the mesh's checksum: read again they are the same scene, which is not run again."""
+    """Mesh, data file, scene as used, with the mesh's checksum: read again they are the same scene, which is not run again; FreeFEM found each body where and of what
+    it is."""
     found, path = mine
-    s = found.summary
+    s, h = found.summary, found.history
+    assert (s["mass_1"], s["mass_2"]) == pytest.approx((1722 * math.pi * 0.05**2, 1722 * math.pi * 0.04**2), rel=1e-4)
+    assert (h["x_1"][0], h["y_1"][0], h["x_2"][0], h["y_2"][0], h["vx_1"][0], h["vx_2"][0]) == pytest.approx((-0.052, 0, 0.04, 0, 4, 0), abs=1e-5)
     assert {"mesh.msh", "scene.dat", "scene.toml", "history.csv", "summary.json", "fields.pvd"} <= {each.name for each in found.folder.iterdir()}
     assert s["provenance"]["mesh"] == run._sha256(found.folder / "mesh.msh") and s["provenance"]["gmsh"]
     assembly.prepare(scene.load(str(found.folder / "scene.toml")), tmp_path)
@@ -117,12 +94,11 @@ def test_the_folder_of_a_scene_of_ones_own(mine, tmp_path):
     assert s["rebound_vx_2"] != 0 and s["energy_drift"] < 1e-8 and s["estimated_error"] is not None
 
 
-def test_entries_are_set_on_the_command_line(mine):
+def test_entries_are_set_on_the_command_line(mine, capsys):
     """--set body.2.young=... arrives in the scene as used, and a direct run on the folder's files gives the same answer."""
     found, path = mine
     out = path.parent / "set"
-    done = call("run", str(path), "--set", "body.2.young=8e6", "fields=0", "--out", str(out), "--quiet")
-    assert done.returncode == 0, done.stderr
+    assert main(["run", str(path), "--set", "body.2.young=8e6", "fields=0", "--out", str(out), "--quiet"]) == 0, capsys.readouterr().err
     other = json.loads((out / "summary.json").read_text())
     assert other["impulse"] > found.summary["impulse"] and run.read_scene(out)["body"][1]["young"] == 8e6
     direct = freefem_run("-mesh", str(out / "mesh.msh"), "-bodies", str(out / "scene.dat"), *freefem.words_of(values(out)), "-out", str(path.parent / "direct"))
@@ -205,10 +181,6 @@ def test_bodies_are_drawn_where_they_are(mine):
 
 # ---- what is refused
 
-def call(*words: str) -> subprocess.CompletedProcess:
-    return subprocess.run([sys.executable, "-m", "orchestrate", *words], cwd=parameters.ROOT, capture_output=True, text=True)
-
-
 def freefem_run(*flags: str, script: str = "bodies") -> subprocess.CompletedProcess:
     return freefem.find().call(f"edp/{script}.edp", *flags)
 
@@ -228,11 +200,12 @@ def values(folder) -> dict:
     (("two-discs", "--set", "body.1.position=[0,0]"), "body.1.position: 'left' overlaps 'right' (body.2)"),
     (("two-discs", "--set", "contact.friction_dynamic=0.5"), "contact.friction_dynamic: 0.5 is larger than friction_static 0.3"),
 ])
-def test_what_python_refuses(words, said, tmp_path):
+def test_what_python_refuses(words, said, tmp_path, capsys):
     """Exit code 10, one line, nothing left behind."""
-    (tmp_path / "m.msh").write_text((MESH := "4 2 4\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n1 2 3 0\n1 3 4 0\n1 2 1\n2 3 1\n3 4 1\n4 1 1\n"))
-    done = call("run", *(str(tmp_path / "m.msh") if word == "MESH" else word for word in words), "--out", str(tmp_path / "out"), "--quiet")
-    assert done.returncode == 10 and done.stderr.count("\n") == 1 and said in done.stderr, done.stderr + MESH
+    (tmp_path / "m.msh").write_text("4 2 4\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n1 2 3 0\n1 3 4 0\n1 2 1\n2 3 1\n3 4 1\n4 1 1\n")
+    code = main(["run", *(str(tmp_path / "m.msh") if word == "MESH" else word for word in words), "--out", str(tmp_path / "out"), "--quiet"])
+    error = capsys.readouterr().err
+    assert code == 10 and error.count("\n") == 1 and said in error, error
     assert [path.name for path in tmp_path.iterdir()] == ["m.msh"]
 
 
@@ -331,14 +304,8 @@ def inputs(tmp_path_factory):
     ("scene.dat", " -0.06 0.0 ", " 0.0 0.0 ", "overlap by 0.0"),
     ("scene.dat", "circles 2\n0", "circles 2\n9", "circle 1 of body 9, of 0 to 1"),
     ("scene.dat", "obstacles 0", "obstacles 1\nfloor plane 3 0 0 1 0 0", "an obstacle 'plane' of 3 numbers (a plane has 4"),
-    ("scene.dat", "obstacles 0", "obstacles 1\nfloor implicit 2 1 1 0 0", "obstacle 1, 'implicit', is not of two lengths above 0 and a program"),
-    ("scene.dat", "obstacles 0", "obstacles 1\nfloor implicit 3 1 0 2 0 0", "obstacle 1, 'implicit', is not of two lengths above 0 and a program"),
-    ("scene.dat", "obstacles 0", "obstacles 1\nfloor implicit 3 1 1 17 0 0", "obstacle 1, 'implicit', is not of two lengths above 0 and a program"),
-    ("scene.dat", "obstacles 0", "obstacles 1\nfloor implicit 3 1 1 2.5 0 0", "obstacle 1, 'implicit', is not of two lengths above 0 and a program"),
-    ("scene.dat", "obstacles 0", "obstacles 1\nfloor implicit 3 1 1 3 0 0", "obstacle 1, 'implicit', is not of two lengths above 0 and a program"),
-    ("scene.dat", "obstacles 0", "obstacles 1\nfloor implicit 3 1 1 0 0 0", "obstacle 1, 'implicit', is not of two lengths above 0 and a program"),
-    ("scene.dat", "obstacles 0", "obstacles 1\nfloor implicit 4 1 1 2 1 0 0", "obstacle 1, 'implicit', is not of two lengths above 0 and a program"),
-    ("scene.dat", "obstacles 0", "obstacles 1\nfloor implicit 4 1 1 2 4 0 0", "obstacle 1, 'implicit', is not of two lengths above 0 and a program"),
+    *(("scene.dat", "obstacles 0", f"obstacles 1\nfloor implicit {program} 0 0", "obstacle 1, 'implicit', is not of two lengths above 0 and a program")
+      for program in ("2 1 1", "3 1 0 2", "3 1 1 17", "3 1 1 2.5", "3 1 1 3", "3 1 1 0", "4 1 1 2 1", "4 1 1 2 4")),
     ("scene.dat", "obstacles 0", "obstacles 1\nfloor plane 4 0 0 0 0 0 0", "an obstacle 'plane' whose normal is 0"),
     ("scene.dat", "obstacles 0", "obstacles 1\nwall polyline 6 0 0 1 1 1 1 0 0", "with two vertices at one place"),
     ("scene.dat", "pairs 0", "pairs 1\n0 -2 1e9 0 0", "pair 1 is of 0 and -2, not of a body, 0 to 1"),

@@ -10,37 +10,6 @@ from orchestrate.output import vtu
 from orchestrate.report import drawing
 from verification.measure import bodies, disc, measure
 
-PLACES = {"plane": ("tangent-disc", {"accuracy": 0.1}), "axisymmetric": ("tangent-ball", {"accuracy": 0.1}),
-          "3d": ("tangent-3d", {"mesh_size": 0.025, "contact_mesh_size": 0.015})}
-
-
-@pytest.mark.parametrize("law, integrator", [("svk", "midpoint"), ("neohookean", "newmark"), ("neohookean", "midpoint")])
-@pytest.mark.parametrize("place", PLACES)
-def test_tangent_is_the_derivative_of_the_forces(place, law, integrator):
-    """At nu = 0.4999 the scripts' tangent, with its rank-one part of every element, is that of finite differences."""
-    script, flags = PLACES[place]
-    assert measure(script, law=law, nu=0.4999, integrator=integrator, **flags)["tangent"] < 1e-6
-
-
-def test_mooney_rivlin_has_it_too():
-    """A law with numbers of its own: the same part of lambda acts in the mean."""
-    assert measure("tangent-disc", law="mooney-rivlin", law_parameters=0.3, nu=0.4999, integrator="newmark", accuracy=0.1)["tangent"] < 1e-6
-
-
-@pytest.mark.parametrize("law, integrator", [("svk", "energy-momentum"), ("neohookean", "energy-momentum"), ("neohookean", "newmark"), ("mooney-rivlin", "midpoint"),
-                         ("ogden", "energy-momentum")])
-@pytest.mark.parametrize("place", PLACES)
-def test_kernels_are_the_scripts(place, law, integrator):
-    """Forces, tangent and factor are those of the scripts to round-off; svk is not elliptic there, and its tangent has no factor."""
-    script, flags = PLACES[place]
-    own = {"mooney-rivlin": {"law_parameters": 0.3}, "ogden": {"law_parameters": "1.3,0.5,5,0.2,-2,0.3"}}.get(law, {})
-    found = measure(script, law=law, nu=0.46, integrator=integrator, **own, **flags)
-    if not found["built"]:
-        pytest.skip("no compiler here")
-    factor = ["solve", "response", "compliance"] if law == "neohookean" else []
-    assert max(found[name] for name in ["deformed", "forces", "product", *factor]) < 1e-12
-
-
 IMPACT = {"law": "neohookean", "nu": 0.4999, "speed": 4, "accuracy": 0.1, "tolerance": 1e-15}
 RUBBED = {"angle": 60, "friction_static": 0.3}
 SCENES = {"disc": ("disc-plane", RUBBED), "svk": ("disc-plane", {"law": "svk", "speed": 2}), "ball": ("ball-axisymmetric", {}),

@@ -143,7 +143,7 @@ def test_direct_run_prints_its_warnings(tmp_path):
 
 def test_report_and_figures_show_them(tmp_path):
     """A row each in the report; below each figure, without what to do."""
-    result = run.run(scene.load("disc-normal"), dict(penalty=1e8, accuracy=0.1, fields=0), tmp_path / "out")
+    result = run.run(scene.load("disc-normal"), dict(penalty=1e8, accuracy=0.1, fields=0), tmp_path / "out", estimate=False)
     told, lines = result.summary["warnings"], report.report(result).splitlines()
     assert len(told) > 1 and [line.split(None, 1)[1] for line in lines if line.startswith("  warning ")] == told
     figure, _ = plt.subplots(figsize=(5.2, 3.2))

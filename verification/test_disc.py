@@ -113,32 +113,6 @@ def test_oblique_impact_without_friction_keeps_the_tangential_motion(disc):
 
 # ---- what is skipped changes nothing
 
-def mirrored(half: mesh.Mesh) -> mesh.Mesh:
-    """The whole body from its half x >= 0: no edge is left on the axis."""
-    on_axis = abs(half.points[:, 0]) < 1e-12
-    number = np.where(on_axis, np.arange(len(half.points)), len(half.points) + np.cumsum(~on_axis) - 1)
-    outline = half.edges[half.labels == mesh.FREE]
-    return mesh.Mesh(
-        points=np.vstack([half.points, half.points[~on_axis] * [-1, 1]]),
-        triangles=np.vstack([half.triangles, number[half.triangles][:, ::-1]]),
-        edges=np.vstack([outline, number[outline][:, ::-1]]),
-        labels=np.full(2 * len(outline), mesh.FREE))
-
-
-def test_half_a_disc_is_the_whole_disc(disc, tmp_path):
-    """On a mesh and its mirror image the half and the whole body give the same history."""
-    part = mesh.disc(0.05, 0.015, 0.006, True)
-    mesh.write(part, tmp_path / "half.msh")
-    mesh.write(mirrored(part), tmp_path / "full.msh")
-    half = disc(mesh=tmp_path / "half.msh", symmetry="half", dt=4e-5)
-    full = disc(mesh=tmp_path / "full.msh", symmetry="full", dt=4e-5)
-    for name in ("normal_force", "kinetic", "elastic", "contact", "y", "vy", "max_penetration", "contact_size"):
-        a, b = half.history[name], full.history[name]
-        assert abs(a - b).max() < 1e-5 * abs(a).max(), name
-    assert half.summary["contact_time"] == pytest.approx(full.summary["contact_time"], rel=1e-6)
-    assert abs(full.summary["rebound_vx"]) < 1e-9 and abs(full.summary["rebound_spin"]) < 1e-6
-
-
 @pytest.mark.parametrize("angle, turns", [(90, 0), (60, 0), (70, -1)], ids=["normal", "oblique", "one turn"])
 def test_flight_is_skipped_without_a_trace(disc, angle, turns):
     """Dropped from 0.3 m the disc does after touch what it does when started at touch with the speed of the fall."""

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from orchestrate.mesh import mesh
-
-from .test_disc import mirrored
+from triangles import whole_of
 
 COARSE = dict(mesh_size=0.025, contact_mesh_size=0.0079, accuracy=0.03, slip_velocity=0.1)
 RUBBING = dict(friction_static=0.7, friction_dynamic=0.5)
@@ -31,9 +30,9 @@ def check_balances(result):
     assert ((h["sliding_fraction"] >= 0) & (h["sliding_fraction"] <= 1 + 1e-12)).all()
 
 
-@pytest.mark.parametrize("law, speed", [("neohookean", 12), ("svk", 6)])
-@pytest.mark.parametrize("transition", ["jump", "smooth"])
-@pytest.mark.parametrize("regularization", ["linear", "linear-printed", "sqrt", "tanh"])
+@pytest.mark.parametrize("law, speed, transition, regularization", [
+    *(("neohookean", 12, transition, regularization) for transition in ("jump", "smooth") for regularization in ("linear", "linear-printed", "sqrt", "tanh")),
+    ("svk", 6, "jump", "linear"), ("svk", 6, "smooth", "tanh")])
 def test_energy_and_momentum_are_accounted_for(disc, law, speed, transition, regularization):
     """At every step the energy that is left and the work of friction add up to the energy at the start within 1e-8,
     friction never gives energy back, and both force columns are the change of momentum."""
@@ -112,7 +111,7 @@ def test_half_a_rubbing_disc_is_the_whole_disc(disc, tmp_path, regularization, s
     """At a normal impact friction holds both halves back alike: half and whole give the same history on a mirrored mesh."""
     part = mesh.disc(0.05, 0.015, 0.006, True)
     mesh.write(part, tmp_path / "half.msh")
-    mesh.write(mirrored(part), tmp_path / "full.msh")
+    mesh.write(whole_of(part), tmp_path / "full.msh")
     settings = dict(law="neohookean", speed=10, dt=4e-5, penalty=1e10, slip_velocity=0.1, regularization=regularization, friction_static=static, friction_dynamic=0.5)
     half = disc(mesh=tmp_path / "half.msh", symmetry="half", **settings)
     full = disc(mesh=tmp_path / "full.msh", symmetry="full", **settings)

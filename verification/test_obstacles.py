@@ -66,10 +66,11 @@ def test_slots_within_reach_are_found_wherever_the_body_goes(found):
 
 
 def test_rows_of_planes_are_built_once(measure):
-    """Planes alone, one of them moving: constant rows, those of the trace for y = 0, and exact places."""
-    planes = measure("obstacle-planes")
-    assert planes["fixed"] == 1 and planes["kept"] == 0 and planes["level"] < 1e-15
-    assert planes["gap"] < 1e-14 and planes["place"] < 1e-14 and planes["slip"] < 1e-14
+    """Planes alone, both of them moving: constant rows, and with them the same identities."""
+    planes = measure("obstacles", planes=1)
+    assert planes["fixed"] == 1 and planes["kept"] == 0
+    for shape in ("plane", "inclined"):
+        assert max(planes[name + shape] for name in ("gap", "begin", "end", "place", "slip")) < 1e-14 and planes[f"across{shape}"] < 1e-14
 
 
 @pytest.mark.parametrize("friction", [0, 1])

@@ -1,16 +1,9 @@
 """Pairwise contact (14), (15) in the march: a disc on a free block without friction (edp/disc-block.edp, paper, section 3.2)."""
 
-import signal
-import subprocess
-import time
-
 import numpy as np
 import pytest
 
-from orchestrate.freefem import freefem
-from orchestrate.output import results
 from orchestrate.failure import Failure
-from orchestrate.input.parameters import ROOT
 
 SCENE = {"radius": 0.5, "speed": 10, "nu": 0.4, "law": "neohookean", "accuracy": 0.02}
 CONSERVED = 1e-9            # over the energy, the momentum and their arms at the start
@@ -78,26 +71,3 @@ def test_refusals(disc, given, words):
     with pytest.raises(Failure) as failure:
         disc(**({"script": "disc-block", "pairing": "pairwise"} | SCENE | given))
     assert "exit code 10" in str(failure.value) and words in str(failure.value)
-
-
-def test_a_killed_run_goes_on_to_the_same_answer(tmp_path):
-    """From a checkpoint in the middle of the contact to the history of a run that was not killed, to the last bit."""
-    program = freefem.find()
-
-    def start(out, *more):
-        flags = freefem.words_of(SCENE | {"pairing": "pairwise", "checkpoint_every": 10, "out": out})
-        return subprocess.Popen(program.words("edp/disc-block.edp", *flags, *more), cwd=ROOT, env=program.environment, stdout=subprocess.DEVNULL)
-    assert start(tmp_path / "whole").wait(120) == 0
-    killed = start(tmp_path / "killed")
-    part = tmp_path / "killed/unfinished/history.csv"
-    for _ in range(6000):
-        if killed.poll() is not None or (tmp_path / "killed/checkpoint").exists() and part.exists() and len(part.read_text().splitlines()) > 25:
-            break
-        time.sleep(0.01)
-    killed.send_signal(signal.SIGKILL)
-    assert killed.wait(10) == -signal.SIGKILL
-    assert start(tmp_path / "killed", "-restart", str(tmp_path / "killed/checkpoint")).wait(120) == 0
-    assert results.read_summary(tmp_path / "killed")["resumed_at"] > 0
-    whole, resumed = (results.read_history(tmp_path / name) for name in ("whole", "killed"))
-    for name in whole:
-        assert np.array_equal(whole[name], resumed[name]), name

@@ -7,6 +7,16 @@ import pytest
 LAWS = ["svk", "neohookean"]
 REGULARIZATIONS = ["linear", "linear-printed", "sqrt", "tanh"]
 TRANSITIONS = ["jump", "smooth"]
+COARSE = {"disc": {"accuracy": 0.1}, "ball": {"accuracy": 0.1}, "3d": {"mesh_size": 0.025, "contact_mesh_size": 0.015}}
+MOONEY = {"law": "mooney-rivlin", "law_parameters": "0.3"}
+OGDEN = {"law": "ogden", "law_parameters": "1.3,0.5,5,0.2,-2,0.3"}
+TANGENTS = [*((body, {"law": law, "degree": degree, "integrator": integrator} | ({"nu": 0.3} if body == "3d" else {}))
+              for body, integrator in (("block", "newmark"), ("block", "midpoint"), ("disc", "newmark"), ("disc", "midpoint"), ("ball", "newmark"), ("3d", "midpoint"))
+              for law in LAWS for degree in (1, 2)),
+            *((body, own | {"integrator": "midpoint"}) for body in COARSE for own in (MOONEY, OGDEN)),
+            *((body, {"law": law, "integrator": integrator, "nu": 0.4999}) for body in COARSE
+              for law, integrator in (("svk", "midpoint"), ("neohookean", "newmark"), ("neohookean", "midpoint"))),
+            ("disc", MOONEY | {"integrator": "newmark", "nu": 0.4999})]
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -21,19 +31,26 @@ def test_residual_is_the_one_of_the_equations(measure, law, integrator, exponent
     assert found["elastic"] < 1e-10 and found["contact"] < 1e-10 and found["total"] < 1e-10
 
 
-@pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize("degree", [1, 2])
-@pytest.mark.parametrize("body, integrator", [("block", "newmark"), ("block", "midpoint"), ("disc", "newmark"), ("disc", "midpoint"), ("ball", "newmark"), ("3d", "midpoint")])
-def test_tangent_is_the_derivative_of_the_residual(measure, body, law, degree, integrator):
-    """Moduli and mass give the derivative of the residual at large strain, on straight and curved elements in the plane, of revolution, hoops included, and in space; its
-    symmetric factorisation solves the system, and constrained unknowns stay where they are."""
-    sizes = dict(nu=0.3, mesh_size=0.025, contact_mesh_size=0.015) if body == "3d" else dict(accuracy=0.1)
-    found = measure(f"tangent-{body}", law=law, degree=degree, integrator=integrator, **sizes)
-    assert found["state"] == 0 and (found["strain"] > {"ball": 1, "3d": 0.5}[body] if body in ("ball", "3d") else found["smallest"] < 0.6)
+def kernels_are_the_scripts(found: dict, factor: bool = True) -> None:
+    """Deformation, forces, tangent and, where it has one, its factor, as kernels.idp prints them: to round-off, where there is a compiler."""
+    names = ["deformed", "forces", "product", *(["solve", "response", "compliance"] if factor else [])]
+    assert not found["built"] or max(found[name] for name in names) < 1e-12 and (found["refused"] == 0 or not factor)
+
+
+@pytest.mark.parametrize("body, flags", TANGENTS, ids=str)
+def test_tangent_is_the_derivative_of_the_residual(measure, body, flags):
+    """Moduli and mass give the derivative of the residual at large strain, on straight and curved elements in the plane, of revolution, hoops included, and in space, under
+    every law, at nu = 0.4999 with the rank-one part of every element; its symmetric factorisation solves the system, and constrained unknowns stay where they are. The
+    kernels do the same; svk at nu = 0.45, and all laws at 0.4999, are not elliptic there, and the tangent has no factor."""
+    found = measure(f"tangent-{body}", **COARSE.get(body, {"accuracy": 0.1}) | flags)
     assert found["tangent"] < 1e-6
-    if body in ("disc", "ball"):
+    degree, usual = flags.get("degree"), flags["law"] in LAWS and "degree" in flags
+    kernels_are_the_scripts(found, factor=flags.get("nu") != 0.4999 and (flags["law"] != "svk" or degree == 1 or body == "3d"))
+    if usual:
+        assert found["state"] == 0 and (found["strain"] > {"ball": 1, "3d": 0.5}[body] if body in ("ball", "3d") else found["smallest"] < 0.6)
+    if usual and body in ("disc", "ball"):
         assert found["solve"] < {"disc": 1e-11, "ball": 1e-10}[body] and found["stray"] < {"disc": 1e-15, "ball": 1e-12}[body]
-    if body == "3d":
+    if usual and body == "3d":
         assert found["area"] == pytest.approx(4 / 3 * math.pi * 0.05**3, rel=3e-3 if degree == 2 else 0.15)
 
 
@@ -54,11 +71,12 @@ def test_contact_stiffness_is_the_derivative_of_the_traction(measure, exponent):
     assert abs(found["work"]) < 1e-13 and found["alone"] < 1e-10
 
 
-@pytest.mark.parametrize("regularization", REGULARIZATIONS)
-@pytest.mark.parametrize("transition", TRANSITIONS)
-@pytest.mark.parametrize("integrator", ["energy-momentum", "newmark", "midpoint"])
+@pytest.mark.parametrize("integrator, transition, regularization", [
+    ("energy-momentum", "jump", "linear"), ("newmark", "jump", "linear-printed"), ("midpoint", "jump", "sqrt"), ("energy-momentum", "jump", "tanh"),
+    ("midpoint", "smooth", "linear"), ("energy-momentum", "smooth", "linear-printed"), ("newmark", "smooth", "sqrt"), ("midpoint", "smooth", "tanh")])
 def test_friction_force_is_the_one_of_the_equations(measure, integrator, transition, regularization):
-    """Friction (11)-(13) on points that stick, slip, run back, open and close in the step equals a varf, to round-off."""
+    """Friction (11)-(13) on points that stick, slip, run back, open and close in the step equals a varf, to round-off; that every
+    law is the same wherever in the step it is evaluated the next test shows."""
     found = measure("residual", law="svk", integrator=integrator, exponent=1.5, friction_static=0.7, friction_dynamic=0.5,
                     slip_velocity=2.5, regularization=regularization, friction_transition=transition)
     assert found["slow"] > 1 and found["fast"] > 1 and found["backwards"] > 1 and found["switching"] > 0

@@ -56,7 +56,7 @@ def run(program: str, form: str, mesh_size: float, contact_mesh_size: float, dt:
         **flags: Value) -> tuple[dict | None, str]:
     """(what the peer prints, "") or (None, the reason there is nothing).
 
-    program: ngsolve or (the disc alone) getfem; form: plain, tuned or (NGSolve) newmark or tuned-realcompile; sizes [m], step dt [s], limit
+    program: ngsolve or (the disc alone) getfem; form: plain, tuned or (NGSolve) newmark; sizes [m], step dt [s], limit
     [s]; scene: of BODIES. Further flags by the names of the peers: law, nu, speed, penalty, young, density, tolerance, history.
     """
     flags |= {"form": form, "dt": dt, "mesh_size": mesh_size, "contact_mesh_size": contact_mesh_size}

@@ -6,13 +6,10 @@ plain: as users of NGSolve would write it: one nonlinear form, contact on all of
 newmark: the same with the step that users would take, Newmark's average acceleration, stress and pressure at its end: nothing corrects the energy.
 tuned: constant mass, contact on the lowest arc alone, a symmetric tangent factorised by sparse Cholesky and kept until Newton's method
        slows down; the exact tangent once a step needs it.
-tuned-realcompile: the same with its forms through the C++ compiler, some 10 s of set-up.
 """
 
 import argparse
 import math
-import os
-import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import metadata
@@ -236,10 +233,8 @@ class Tuned(Body):
     def __init__(self, shape: Shape, options: argparse.Namespace):
         super().__init__(shape, options)
         u, w = self.space.TnT()
-        os.environ["PATH"] = f"{sys.prefix}/bin:" + os.environ["PATH"]   # of NGSolve's compiler script
-        how = dict(realcompile=True, wait=True) if options.form == "tuned-realcompile" else {}
-        contact = self.contact_form(u, w).Compile(**how) * self.outline("arc")
-        stressed, inertia = self.body_forms(how)
+        contact = self.contact_form(u, w).Compile() * self.outline("arc")
+        stressed, inertia = self.body_forms()
         self.force += contact
         self.symmetric += contact
         # the tangent itself, used from the first step on that does not converge with the other
@@ -250,17 +245,17 @@ class Tuned(Body):
         self.tried = self.u.vec.CreateVector()
         self.tangent, self.inverse = (self.symmetric, "sparsecholesky"), None
 
-    def body_forms(self, how: dict):
+    def body_forms(self):
         """Without contact: force, the residual's stress for the displacement in self.u, and symmetric, the tangent of the midpoint rule, which
         differs by the order of dt from that of its own; gives the forms of stress and inertia."""
         u, w = self.space.TnT()
-        stressed = self.stress_form(u, w).Compile(**how) * self.bulk
+        stressed = self.stress_form(u, w).Compile() * self.bulk
         self.force = ng.BilinearForm(self.space, nonassemble=True)
         self.force += stressed
         middle = 0.5 * (self.deformation(u) + self.deformation(self.u0))
         inertia = (2 / self.dt ** 2 * self.weighted * InnerProduct(u, w)).Compile() * self.bulk
         self.symmetric = ng.BilinearForm(self.space, symmetric=True)
-        self.symmetric += Variation((2 * self.shape.share * strain_energy(middle.trans * middle, self.o)).Compile(**how) * self.bulk)
+        self.symmetric += Variation((2 * self.shape.share * strain_energy(middle.trans * middle, self.o)).Compile() * self.bulk)
         self.symmetric += inertia
         self.inertia, self.predicted = (self.u.vec.CreateVector() for _ in range(2))
         return stressed, inertia
@@ -314,7 +309,7 @@ def main(scene: str, build: Callable[[argparse.Namespace], Shape], forms: dict[s
          more: dict[str, tuple[float, str]] | None = None) -> None:
     """Runs the body that `build` makes of the flags, those of `more` (default, unit) among them, in the form that they ask for; `scene` is the
     one of ours that it stands beside."""
-    forms = forms or {"plain": Plain, "newmark": Newmark, "tuned": Tuned, "tuned-realcompile": Tuned}
+    forms = forms or {"plain": Plain, "newmark": Newmark, "tuned": Tuned}
     options = peer.arguments("NGSolve", tuple(forms), scene, more or {})
     if options.mesh:
         raise SystemExit("mesh: netgen makes its own, give --mesh-size and --contact-mesh-size")

@@ -114,7 +114,7 @@ class TunedOblique(Oblique):
 
     def __init__(self, shape: Shape, options):
         super().__init__(shape, options)
-        Tuned.body_forms(self, {})
+        Tuned.body_forms(self)
         scalar, place = ng.H1(self.mesh, order=2), ng.GridFunction(self.space)
         place.Set(ng.CF((x, y)))
         self.half = scalar.ndof

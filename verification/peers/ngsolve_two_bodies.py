@@ -1,4 +1,4 @@
-"""A disc on a free block, or two equal discs head on, with NGSolve (`pip install ngsolve==6.2.2608`): a second opinion on two bodies.
+"""A disc on a free block with NGSolve (`pip install ngsolve==6.2.2608`): a second opinion on two bodies.
 
 Half of both bodies (u_x = 0 on the axis x = 0), plane strain, curved P2 triangles of netgen, no friction, no gravity. Shares nothing
 with our own step: central differences with the consistent mass. Contact of potential k p^2 / 2 per unit reference length:
@@ -14,8 +14,6 @@ mean velocity + elastic, after the contact.
 import argparse
 import json
 import math
-import os
-import sys
 import time
 from importlib import metadata
 from pathlib import Path
@@ -23,14 +21,13 @@ from pathlib import Path
 import netgen.occ as occ
 import ngsolve as ng
 import numpy as np
-from ngsolve import BND, Det, Grad, Id, IfPos, InnerProduct, Trace, ds, dx, x, y
+from ngsolve import BND, Grad, Id, IfPos, InnerProduct, Trace, ds, dx, x, y
 from ngsolve_body import strain_energy, stress
 from peer import with_numbers
 
 FINE_ANGLE = 60             # degrees from the axis: where the discs' outline is fine and in contact
 ORDER = 4                   # of the quadrature of the stress and its energy
 SAMPLE = 20                 # steps between two rows of the history
-SMOOTH = 0.02               # window of the mean of peak_force_smooth, in contact times
 BODIES = ("upper", "lower")
 OUTLINES = ("upper outline", "lower outline")
 
@@ -39,31 +36,23 @@ def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     numbers = {"radius": (0.5, "m"), "width": (10.0, "m, of the block"), "height": (2.0, "m, of the block"), "young": (7e6, "Pa"),
                "density": (1722.0, "kg/m3"), "nu": (0.45, "-"), "penalty": (1e9, "Pa/m"), "speed": (10.0, "m/s, downwards, of the disc"),
-               "lower-speed": (0.0, "m/s, upwards, of the lower body"), "refine": (1.0, "divides all mesh sizes"),
+               "refine": (1.0, "divides all mesh sizes"),
                "courant": (0.4, "step over the linear limit of stability"), "after": (0.3, "flight after the contact, in contact times")}
     parser.add_argument("--law", choices=("svk", "neohookean"), default="neohookean")
-    parser.add_argument("--lower", choices=("block", "disc"), default="block", help="the lower body (default block)")
     parser.add_argument("--contact", choices=("two-sided", "ngsolve"), default="two-sided")
-    parser.add_argument("--realcompile", action="store_true", help="the stress by the C++ compiler: 12 s of set-up, then a fifth of its time")
-    parser.add_argument("--history", type=Path, help="writes force, energies, velocities and least det F over time there (CSV)")
+    parser.add_argument("--history", type=Path, help="writes force, energies and velocities over time there (CSV)")
     return with_numbers(parser, numbers)
 
 
 def bodies_mesh(o: argparse.Namespace) -> ng.Mesh:
     """Half bodies, drawn 4 radii apart; materials upper and lower, boundaries axis, `OUTLINES` (the fine ones) and free."""
-    def disc(centre):
-        first = FINE_ANGLE if centre > 0 else 180 - FINE_ANGLE
-        return occ.WorkPlane().MoveTo(0, centre - o.radius).Arc(o.radius, first).Arc(o.radius, 180 - first).Close().Face()
-
     half, fine = o.width / 2, 1.6 * o.radius
-    upper = disc(5 * o.radius)
-    lower = disc(-o.radius) if o.lower == "disc" else occ.WorkPlane().MoveTo(0, -o.height).LineTo(half, -o.height).LineTo(
-        half, 0).LineTo(fine, 0).LineTo(0, 0).LineTo(0, -o.height).Face()
+    upper = occ.WorkPlane().MoveTo(0, 4 * o.radius).Arc(o.radius, FINE_ANGLE).Arc(o.radius, 180 - FINE_ANGLE).Close().Face()
+    lower = occ.WorkPlane().MoveTo(0, -o.height).LineTo(half, -o.height).LineTo(half, 0).LineTo(fine, 0).LineTo(0, 0).LineTo(0, -o.height).Face()
     depth = o.radius * (1 - math.cos(math.radians(FINE_ANGLE)))
-    for face, name, is_fine in ((upper, BODIES[0], lambda c: c.y < 4 * o.radius + depth),
-                                (lower, BODIES[1], lambda c: c.y > (-depth if o.lower == "disc" else -1e-9) and c.x < fine)):
-        face.name, size = name, 0.6 if (name, o.lower) == ("lower", "block") else 0.16
-        face.maxh = size * o.radius / o.refine
+    for face, name, size, is_fine in ((upper, BODIES[0], 0.16, lambda c: c.y < 4 * o.radius + depth),
+                                      (lower, BODIES[1], 0.6, lambda c: c.y > -1e-9 and c.x < fine)):
+        face.name, face.maxh = name, size * o.radius / o.refine
         for edge in face.edges:
             edge.name = "axis" if edge.center.x < 1e-9 else f"{name} outline" if is_fine(edge.center) else "free"
             if edge.name == f"{name} outline":
@@ -144,7 +133,7 @@ class Pair:
         self.space, scalar = ng.VectorH1(self.mesh, order=2, dirichletx="axis"), ng.H1(self.mesh, order=2)
         self.u, self.v, coordinates = (ng.GridFunction(self.space) for _ in range(3))
         self.u.Set(ng.CF((0, -4 * o.radius)), definedon=self.mesh.Materials("upper"))            # to the first touch
-        self.v.Set(self.mesh.MaterialCF({"upper": ng.CF((0, -o.speed)), "lower": ng.CF((0, o.lower_speed))}))
+        self.v.Set(self.mesh.MaterialCF({"upper": ng.CF((0, -o.speed)), "lower": ng.CF((0, 0))}))
         coordinates.Set(ng.CF((x, y)))
         self.reference = self.nodal(coordinates.vec).copy()
         self.outlines = [Outline(scalar, name, self.reference, side) for name, side in zip(OUTLINES, (1.0, -1.0))]
@@ -154,7 +143,6 @@ class Pair:
         self.is_upper = np.zeros(scalar.ndof, bool)
         self.is_upper[[dof for element in scalar.Elements() if element.mat == BODIES[0] for dof in element.dofs]] = True
         self.is_upper_vertex = self.is_upper & (np.arange(scalar.ndof) < self.mesh.nv)             # bubbles carry no net force
-        self.points = self.mesh.MapToAllElements(ng.IntegrationRule(ng.TRIG, ORDER), self.mesh.Materials(".*"))
         self.dt = o.courant * 2 / self.highest_frequency()
 
     @staticmethod
@@ -166,10 +154,8 @@ class Pair:
         o, (trial, test) = self.o, self.space.TnT()
         volume = dx(intrules={ng.TRIG: ng.IntegrationRule(ng.TRIG, ORDER)})
         F, F_now = Id(2) + Grad(trial), Id(2) + Grad(self.u)
-        os.environ["PATH"] = f"{sys.prefix}/bin:" + os.environ["PATH"]                           # of NGSolve's compiler script
-        how = dict(realcompile=True, wait=True) if o.realcompile else {}
         self.stress = ng.BilinearForm(self.space, nonassemble=True)
-        self.stress += InnerProduct(F * stress(F.trans * F, o), Grad(test)).Compile(**how) * volume
+        self.stress += InnerProduct(F * stress(F.trans * F, o), Grad(test)).Compile() * volume
         self.mass = ng.BilinearForm(o.density * InnerProduct(trial, test) * dx, symmetric=True).Assemble().mat
         self.inverse = self.mass.Inverse(self.space.FreeDofs(), inverse="sparsecholesky")
         self.weights = [ng.LinearForm(o.density * test[1] * dx(body)).Assemble().vec for body in BODIES]
@@ -229,33 +215,16 @@ class Pair:
     def velocities(self) -> list[float]:
         return [ng.InnerProduct(weight, self.v.vec) / mass for weight, mass in zip(self.weights, self.masses)]
 
-    def least_ellipticity(self) -> float:
-        """SVK: smallest eigenvalue of Q(N) = (N.SN) I + (lambda + mu) FN FN^T + mu F F^T over all points and N, over mu; lost where < 0."""
-        lam, mu = self.o.lame_lambda, self.o.lame_mu
-        F = np.eye(2) + Grad(self.u)(self.points).reshape(-1, 2, 2)
-        E = (np.einsum("mki,mkj->mij", F, F) - np.eye(2)) / 2
-        angle = np.arange(18) * math.pi / 18
-        N = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-        NSN = lam * np.trace(E, axis1=1, axis2=2)[:, None] + 2 * mu * np.einsum("ni,mij,nj->mn", N, E, N)
-        FN, B = np.einsum("mij,nj->imn", F, N), np.einsum("mik,mjk->ijm", F, F)[..., None]
-        Q = [NSN + (lam + mu) * FN[0] ** 2 + mu * B[0, 0], NSN + (lam + mu) * FN[1] ** 2 + mu * B[1, 1],
-             (lam + mu) * FN[0] * FN[1] + mu * B[0, 1]]
-        return ((Q[0] + Q[1]) / 2 - np.hypot((Q[0] - Q[1]) / 2, Q[2])).min() / mu
-
     def state(self, force: float, potential: float) -> dict:
-        """A row of the history, whole bodies; J_x, J_y: where the least det F is, in the body as drawn at the first touch."""
+        """A row of the history, whole bodies."""
         self.force.data = self.mass * self.v.vec
         twice = (self.force.FV().NumPy() * self.v.vec.FV().NumPy()).reshape(2, -1).sum(0)
         kinetic = twice[self.is_upper].sum(), twice[~self.is_upper].sum()
         elastic = [2 * ng.Integrate(energy, self.mesh) for energy in self.elastic]
-        J = Det(Id(2) + Grad(self.u))(self.points).reshape(-1)
-        least = self.points[int(np.argmin(J))]
         row = {"t": self.t, "normal_force": 2 * force, "velocity_upper": self.velocities()[0], "velocity_lower": self.velocities()[1],
                "kinetic_upper": kinetic[0], "kinetic_lower": kinetic[1], "elastic_upper": elastic[0], "elastic_lower": elastic[1],
                "contact_potential": 2 * potential}
-        row["total_energy"] = sum(list(row.values())[4:])
-        row |= {"least_ellipticity": self.least_ellipticity()} if self.o.law == "svk" else {}
-        return row | {"least_det_F": J.min(), "J_x": x(least), "J_y": y(least) - (4 * self.o.radius if y(least) > 0 else 0)}
+        return row | {"total_energy": sum(list(row.values())[4:])}
 
 
 class PairOfNGSolve(Pair):
@@ -294,30 +263,17 @@ def march(pair: Pair) -> tuple[list[dict], np.ndarray, str]:
 
 
 def summary(pair: Pair, rows: list[dict], forces: np.ndarray, end: str) -> dict:
-    """What is reported of the whole bodies; least det F, ellipticity and drift of the energy among the rows."""
+    """What is reported of the whole bodies; drift of the energy among the rows."""
     t, force = forces.T
-    closed, strong = force != 0, np.flatnonzero(force > 0.01 * force.max())
-    touching = np.flatnonzero(closed)
-    window = max(1, round(SMOOTH * (t[touching[-1]] - t[touching[0]]) / pair.dt))
-    smooth = np.convolve(force, np.ones(window) / window, mode="same")
+    strong, touching = np.flatnonzero(force > 0.01 * force.max()), np.flatnonzero(force)
     final, masses = rows[-1], [2 * mass for mass in pair.masses]
-    least = min(rows, key=lambda row: row["least_det_F"])
-    inverted = next((row for row in rows if row["least_det_F"] <= 0), None)
-    before = masses[0] * -pair.o.speed + masses[1] * pair.o.lower_speed
-    after = masses[0] * final["velocity_upper"] + masses[1] * final["velocity_lower"]
     vibration = {f"vibration_{body}": final[f"kinetic_{body}"] + final[f"elastic_{body}"] - mass / 2 * final[f"velocity_{body}"] ** 2
                  for body, mass in zip(BODIES, masses)}
-    return {"end": end, "mass_upper": masses[0], "mass_lower": masses[1], "first_contact": t[touching[0]],
+    return {"end": end, "mass_upper": masses[0], "mass_lower": masses[1],
             "contact_time": t[touching[-1]] + pair.dt - t[touching[0]], "contact_time_1_percent": t[strong[-1]] - t[strong[0]],
-            "contact_intervals": int(np.count_nonzero(np.diff(closed.astype(int)) == 1)), "impulse": pair.dt * force.sum(),
-            "peak_force": force.max(), "time_of_peak": t[force.argmax()],
-            "peak_force_smooth": smooth.max(), "time_of_peak_smooth": t[smooth.argmax()], "velocity_upper": final["velocity_upper"],
-            "velocity_lower": final["velocity_lower"], **vibration, "energy_start": rows[0]["total_energy"],
-            "energy_drift": max(abs(row["total_energy"] / rows[0]["total_energy"] - 1) for row in rows),
-            "energy_change": final["total_energy"] / rows[0]["total_energy"] - 1, "momentum_change": (after - before) / abs(before or after or 1),
-            "least_ellipticity": min((row["least_ellipticity"] for row in rows if "least_ellipticity" in row), default=None),
-            **{name: row and [row[key] for key in ("least_det_F", "t", "J_x", "J_y")]            # det F, its time and place
-               for name, row in (("least_det_F", least), ("first_inverted", inverted))}}
+            "impulse": pair.dt * force.sum(), "velocity_upper": final["velocity_upper"], "velocity_lower": final["velocity_lower"], **vibration,
+            "energy_start": rows[0]["total_energy"],
+            "energy_drift": max(abs(row["total_energy"] / rows[0]["total_energy"] - 1) for row in rows)}
 
 
 def main():
@@ -331,7 +287,7 @@ def main():
         table = np.array([list(row.values()) for row in rows])
         np.savetxt(options.history, table, delimiter=",", header=",".join(rows[0]), comments="", fmt="%.10g")
     print(json.dumps({"program": "ngsolve", "version": metadata.version("ngsolve"),
-                      **{name: getattr(options, name) for name in ("lower", "contact", "law", "nu", "penalty", "refine")},
+                      **{name: getattr(options, name) for name in ("contact", "law", "nu", "penalty", "refine")},
                       "dofs": pair.space.ndof, "dt": pair.dt, "steps": len(forces), **summary(pair, rows, forces, end),
                       "imports_seconds": start, "setup_seconds": ready - start, "cpu_seconds": time.process_time() - ready}))
     if end != "over":
