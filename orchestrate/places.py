@@ -24,7 +24,7 @@ def from_source(argv: list[str]) -> None:
     another name (pip install -e) it is run from there."""
     if INSTALLED:
         raise NotInstalled(f"{argv[0]}: needs the program's source folder (verification/), which pip install does not bring: run "
-                           f"python -m orchestrate {argv[0]} in a clone of it, or make it reachable by pip install -e")
+                           f"python -m orchestrate {argv[0]} in a clone of it, or make it reachable by pip install -e .")
     if __package__ != "orchestrate":
         os.environ["PYTHONPATH"] = os.pathsep.join([str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])])
         os.execv(sys.executable, [sys.executable, "-m", "orchestrate", *argv])
