@@ -141,7 +141,7 @@ struct Rows {
 // Newton's matrix at some D, and what solves with it.
 class Newton {
  public:
-  int mostDense = 200, mostIterations = 10;                        // unknowns that are solved with densely; iterations with an older P
+  int mostDense = 200, mostIterations = 5;                        // unknowns that are solved with densely; iterations with an older P
   bool made = false;
   Vector D;                                                        // that it is of
   void forget() { made = false;  numeric.reset(); }
