@@ -37,8 +37,9 @@ def load(name: str | Path) -> Scene:
     """
     name = str(name)
     path = SCENES / f"{name}.toml" if name in built_in() else Path(name)
-    words = "no such file" if name.endswith(".toml") else f"no such scene (built in: {', '.join(built_in())}; or the path of a TOML file)"
-    _, given = read_toml(path, f"{name}: {words}")
+    words = ("file (accepted: the path of a TOML scene, or a built-in one)" if name.endswith(".toml") else
+             f"scene (built in: {', '.join(built_in())}; or the path of a TOML file)")
+    _, given = read_toml(path, f"{name}: no such {words}")
     try:
         return read(given, path.parent, path.stem)
     except BadInput as error:

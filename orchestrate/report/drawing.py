@@ -1,5 +1,6 @@
 """All figures of a finished run, each with its title and the run's warnings."""
 
+import re
 from pathlib import Path
 from textwrap import wrap
 
@@ -73,5 +74,6 @@ def title(scene: dict[str, Value]) -> str:
 
 
 def wrapped(text: str, width: float) -> str:
-    """Each line of a title in as many as fit the width [inches] of a figure, but no more than MOST_LINES."""
+    """Each line of a title in as many as fit the width [inches] of a figure, but no more than MOST_LINES; a number stays with its unit."""
+    text = re.sub(r"(?<=\d) (?=(?:m|MPa|Pa|kg)\b)", "\N{NO-BREAK SPACE}", text)
     return "\n".join("\n".join(wrap(line, int(LETTERS * width))[:MOST_LINES]) for line in text.split("\n"))
