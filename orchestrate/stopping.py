@@ -3,8 +3,11 @@
 import os
 import signal
 import sys
-import threading
+import time
+from _thread import start_new_thread
 from collections.abc import Callable
+
+_leaving = False        # a signal has raised: what is tidied up on the way out is not to be interrupted by another
 
 
 def obey() -> None:
@@ -24,9 +27,13 @@ def on(number: int, act: Callable[[int], None]) -> None:
     """Lets the signal `number` call `act`, which raises.
 
     It waits while a module is being imported (extension modules and importlib abort, or swallow it) and while a child is being
-    started (it would be left alone); it comes again where the exception was lost (in a callback or a destructor).
+    started (it would be left alone); it comes again where the exception was lost (in a callback or a destructor). What follows a signal
+    that ends the program is not heard: an exception amid the end of a child would leave locks of the library held for ever.
     """
     def handler(number: int, frame) -> None:
+        global _leaving
+        if _leaving:
+            return
         while frame:
             if frame.f_code.co_filename.startswith("<frozen importlib") or frame.f_code.co_name == "_execute_child":
                 return _again(number)
@@ -35,17 +42,25 @@ def on(number: int, act: Callable[[int], None]) -> None:
             act(number)
         except BaseException as error:
             error.signal = number
+            _leaving = number != signal.SIGALRM      # after which the program goes on
             raise
     signal.signal(number, handler)
     sys.unraisablehook = _lost
 
 
 def _again(number: int) -> None:
-    later = threading.Timer(0.01, os.kill, [os.getpid(), number])   # to the process: this wakes the main thread
-    later.daemon = True
-    later.start()
+    start_new_thread(_send_later, (number,))        # no Timer: it takes a lock, and another signal may come here while it holds it
+
+
+def _send_later(number: int) -> None:
+    time.sleep(0.01)
+    os.kill(os.getpid(), number)                    # to the process: this wakes the main thread
 
 
 def _lost(unraisable) -> None:
-    number = getattr(unraisable.exc_value, "signal", None)
-    _again(number) if number else sys.__unraisablehook__(unraisable)
+    global _leaving
+    if number := getattr(unraisable.exc_value, "signal", None):
+        _leaving = False
+        _again(number)
+    else:
+        sys.__unraisablehook__(unraisable)

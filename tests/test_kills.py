@@ -191,6 +191,32 @@ def test_kill(shelf, tmp_path, route, number, whom, point, before):
     assert not list(tmp_path.glob("out.part")) and not list(out.rglob("*.part"))
 
 
+TIDIES = """
+import time
+from orchestrate import stopping
+stopping.obey()
+try:
+    print("up", flush=True)
+    time.sleep(60)
+finally:
+    print("tidies", flush=True)
+    time.sleep(0.3)
+    print("tidy", flush=True)
+"""
+
+
+def test_the_way_out_is_not_interrupted():
+    """A study ends its runs that the same signal has reached already: a second one does not raise amid what is tidied up."""
+    process = start([sys.executable, "-c", TIDIES])
+    said = [process.stdout.readline()]
+    process.terminate()
+    said.append(process.stdout.readline())
+    for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
+        process.send_signal(number)
+    rest, error = process.communicate(timeout=20)
+    assert (*said, rest, error, process.returncode) == ("up\n", "tidies\n", "tidy\n", "", 143)
+
+
 DELAYS = [0.6 * k / 60 for k in range(60)]
 
 
