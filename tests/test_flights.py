@@ -82,6 +82,14 @@ def test_long_flights_end_at_the_touch(tmp_path, case):
     assert found.summary["contact_time"] < 0.01 * expected and rows.restitution[0] > 0.9
 
 
+@pytest.mark.parametrize("distance, told", [
+    ("y + x^2", []), ("exp(y/0.02) - 1", ["touches again: the run ended when the first impact was over, and it is not known whether"])])
+def test_what_leaves_an_expression_that_is_no_distance(tmp_path, distance, told):
+    """Above a surface that falls away, or one whose expression says little of how far it is: no touch is made up, and none is denied that is not known."""
+    _, found = go(tmp_path, read(DISC | {"position": [0, 0.0501], "velocity": [0, -5]}, obstacles=({"kind": "implicit", "distance": distance},)))
+    assert [one[:len(told[0]) if told else 0] for one in found.summary["warnings"] if one.startswith("touches again")] == told
+
+
 def test_a_steel_bead_bounces(tmp_path):
     """A bead of 1 mm dropped 1 m is in contact for Hertz' time, with an end_time and without."""
     bead = STEEL | {"radius": 5e-4, "height": 1, "speed": 0, "gravity": 9.81, "penalty": "auto", "accuracy": 0.02}

@@ -54,3 +54,11 @@ def test_the_gap_is_the_distance(text):
     assert found[near] == pytest.approx(exact[near], abs=1e-15) and (abs(found) <= abs(exact) + 1e-15).all() and (found * exact >= 0).all()
     assert implicit.radius_at(np.array([0.0, 0.11]), numbers) == pytest.approx(0.1, rel=1e-5)
     assert implicit.radius_at(np.array([0.0, 0.09]), settled("0.01 - x*x - y*y", (0.0, 0.0), 0.05)) == np.inf
+
+
+def test_an_expression_that_is_no_distance_far_away():
+    """exp(y/c) - 1 looks c away from everywhere above, and overflows: gaps are no more than the distance, and outside."""
+    numbers = settled("exp(y/0.02) - 1")
+    heights = np.array([1e-3, 0.09, 0.5, 3.0, 30.0, 1e5])
+    found = implicit.gap(np.column_stack([0 * heights, heights]), numbers)
+    assert found[:2] == pytest.approx(heights[:2]) and (0 < found).all() and (found <= heights + 1e-15).all()

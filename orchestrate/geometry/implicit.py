@@ -17,6 +17,7 @@ TINY = 1e-300                   # so that the slope of a root of 0 is that of wh
 TURNS = 60                   # towards the closest point, at most
 CLOSE = 1e-9                 # of `limit`: how near it is at last
 SAMPLES = 4000               # points at which steepness and curvature are looked for
+STEEPEST = 1e150                # beyond, squares overflow: of the expression the sign alone is known
 FARTHEST = 1e4               # how far, over the size of all bodies, the surface is looked for
 
 
@@ -103,23 +104,24 @@ def gap(points: np.ndarray, numbers: tuple[float, ...]) -> np.ndarray:
     with np.errstate(all="ignore"):
         found, slope = run(code, points)
         size = np.linalg.norm(slope, axis=1)
-        near = abs(found) < limit * size
-        found = found / np.maximum(steepest, size)
+        near = abs(found) < limit * np.minimum(size, STEEPEST)
+        found = np.where(size < STEEPEST, found / np.maximum(steepest, size), np.copysign(limit, found))
         if near.any():
-            found[near] = closest(points[near], code, limit)[0]
+            distance = closest(points[near], code, limit)[0]
+            found[near] = np.where(abs(distance) <= 2 * limit, distance, found[near])
     return found
 
 
 def closest(points: np.ndarray, code: list[float], limit: float) -> tuple[np.ndarray, np.ndarray]:
     """Distances (n,) of points near the surface, and the closest points of it (n, axes): projected on the tangent plane of D there, again
-    and again."""
+    and again, unless they turn out to be farther than twice `limit`."""
     at, sides, distance = points, {}, np.zeros(len(points))
     for _ in range(TURNS):
         value, slope = run(code, at, sides)
         size = np.linalg.norm(slope, axis=1)
         normal = slope / size[:, None]
         distance = value / size + np.sum(normal * (points - at), axis=1)
-        before, at = at, points - distance[:, None] * normal
+        before, at = at, np.where(abs(distance[:, None]) > 2 * limit, at, points - distance[:, None] * normal)
         if not abs(at - before).max() > CLOSE * limit:
             break
     return distance, at
