@@ -13,7 +13,6 @@ import subprocess
 import time
 from collections.abc import Iterable
 from functools import cache
-from importlib import metadata
 from pathlib import Path
 
 from . import __version__
@@ -195,7 +194,7 @@ def _mesh_path(given: Path) -> Path:
 
 def _gmsh(scene: Scene, mesh_file: Path | None) -> str | None:
     """The version of the gmsh that makes the mesh, None where a file or the script itself brings it."""
-    return metadata.version("gmsh") if scene.meshed and not mesh_file else None
+    return mesh.start_gmsh().__version__ if scene.meshed and not mesh_file else None
 
 
 # ---- provenance
