@@ -29,12 +29,12 @@ def read(folder: Path) -> np.recarray:
 
 
 def several(table: np.recarray) -> list[np.recarray]:
-    """The impacts of each meeting, where there are more than one of all; intervals with less than LIGHTEST of the largest impulse of their
-    meeting are none."""
+    """The impacts of each meeting, where one has more than one; intervals with less than LIGHTEST of the largest impulse of their meeting
+    are none."""
     meetings = [table[(table.body == body) & (table.partner == partner)]
                 for body, partner in np.unique(np.stack([table.body, table.partner], axis=1), axis=0)]
     impacts = [rows[rows.impulse >= LIGHTEST * rows.impulse.max()] for rows in meetings]
-    return impacts if sum(map(len, impacts)) > 1 else []
+    return impacts if any(len(rows) > 1 for rows in impacts) else []
 
 
 def draw(table: np.recarray, names: list[str], rigid: list[str]) -> plt.Figure | None:
