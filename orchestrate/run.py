@@ -106,8 +106,8 @@ def _finish(stage: Path, scene: Scene, found: dict, provenance: dict) -> None:
     """The summary with what was `found` beside the run and its provenance, last and by rename."""
     summary = read_summary(stage)
     found["warnings"] = summary.get("warnings", []) + found.get("warnings", [])
-    if found.get("estimated_error"):
-        summary["skipped"] = [name for name in summary["skipped"] if name != "error estimate"]
+    found["skipped"] = found.get("skipped", []) + [name for name in summary["skipped"] if name != "error estimate"
+                                                   or not found.get("estimated_error")]
     summary |= {"estimated_error": None, "released": list(scene.released)} | found | {"provenance": provenance | {"files": files_of(stage)}}
     (stage / "summary.json").unlink()
     write_json(stage / "summary.json.part", summary)

@@ -378,6 +378,7 @@ def test_scripts_describe_themselves():
     ("disc-normal", {"young": 5e6, "density": 1100}, {"penalty": "auto"}, {}), ("disc-normal", {"exponent": 1.5}, {"penalty": "auto"}, {}),
     ("disc-normal", {"young": 5e6, "penalty": 3e9}, {"penalty": 3e9}, {}), ("ball", {"young": 5e6}, {"penalty": "auto"}, {}),
     ("disc-rolling", {"radius": 0.5}, {"mesh_size": "open", "contact_mesh_size": "open", "penalty": "auto"}, {"end_time": 0.2}),
+    ("disc-normal", {"height": 0.01}, {}, {"penalty": 1e10}),                       # of the fall, not of a body
     ("disc-block", {"radius": 0.1}, {"block_width": 2.0, "block_height": 0.4}, {})])
 def test_what_a_scene_fixed_for_its_own_follows(name, given, opened, kept):
     """What a built-in scene fixes for its material, size or static friction is open again where that is set alone, and a sentence says so; all else stays."""

@@ -55,6 +55,7 @@ LEVER = 0.7                 # of the rim's speed by friction's impulse, what it 
 THROUGH = 2                 # friction that goes another way changes speed, spin and energy, too: its share in them
 SHARES = np.linspace(0, 1, 201)   # of the impulse
 NONE = 1e-12                # a difference that is round-off
+STEPS = ("explicit steps (", "implicit steps (")        # as `skipped` says of those not chosen by integrator = auto
 SCATTERS = "thresholded_contact_time"
 OF_ITSELF = "friction_work of itself"   # accuracy_of = friction_work
 
@@ -64,8 +65,8 @@ Solve = Callable[[dict[str, Value], Path], None]   # runs the scene with these v
 
 def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solve, read: Callable, scaled: Scaled | None = None) -> dict:
     """What joins the summary of the run in `stage`, made from the scene `values`: estimated_error (by answer, see difference(); None if it
-    could not be estimated), estimated_error_excludes (what all runs have alike), estimate_cpu_seconds, refinements, and the sentences
-    `warnings`.
+    could not be estimated), estimated_error_excludes (what all runs have alike), estimate_cpu_seconds, refinements, the sentences
+    `warnings`, and `skipped`, which steps the first run has not chosen and why, where it is not the one in `stage` at last.
 
     Where sizes and steps follow from the accuracy and the estimate is above it, finer runs take the run's place in `stage`.
     `read` gives the Answers of a folder, `scaled` the entries of the scene with larger or smaller elements and steps (left out: other).
@@ -75,6 +76,7 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
     summary, used = answers.summary, answers.used
     # a pair differs in elements and steps alone
     chosen = {"integrator": summary["integrator"]} if values.get("integrator") == "auto" else {}
+    why = [words for words in summary["skipped"] if words.startswith(STEPS)] if chosen else []
     sizes = lambda *given: (scaled or other)(*given) | chosen   # noqa: E731
     asked, seconds, refinements, estimated, before, sentences = values["accuracy"], 0.0, 0, None, math.inf, []
     if failure := _ended(solve, sizes(values, used, COARSER, own_mesh), coarser):
@@ -111,7 +113,7 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
     for folder in (coarser, finer):
         shutil.rmtree(folder, ignore_errors=True)
     return {"estimated_error": estimated, "estimated_error_excludes": [*REGULARISED, *([] if own_mesh else ["mesh"])],
-            "estimate_cpu_seconds": seconds, "refinements": refinements, "warnings": sentences}
+            "estimate_cpu_seconds": seconds, "refinements": refinements, "warnings": sentences, "skipped": why if refinements else []}
 
 
 def _ended(solve: Solve, values: dict[str, Value], where: Path) -> Failure | None:

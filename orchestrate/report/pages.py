@@ -58,7 +58,7 @@ def results() -> str:
     told = [describe_results({}, script) for script in SCRIPTS]
     text, meanings = "", told[0]["meanings"]
     for file, table, lists in TABLES:
-        known = {name: entry for each in meanings.values() for name, entry in each.items()}
+        known = {name: entry for each in reversed(meanings.values()) for name, entry in each.items()} | meanings[table]
         names = {name: None for each in told for key in lists for name in each[key]} or meanings[table]
         names |= {name: None for name in meanings[table]}
         of_body = {name for each in told for key in lists if key.startswith("body") for name in each[key]}

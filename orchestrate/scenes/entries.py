@@ -42,9 +42,9 @@ def release(given: dict, names: list[str]) -> tuple[str, ...]:
     said = []
     for path, table in list(_tables(given)):
         for key in [key for key in parameters.FOLLOWS if key in table and (path, key) not in places]:
-            causes = parameters.FOLLOWS[key] + (SHAPE if "radius" in parameters.FOLLOWS[key] else ())
-            found = [name for cause in causes for name, (where, entry) in zip(names, places) if entry == cause
-                     and (where == path or key in EVERYWHERE)]
+            causes = parameters.FOLLOWS[key]
+            found = [name for name, (where, entry) in zip(names, places) if (where == path or key in EVERYWHERE)
+                     and (entry in causes or "radius" in causes and entry in SHAPE and where.startswith("body."))]
             if found and table[key] not in ("auto", 0):
                 value, name = table.pop(key), f"{path}.{key}".lstrip(".")
                 fixed = f"{value:g}" if isinstance(value, float) else brief(value)
