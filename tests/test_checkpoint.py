@@ -191,6 +191,40 @@ def test_killed_driver(out, straight):
     assert not list(out.parent.glob("out.*"))
 
 
+RISING = """accuracy = 0.005
+young = 7e6
+nu = 0.45
+density = 1722
+law = "neohookean"
+checkpoint_every = 2
+[[body]]
+shape = "disc"
+radius = 0.05
+position = [0, 0.051]
+velocity = [0, -2]
+[[obstacle]]
+kind = "plane"
+point = [0, 0]
+normal = [0, 1]
+velocity = [0, 3]
+"""
+
+
+def test_killed_behind_the_run_that_estimates_the_error(tmp_path):
+    """What that run has left is known as of this scene, its moving obstacle too: the same stated errors, and no needless finer run."""
+    (tmp_path / "rising.toml").write_text(RISING)
+    out, stage, command = tmp_path / "out", tmp_path / "out.part", ["run", str(tmp_path / "rising.toml"), "--quiet", "--out"]
+    assert call(*command, str(tmp_path / "straight"))[0] == 0
+    process = start(*command, str(out))
+    wait_for(lambda: (stage / "coarser/summary.json").exists() and (stage / "checkpoint").exists())
+    process.kill()
+    process.communicate()
+    assert not out.exists() and call(*command, str(out))[0] == 0
+    one, other = (results.read_summary(folder) for folder in (tmp_path / "straight", out))
+    assert [one[name] == other[name] for name in one if name not in EFFORT] == [True] * (len(one) - sum(name in one for name in EFFORT))
+    assert_same(out, tmp_path / "straight")
+
+
 def test_killed_freefem(tmp_path, straight):
     """After kill -9 of FreeFem++ one line says that the same command goes on, and so it does."""
     out, stage = tmp_path / "out", tmp_path / "out.part"

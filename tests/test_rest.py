@@ -190,3 +190,15 @@ def test_two_bodies_rest(tmp_path):
     found = bodies(tmp_path, tables)
     assert found.summary["ended"] == "rest" and found.summary["energy_drift"] < 1e-9
     assert found.history["y_2"][-1] - found.history["y_1"][-1] == pytest.approx(0.1, rel=0.02)
+
+
+def test_nothing_rests_while_another_body_falls(tmp_path):
+    """A slab lies still long before the disc above it lands: the run ends when both do, with the weight of each on what bears it."""
+    slab = {"name": "slab", "shape": "rectangle", "width": 0.4, "height": 0.1, "position": [0, 0.05], "loss": 2.0, "mesh_size": 0.05, "contact_mesh_size": 0.05}
+    falls = {"name": "disc", "shape": "disc", "radius": 0.005, "position": [0, 0.16], "loss": 1.0, "mesh_size": 0.004}
+    found = bodies(tmp_path / "out", REST | {"young": 1e6, "density": DENSITY, "loss": 0, "accuracy": 0.2, "body": [slab, falls], "obstacle": [
+        {"name": "floor", "kind": "plane", "point": [0, 0], "normal": [0, 1]}]})
+    table = np.genfromtxt(tmp_path / "out/run/contacts.csv", delimiter=",", names=True)
+    last = table[table["partner"] == 2][-1]
+    assert found.summary["ended"] == "rest" and last["over"] == 0 and last["start"] > math.sqrt(2 * 0.055 / GRAVITY)
+    assert found.history["force_y_2"][-1] == pytest.approx(weight(math.pi * 0.005**2), rel=0.2)

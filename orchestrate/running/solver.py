@@ -2,6 +2,7 @@
 it is told which of them is at what; in the first seconds of one that will take long about how long, and which entry makes it so."""
 
 import multiprocessing
+import os
 import shutil
 import signal
 import time
@@ -25,6 +26,7 @@ COST = estimate.COARSER**-3       # of a run with larger elements and steps, ove
 LONG = 60.0                      # s
 FIRST, LAST = 2.0, 15.0          # s of steps after which it is judged
 USUAL = freefem.At(1.0, 0.0, 200, 2000)   # steps and unknowns of a usual run: what is further above them makes a run long
+USED = "scene.used"              # scene.toml as Python writes it, from the start of a run on: whoever finds that finished puts it in its place
 APART = 10.0                     # times that the slow body waits for the quick one's steps: more than mesh or accuracy cost
 
 
@@ -39,7 +41,7 @@ class Solver(AbstractContextManager):
         self.pair = pair and freefem.CORES > 1 and not multiprocessing.parent_process()
         self.own_mesh = foreign is None and not scene.of_files
         self.number = 0
-        self.beside: tuple[Path, dict[str, Value], freefem.Process, str] | None = None
+        self.beside: tuple[Path, dict[str, Value], freefem.Process] | None = None
         self.leaving = ExitStack()
 
     def __exit__(self, *_) -> None:
@@ -52,18 +54,18 @@ class Solver(AbstractContextManager):
         """Runs in the folder `where`: from its checkpoint where there is one, not again where it is finished."""
         self.number += 1
         told = Told(self.line, self.scene, self.mesh_file, "main run" if where == self.stage else f"{where.name} run", self.number)
-        taken = self._taken(given, where)
+        taken, exit_code, said = self._taken(given, where), 0, ""
         if taken or not (where / "summary.json").exists():
             with ExitStack() as leaving:
-                process, scene_toml = taken or self._started(given, where, leaving, told)
+                process = taken or self._started(given, where, leaving, told)
                 exit_code, said = process.end(told.show)
-            if scene_toml and (where / "scene.toml").exists():
-                (where / "scene.toml").write_text(scene_toml, "utf-8")
-            _check(where, exit_code, said)
+        if (where / USED).exists() and (where / "scene.toml").exists():
+            os.replace(where / USED, where / "scene.toml")
+        _check(where, exit_code, said)
         told.at("ready", 1.0)
 
-    def _started(self, given: dict[str, Value], where: Path, leaving: ExitStack, told: "Told | None" = None) -> tuple[freefem.Process, str]:
-        """A process at work in the folder until `leaving`, and the scene.toml that Python writes there."""
+    def _started(self, given: dict[str, Value], where: Path, leaving: ExitStack, told: "Told | None" = None) -> freefem.Process:
+        """A process at work in the folder until `leaving`."""
         scene, goes_on = self.scene.override(given), (where / "checkpoint").exists()
         if not goes_on:
             if where != self.stage:
@@ -74,13 +76,15 @@ class Solver(AbstractContextManager):
         if told:
             told.at("mesh")
         flags, used, scene_toml = prepare(scene, where, self.foreign, self.scene)
+        if scene_toml:
+            (where / USED).write_text(scene_toml, "utf-8")
         if told:
             told.at("set-up")
         flags = flags | {"out": where} | ({"restart": where / "checkpoint"} if goes_on else {})
         process = leaving.enter_context(freefem.start(self.program, scene.script, flags, where / "log.txt", self.lock))
         if where == self.stage and self.pair:
             self._start_beside(used)
-        return process, scene_toml
+        return process
 
     def _start_beside(self, used: Mapping) -> None:
         """The coarser run, as settle() will ask for it. What hinders it is said then."""
@@ -88,16 +92,16 @@ class Solver(AbstractContextManager):
         given = self.scene.scaled(self.scene.values | self.scene.sizes, used, estimate.COARSER, self.own_mesh)
         if not (where / "summary.json").exists():
             with suppress(Failure):
-                self.beside = where, given, *self._started(given, where, self.leaving)
+                self.beside = where, given, self._started(given, where, self.leaving)
 
-    def _taken(self, given: dict[str, Value], where: Path) -> tuple[freefem.Process, str] | None:
+    def _taken(self, given: dict[str, Value], where: Path) -> freefem.Process | None:
         """The process beside the main one, where it is the one that is asked for; else it ends."""
         if not self.beside:
             return None
-        place, values, process, scene_toml = self.beside
+        place, values, process = self.beside
         self.beside = None
         if (place, values) == (where, given):
-            return process, scene_toml
+            return process
         self.leaving.close()
         shutil.rmtree(place)
         return None
