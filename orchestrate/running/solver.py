@@ -26,7 +26,7 @@ COST = estimate.COARSER**-3       # of a run with larger elements and steps, ove
 LONG = 60.0                      # s
 FIRST, LAST = 2.0, 15.0          # s of steps after which it is judged
 USUAL = freefem.At(1.0, 0.0, 200, 2000)   # steps and unknowns of a usual run: what is further above them makes a run long
-USED = "scene.used"              # scene.toml as Python writes it, from the start of a run on: whoever finds that finished puts it in its place
+USED = "scene.used"              # scene.toml as Python writes it, there from the start: whoever finds the run finished puts it in its place
 APART = 10.0                     # times that the slow body waits for the quick one's steps: more than mesh or accuracy cost
 
 
