@@ -172,15 +172,34 @@ def test_an_obstacle_that_is_met_twice_has_one_table():
     assert [(pair.first, pair.second) for pair in again.pairs] == [(0, -1)] and assembly.assemble(again).data == built.data
 
 
+def contact_size(tables: Scene) -> float:
+    """Of the elements of its first body in the contact."""
+    return assembly._sizes(0, assembly.Asker(tables, approach.meetings(tables), lambda values: describe(values, tables.dimension.like))).contact
+
+
+@pytest.mark.parametrize("distance", ["sqrt(x^2+(y+0.0401)^2)-0.02", "x^2+(y+0.0401)^2-0.0004"])
+def test_an_expression_of_a_sphere_gets_the_elements_of_one(distance):
+    """Distance or not."""
+    ball = {"name": "ball", "shape": "ball", "radius": 0.02, "position": [0, 0], "velocity": [0, -5]}
+    one, other = (scene(ball, {"name": "sphere"} | kind, dimension="axisymmetric")
+                  for kind in ({"kind": "sphere", "centre": [0, -0.0401], "radius": 0.02}, {"kind": "implicit", "distance": distance}))
+    assert contact_size(one) == pytest.approx(contact_size(other))
+
+
+def test_a_face_that_slides_until_it_rests_has_the_elements_of_one_that_hits():
+    """However far it slides, its elements are those of its width, and follow the accuracy."""
+    box = {"name": "box", "shape": "rectangle", "width": 0.1, "height": 0.1, "position": [0, 0.0501], "velocity": [0.1, -0.1]}
+    hits, rests = (scene(box | {"loss": 0.5}, FLOOR, gravity=9.81, until=until) for until in ("impact", "rest"))
+    assert contact_size(rests) == pytest.approx(contact_size(hits)) and contact_size(rests) > 0.005
+
+
 @pytest.mark.parametrize("gravity", [0, 9.81])
 def test_a_body_set_down_flat_is_not_turned(gravity):
     """However slowly a square comes down flat on the floor, all of its face touches at once: its elements are those of a fast one, to a tenth."""
     sizes = []
     for speed in (1e-13, 0.1):
         square = {"name": "square", "shape": "rectangle", "width": 0.1, "height": 0.1, "position": [0, 0.05], "velocity": [0, -speed]}
-        tables = scene(square, FLOOR, gravity=gravity)
-        ask = assembly.Asker(tables, approach.meetings(tables), lambda values: describe(values, tables.dimension.like))
-        sizes.append(assembly._sizes(0, ask).contact)
+        sizes.append(contact_size(scene(square, FLOOR, gravity=gravity)))
     assert sizes[0] == pytest.approx(sizes[1], rel=0.1) and sizes[0] > 0.005
 
 

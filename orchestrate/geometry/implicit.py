@@ -98,14 +98,15 @@ def run(code: tuple[float, ...], points: np.ndarray, sides: dict | None = None) 
     return stack[0]
 
 
-def gap(points: np.ndarray, numbers: tuple[float, ...]) -> np.ndarray:
-    """Signed distances (n,) of points (n, axes) from the surface; where they are more than about `limit`, no more than these."""
+def gap(points: np.ndarray, numbers: tuple[float, ...], bounds: bool = True) -> np.ndarray:
+    """Signed distances (n,) of points (n, axes) from the surface; where they are more than about `limit`, no more than these, or, without
+    `bounds`, to first order of the expression."""
     steepest, limit, *code = numbers
     with np.errstate(all="ignore"):
         found, slope = run(code, points)
         size = np.linalg.norm(slope, axis=1)
         near = abs(found) < limit * np.minimum(size, STEEPEST)
-        found = np.where(size < STEEPEST, found / np.maximum(steepest, size), np.copysign(limit, found))
+        found = np.where(size < STEEPEST, found / np.maximum(steepest if bounds else 0, size), np.copysign(limit, found))
         if near.any():
             distance = closest(points[near], code, limit)[0]
             found[near] = np.where(abs(distance) <= 2 * limit, distance, found[near])

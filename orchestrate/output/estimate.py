@@ -74,7 +74,7 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
     coarser, finer = stage / COARSE, stage / FINE
     answers = read(stage)
     summary, used = answers.summary, answers.used
-    chosen = {"integrator": summary["integrator"]} if values.get("integrator") == "auto" else {}     # a pair differs in mesh and steps alone
+    chosen = {"integrator": summary["integrator"]} if values.get("integrator") == "auto" else {}   # a pair differs in sizes alone
     why = [words for words in summary["skipped"] if words.startswith(STEPS)] if chosen else []
     sizes = lambda *given: (scaled or other)(*given) | chosen   # noqa: E731
     asked, seconds, refinements, estimated, before, sentences = values["accuracy"], 0.0, 0, None, math.inf, []

@@ -47,8 +47,9 @@ class Meeting:
     never: bool = False
 
     def gaps(self, body: int, points: np.ndarray) -> np.ndarray:
-        """Gaps (n,) from the other one of the points of `body`, as it is at the meeting."""
-        return self.outlines[1 if body == self.first else 0].gap(points)
+        """Gaps (n,) from the other one of the points of `body`, as it is at the meeting, for the sizes of elements."""
+        other = self.outlines[1 if body == self.first else 0]
+        return other.gap_for_sizes(points) if isinstance(other, Obstacle) else other.gap(points)
 
 
 def meetings(scene: Scene) -> list[Meeting]:

@@ -47,6 +47,10 @@ class Obstacle:
         outside = np.linalg.norm(from_point, axis=1) - self.numbers[axes]
         return -outside if self.kind == "bowl" else outside
 
+    def gap_for_sizes(self, points: np.ndarray) -> np.ndarray:
+        """The same, of an implicit one far away to first order: where elements are to be small."""
+        return implicit.gap(points, self.numbers, bounds=False) if self.kind == "implicit" else self.gap(points)
+
     @property
     def is_exact(self) -> bool:
         """Whether `gap` is the distance however far a point is."""
