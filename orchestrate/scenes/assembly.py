@@ -257,7 +257,7 @@ def _sizes(k: int, ask: Asker) -> Sizes:
 def _hit(body: Body, k: int, one: Meeting, ask: Asker) -> tuple[float, np.ndarray, float]:
     """Where body k touches at a meeting: the element size there, points (n, 2) of its outline, and half their distance [m]."""
     bodies = [ask.scene.bodies[j] for j in (one.first, one.second) if j >= 0]
-    straight = ask.answer(bodies, one.radius, until="impact")      # where it goes until it rests is a slide
+    straight = ask.answer(bodies, one.radius)
     arc, size = straight["touch_arc"], float(straight["used"]["contact_mesh_size"])
     depth, small = one.radius * (1 - math.cos(min(arc, math.pi / 2))), ask.small(one.first, one.second)
     points, spacing = body.outline.samples(size)
