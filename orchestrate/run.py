@@ -26,7 +26,7 @@ from .places import INSTALLED, PACKAGE, RESULTS, ROOT, shown
 from .progress import Line
 from .output.results import RunResult, check_files, files_of, read_answers, read_json, read_scene, read_summary, write_json
 from .scene import Scene
-from .running.solver import FAILURES, Solver, runs
+from .running.solver import FAILURES, USED, Solver, runs
 from .input.tables import to_toml
 
 ENTRANCE = "scenes/assembly"           # the module that makes flags, mesh and scene.dat, with all that it imports
@@ -118,7 +118,8 @@ def _keep_failed(stage: Path, failure: Failure, scene: Scene, provenance: dict) 
     """failure.json: the one the script wrote, or what is known; never a summary.json."""
     (stage / "summary.json").unlink(missing_ok=True)
     if not (stage / "scene.toml").exists():
-        (stage / "scene.toml").write_text(to_toml(scene.given), "utf-8")
+        (stage / USED).exists() or (stage / USED).write_text(to_toml(scene.given), "utf-8")
+        os.replace(stage / USED, stage / "scene.toml")
     record = {"status": FAILURES.get(failure.code, "crashed"), "message": str(failure)} | read_json(stage / "failure.json")
     write_json(stage / "failure.json", record | {"exit_code": failure.code, "provenance": provenance})
 
