@@ -9,7 +9,7 @@ import math
 import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +17,7 @@ import numpy as np
 from ..mesh import mesh, revolution, solid_mesh, solids
 from .approach import Meeting, meetings, refuse_nothing, turned
 from .bodies import DAMPING, MATERIAL, Body
+from .front import Front, fronts
 from ..freefem.describe import describe
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID
 from ..failure import BadInput
@@ -98,12 +99,13 @@ def assemble(scene: Scene, rule: Rule | None = None, met: list[Meeting] | None =
     values = scene.values | contact_values(scene.bodies, scene.contact, ask, "contact")
     bodies = [replace(body, viscosity=float(_of_body(k, ask, loss=body.loss, viscosity=body.viscosity)["viscosity"])) if body.loss else body
               for k, body in enumerate(scene.bodies)]
-    scene = replace(scene, pairs=_with_small_obstacles(scene, ask), bodies=bodies)
+    scene = replace(scene, pairs=_with_open_penalties(scene, ask), bodies=bodies)
     pairs = [pair_values(pair, ask, values) for pair in scene.pairs]
     sizes = [None if body.mesh else _sizes(k, ask) for k, body in enumerate(scene.bodies)]
     together, regions, centres, rounds = (_solids if scene.dimension is SOLID else _sections)(scene, sizes)
     disc = ask.disc(scene.bodies, min(body.outline.half_thickness for body in scene.bodies), slides=True)
-    return Assembly(together, regions, centres, data_file(scene, disc, centres, rounds, pairs), values,
+    tau = min((front.tau for front in ask.fronts.values()), default=0.0)
+    return Assembly(together, regions, centres, data_file(scene, disc, centres, rounds, pairs, tau), values,
                     used_tables(scene, sizes, values, pairs))
 
 
@@ -142,6 +144,12 @@ class Asker:
     scene: Scene
     met: list[Meeting]
     rule: Rule
+
+    @cached_property
+    def fronts(self) -> dict[tuple[int, int], Front]:
+        """The flat strikes, by the pair that meets; of several of a pair the one with the smallest elements."""
+        found = sorted(fronts(self.scene, self.met), key=lambda front: -front.tau)
+        return {(front.meeting.first, front.meeting.second): front for front in found}
 
     def answer(self, bodies: list[Body], radius: float, slides: bool = False, **more: Value) -> dict:
         """Of the rule, for such a disc."""
@@ -199,16 +207,20 @@ def pair_values(pair: Pair, ask: Asker, values: dict[str, Value]) -> dict[str, V
     small = ask.small(pair.first, pair.second)
     if 0 < small < math.inf:
         inherited["penalty"] = ask.scene.contact["penalty"]
+    front = ask.fronts.get((pair.first, pair.second))
+    if front and ask.scene.contact["penalty"] == "auto":
+        inherited["penalty"] = front.penalty(ask.scene.bodies, ask.scene.contact["exponent"])
     own = contact_values(bodies, inherited | pair.values, ask, pair.path, small or math.inf)
     return {name: own[name] for name in OWN}
 
 
-def _with_small_obstacles(scene: Scene, ask: "Asker") -> list[Pair]:
-    """The scene's pairs, and those that an open penalty makes differ: of a body and an obstacle smaller than its contact on a plane."""
+def _with_open_penalties(scene: Scene, ask: "Asker") -> list[Pair]:
+    """The scene's pairs, and those that an open penalty makes differ: flat strikes, and a body and an obstacle smaller than its contact
+    on a plane."""
     said = {(pair.first, pair.second) for pair in scene.pairs}
-    small = [(one.first, one.second) for one in ask.met if 0 < ask.small(one.first, one.second) < math.inf] if scene.contact[
-        "penalty"] == "auto" else []
-    pairs = scene.pairs + [Pair(*both, {}, f"obstacle.{-both[1]}") for both in dict.fromkeys(small) if both not in said]
+    small = [(one.first, one.second) for one in ask.met if 0 < ask.small(one.first, one.second) < math.inf]
+    differ = dict.fromkeys([*small, *ask.fronts]) if scene.contact["penalty"] == "auto" else {}
+    pairs = scene.pairs + [Pair(*both, {}, f"obstacle.{-both[1]}" if both[1] < 0 else "contact") for both in differ if both not in said]
     return sorted(pairs, key=lambda pair: (pair.first, pair.second))
 
 
@@ -249,7 +261,10 @@ def _sizes(k: int, ask: Asker) -> Sizes:
     given = {name: value for name, value in (("mesh_size", body.mesh_size), ("contact_mesh_size", body.contact_mesh_size)) if value}
     bulk = float(_of_body(k, ask, **given)["mesh_size"])
     hits = [_hit(body, k, one, ask) for one in ask.met if k in (one.first, one.second)]
-    contact = body.contact_mesh_size or min([bulk, *(size for size, *_ in hits)])
+    mine = [front for front in ask.fronts.values() if k in front.sizes]
+    if not body.mesh_size:
+        bulk = min([bulk, *(front.sizes[k] for front in mine if k in front.crossed)])
+    contact = body.contact_mesh_size or min([bulk, *(size for size, *_ in hits), *(front.sizes[k] for front in mine)])
     near = np.vstack([np.empty((0, ask.scene.dimension.axes)), *(points for _, points, _ in hits)])
     return Sizes(bulk, min(bulk, contact), near, max([0.0, *(slack for *_, slack in hits)]))
 
@@ -330,9 +345,11 @@ def stack(meshes: list[mesh.Mesh] | list[solid_mesh.SolidMesh], centres: np.ndar
 
 # ---- scene.dat
 
-def data_file(scene: Scene, disc: dict[str, Value], centres: np.ndarray, rounds: list[tuple], pairs: list[dict[str, Value]]) -> str:
+def data_file(scene: Scene, disc: dict[str, Value], centres: np.ndarray, rounds: list[tuple], pairs: list[dict[str, Value]],
+              tau: float = 0.0) -> str:
     """The text of scene.dat, words and numbers (SI, radians), as edp/core/input/scene-file.idp says; the disc, or ball, is what the rules
-    stand for, `rounds` are the lines of circles, or of spheres and cylinders."""
+    stand for, `rounds` are the lines of circles, or of spheres and cylinders, `tau` is the time [s] that the front of a flat strike takes
+    through an element."""
     if scene.dimension is SOLID:
         head = [("ffimpact-bodies-3d", 1), ("copies", copies(scene))]
         starts = [(*(body.position - centre), *body.velocity, *body.spin) for body, centre in zip(scene.bodies, centres)]
@@ -348,6 +365,7 @@ def data_file(scene: Scene, disc: dict[str, Value], centres: np.ndarray, rounds:
     lines += [(one.name, "circle" if one.kind == "sphere" and scene.dimension is not SOLID else one.kind, len(one.numbers), *one.numbers,
                *one.velocity) for one in scene.obstacles]
     lines += [("pairs", len(pairs)), *((pair.first, pair.second, *own.values()) for pair, own in zip(scene.pairs, pairs))]
+    lines += [("front", tau)] if tau else []
     damped = [(k, *(getattr(body, name) for name in DAMPING)) for k, body in enumerate(scene.bodies) if body.damped]
     lines += [("damping", len(damped)), *damped] if damped else []
     return "".join(" ".join(repr(float(one)) if isinstance(one, float) else str(one) for one in line) + "\n" for line in lines)

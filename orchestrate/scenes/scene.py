@@ -164,7 +164,7 @@ class Scene:
             return estimate.other(values, used, factor, own_mesh)
         found = {f"contact.{name}": used["contact"][name] for name in ("penalty", "slip_velocity", "friction_dynamic")}
         if used["contact"].get("pair"):
-            found["contact.pair"] = used["contact"]["pair"]
+            found["contact.pair"] = self._scaled_pairs(used["contact"]["pair"], factor)
         for k, (body, given) in enumerate(zip(self.bodies, used["body"]), 1):
             if not body.mesh:
                 bulk = min(factor * given["mesh_size"], body.outline.half_thickness)
@@ -172,6 +172,20 @@ class Scene:
         if used["dt"] > 0:
             found["dt"] = factor * used["dt"]
         return found | {"accuracy": estimate.loosened(used["accuracy"], factor), "fields": 0, "modes": 0}
+
+    def _scaled_pairs(self, used: list[dict], factor: float) -> list[dict]:
+        """The tables [[contact.pair]] as used, with the penalty of flat strikes, where it is open, that of elements `factor` times as
+        large: their error is that of element and penalty together (front.py)."""
+        from .approach import meetings
+        from .front import fronts
+        said = {(pair.first, pair.second) for pair in self.pairs if "penalty" in pair.values}
+        if self.contact["penalty"] != "auto" or len(used) == len(said):
+            return used
+        name = [one.name for one in self.bodies], [one.name for one in self.obstacles]
+        flat = [[name[0][front.meeting.first], name[0][k] if k >= 0 else name[1][-1 - k]] for front in fronts(self, meetings(self))
+                if (front.meeting.first, k := front.meeting.second) not in said]
+        weaker = factor**self.contact["exponent"]
+        return [one | {"penalty": one["penalty"] / weaker} if one["bodies"] in flat else one for one in used]
 
 
 def read(given: dict, folder: Path, name: str) -> Scene:

@@ -1,0 +1,119 @@
+"""Flat strikes: a face that lands as a whole on a face or a plane sends a plane wave front through its body.
+
+The patch of a disc shrinks with the speed; a front does not, so elements, steps and penalty follow the front. With tau the time that
+the front takes through one element, a bar of length L (wave speed c, modulus M = rho c^2) on a penalty k has the rise time
+M/(k c), loses 0.051 M/(k L) of its rebound and stays 1.68 M/(k L) L/c too long (exact solution: docs/method.md). The penalty makes the
+front STEEPNESS times as steep as one element: then the elements resolve the front, and all errors are of first order in the element size.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..geometry.outlines import Shape
+from ..input.dimension import SOLID
+from ..input.parameters import Value
+from .approach import Meeting
+from .bodies import Body
+from .scene import Scene
+
+__all__ = ["Front", "fronts"]
+
+FLAT = 0.3             # share of the body's width that lands while the front passes an element
+PER_ACCURACY = 5.0     # element size over the length along the normal, over the accuracy
+STEEPNESS = 1.5        # elements over the rise length of the front
+BRIEF = 30.0           # transits of the front: a run that is asked to go on for longer is not about the front
+MOST_UNKNOWNS = {2: 40000, 3: 60000}   # in the plane, in space: no front asks for more
+# unknowns of a body of area (volume) V on quadratic elements of size h, over V/h^2 (V/h^3)
+UNKNOWNS = {2: 9.5, 3: 36.0}
+STIFFEST = 0.45        # nu: what is nearer to 0.5 acts on the volume of elements and carries no front (docs/method.md)
+
+
+@dataclass(frozen=True)
+class Front:
+    """The front of one flat strike: `meeting`, the time `tau` [s] that it takes through an element, the element size `sizes` [m] of each
+    of its bodies (by number), and those bodies that are `crossed` as a whole by a plane front."""
+
+    meeting: Meeting
+    tau: float
+    sizes: dict[int, float]
+    crossed: tuple[int, ...]
+
+    def penalty(self, bodies: list[Body], exponent: float) -> float:
+        """The penalty k [Pa/m^m] at which the front rises in tau / STEEPNESS: t_N = k p^m at the pressure rho c v of the strike."""
+        impedances = [bodies[k].density * wave_speed(bodies[k]) for k in self.sizes]
+        pressure = self.meeting.closing / sum(1 / one for one in impedances)             # [Pa]
+        return pressure / (self.meeting.closing * self.tau / STEEPNESS)**exponent
+
+
+def fronts(scene: Scene, met: list[Meeting]) -> list[Front]:
+    """The flat strikes among the meetings of a scene; none where its run is asked to go on for long after them."""
+    if scene.values["until"] == "rest":
+        return []
+    found = [front for one in met if math.isfinite(one.time) and one.closing > 0 and (front := _front(scene, one))]
+    return [one for one in found if scene.values["end_time"] <= one.meeting.time + BRIEF * _transit(scene, one)]
+
+
+def wave_speed(body: Body) -> float:
+    """c [m/s] of a plane pressure wave, sqrt((lambda + 2 mu)/rho)."""
+    nu = min(body.nu, STIFFEST)
+    return math.sqrt(body.young * (1 - nu) / ((1 + nu) * (1 - 2 * nu) * body.density))
+
+
+def _front(scene: Scene, one: Meeting) -> Front | None:
+    """That of a meeting, None where no body lands flat."""
+    bodies = {k: scene.bodies[k] for k in (one.first, one.second) if k >= 0}
+    wanted = {k: _wanted(scene, one, k) for k in bodies}                               # [m]
+    crossed = tuple(k for k in bodies if _lands_flat(one, k, bodies[k], wanted[k]))
+    if not crossed:
+        return None
+    tau = min((bodies[k].mesh_size or wanted[k]) / wave_speed(bodies[k]) for k in crossed)
+    return Front(one, tau, {k: tau * wave_speed(body) for k, body in bodies.items()}, crossed)
+
+
+def _wanted(scene: Scene, one: Meeting, k: int) -> float:
+    """The element size [m] that the accuracy asks for in body k, no smaller than the unknowns allow."""
+    body, accuracy = scene.bodies[k], scene.values["accuracy"] / (1 if scene.values["accuracy_of"] == "promised" else 2)
+    if body.mesh:
+        cells = getattr(body.mesh, "cells", getattr(body.mesh, "triangles", None))
+        return (_content(body) / len(cells) / (0.12 if scene.dimension is SOLID else 0.43))**(1 / scene.dimension.axes)
+    power = 3 if scene.dimension is SOLID else 2
+    least = (UNKNOWNS[power] * _content(body) / MOST_UNKNOWNS[power])**(1 / power)
+    return max(least, PER_ACCURACY * accuracy * _length(one, k))
+
+
+def _content(body: Body) -> float:
+    """Area [m2] or volume [m3]."""
+    return getattr(body.outline, "volume", None) or body.outline.area
+
+
+def _shape(one: Meeting, k: int) -> Shape:
+    return one.outlines[0 if k == one.first else 1]
+
+
+def _length(one: Meeting, k: int) -> float:
+    """The length [m] of body k along the normal."""
+    return float(np.ptp(_shape(one, k).points @ one.normal))
+
+
+def _transit(scene: Scene, one: Front) -> float:
+    """The longest time [s] that the front takes across a body."""
+    return max(_length(one.meeting, k) / wave_speed(scene.bodies[k]) for k in one.crossed)
+
+
+def _lands_flat(one: Meeting, k: int, body: Body, size: float) -> bool:
+    """Whether a good part of the width of body k lands while the front passes an element."""
+    points, spacing = body.outline.samples(min(size, body.outline.half_thickness / 2))
+    moved = body.outline.carried(_shape(one, k), points)
+    gaps = one.gaps(k, moved)
+    landing = int((gaps <= gaps.min() + one.closing * size / wave_speed(body)).sum())
+    width = min(np.ptp(moved @ axis) for axis in _tangents(one.normal))
+    return landing > 1 and bool(body.outline.width(landing, spacing) >= FLAT * width)
+
+
+def _tangents(normal: np.ndarray) -> list[np.ndarray]:
+    """Unit vectors across a normal: one in the plane, two in space."""
+    if len(normal) == 2:
+        return [np.array([-normal[1], normal[0]])]
+    return list(np.linalg.svd(normal[None])[2][1:])
