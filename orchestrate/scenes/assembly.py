@@ -7,7 +7,7 @@ revolution it is the half x >= 0 of their sections, the axis with the label 2, o
 
 import math
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property, partial
 from pathlib import Path
@@ -104,8 +104,8 @@ def assemble(scene: Scene, rule: Rule | None = None, met: list[Meeting] | None =
     sizes = [None if body.mesh else _sizes(k, ask) for k, body in enumerate(scene.bodies)]
     together, regions, centres, rounds = (_solids if scene.dimension is SOLID else _sections)(scene, sizes)
     disc = ask.disc(scene.bodies, min(body.outline.half_thickness for body in scene.bodies), slides=True)
-    tau = min((front.tau for front in ask.fronts.values()), default=0.0)
-    return Assembly(together, regions, centres, data_file(scene, disc, centres, rounds, pairs, tau), values,
+    front = [(min(one.tau for one in ask.fronts.values()), max(one.rise for one in ask.fronts.values()))] if ask.fronts else []
+    return Assembly(together, regions, centres, data_file(scene, disc, centres, rounds, pairs, front), values,
                     used_tables(scene, sizes, values, pairs))
 
 
@@ -346,10 +346,10 @@ def stack(meshes: list[mesh.Mesh] | list[solid_mesh.SolidMesh], centres: np.ndar
 # ---- scene.dat
 
 def data_file(scene: Scene, disc: dict[str, Value], centres: np.ndarray, rounds: list[tuple], pairs: list[dict[str, Value]],
-              tau: float = 0.0) -> str:
+              front: Sequence[tuple[float, float]] = ()) -> str:
     """The text of scene.dat, words and numbers (SI, radians), as edp/core/input/scene-file.idp says; the disc, or ball, is what the rules
-    stand for, `rounds` are the lines of circles, or of spheres and cylinders, `tau` is the time [s] that the front of a flat strike takes
-    through an element."""
+    stand for, `rounds` are the lines of circles, or of spheres and cylinders, `front` the transit through an element and
+    the rise [s] of the front of a flat strike, where there is one."""
     if scene.dimension is SOLID:
         head = [("ffimpact-bodies-3d", 1), ("copies", copies(scene))]
         starts = [(*(body.position - centre), *body.velocity, *body.spin) for body, centre in zip(scene.bodies, centres)]
@@ -365,7 +365,7 @@ def data_file(scene: Scene, disc: dict[str, Value], centres: np.ndarray, rounds:
     lines += [(one.name, "circle" if one.kind == "sphere" and scene.dimension is not SOLID else one.kind, len(one.numbers), *one.numbers,
                *one.velocity) for one in scene.obstacles]
     lines += [("pairs", len(pairs)), *((pair.first, pair.second, *own.values()) for pair, own in zip(scene.pairs, pairs))]
-    lines += [("front", tau)] if tau else []
+    lines += [("front", *one) for one in front]
     damped = [(k, *(getattr(body, name) for name in DAMPING)) for k, body in enumerate(scene.bodies) if body.damped]
     lines += [("damping", len(damped)), *damped] if damped else []
     return "".join(" ".join(repr(float(one)) if isinstance(one, float) else str(one) for one in line) + "\n" for line in lines)

@@ -3,7 +3,8 @@
 The patch of a disc shrinks with the speed; a front does not, so elements, steps and penalty follow the front. With tau the time that
 the front takes through one element, a bar of length L (wave speed c, modulus M = rho c^2) on a penalty k has the rise time
 M/(k c), loses 0.051 M/(k L) of its rebound and stays 1.68 M/(k L) L/c too long (exact solution: docs/method.md). The penalty makes the
-front STEEPNESS times as steep as one element: then the elements resolve the front, and all errors are of first order in the element size.
+front STEEPNESS times as steep as one element, and rise in LONGEST of its transit across the body at most: then the elements resolve the front, and all errors are of
+first order in the element size.
 """
 
 import math
@@ -23,6 +24,7 @@ __all__ = ["Front", "fronts"]
 FLAT = 0.3             # share of the body's width that lands while the front passes an element
 PER_ACCURACY = 5.0     # element size over the length along the normal, over the accuracy
 STEEPNESS = 1.5        # elements over the rise length of the front
+LONGEST = 0.04         # rise of the front over its transit across the body
 BRIEF = 30.0           # transits of the front: a run that is asked to go on for longer is not about the front
 MOST_UNKNOWNS = {2: 40000, 3: 60000}   # in the plane, in space: no front asks for more
 # unknowns of a body of area (volume) V on quadratic elements of size h, over V/h^2 (V/h^3)
@@ -32,19 +34,26 @@ STIFFEST = 0.45        # nu: what is nearer to 0.5 acts on the volume of element
 
 @dataclass(frozen=True)
 class Front:
-    """The front of one flat strike: `meeting`, the time `tau` [s] that it takes through an element, the element size `sizes` [m] of each
+    """The front of one flat strike: `meeting`, the time `tau` [s] that it takes through an element, the shortest
+    `transit` [s] across a body, the element size `sizes` [m] of each
     of its bodies (by number), and those bodies that are `crossed` as a whole by a plane front."""
 
     meeting: Meeting
     tau: float
+    transit: float
     sizes: dict[int, float]
     crossed: tuple[int, ...]
 
+    @property
+    def rise(self) -> float:
+        """The time [s] in which the front rises."""
+        return min(self.tau / STEEPNESS, LONGEST * self.transit)
+
     def penalty(self, bodies: list[Body], exponent: float) -> float:
-        """The penalty k [Pa/m^m] at which the front rises in tau / STEEPNESS: t_N = k p^m at the pressure rho c v of the strike."""
+        """The penalty k [Pa/m^m] that lets the front rise so: t_N = k p^m at the pressure rho c v of the strike."""
         impedances = [bodies[k].density * wave_speed(bodies[k]) for k in self.sizes]
         pressure = self.meeting.closing / sum(1 / one for one in impedances)             # [Pa]
-        return pressure / (self.meeting.closing * self.tau / STEEPNESS)**exponent
+        return pressure / (self.meeting.closing * self.rise)**exponent
 
 
 def fronts(scene: Scene, met: list[Meeting]) -> list[Front]:
@@ -52,7 +61,7 @@ def fronts(scene: Scene, met: list[Meeting]) -> list[Front]:
     if scene.values["until"] == "rest":
         return []
     found = [front for one in met if math.isfinite(one.time) and one.closing > 0 and (front := _front(scene, one))]
-    return [one for one in found if scene.values["end_time"] <= one.meeting.time + BRIEF * _transit(scene, one)]
+    return [one for one in found if scene.values["end_time"] <= one.meeting.time + BRIEF * one.transit]
 
 
 def wave_speed(body: Body) -> float:
@@ -69,7 +78,8 @@ def _front(scene: Scene, one: Meeting) -> Front | None:
     if not crossed:
         return None
     tau = min((bodies[k].mesh_size or wanted[k]) / wave_speed(bodies[k]) for k in crossed)
-    return Front(one, tau, {k: tau * wave_speed(body) for k, body in bodies.items()}, crossed)
+    transit = min(_length(one, k) / wave_speed(bodies[k]) for k in crossed)
+    return Front(one, tau, transit, {k: tau * wave_speed(body) for k, body in bodies.items()}, crossed)
 
 
 def _wanted(scene: Scene, one: Meeting, k: int) -> float:
@@ -95,11 +105,6 @@ def _shape(one: Meeting, k: int) -> Shape:
 def _length(one: Meeting, k: int) -> float:
     """The length [m] of body k along the normal."""
     return float(np.ptp(_shape(one, k).points @ one.normal))
-
-
-def _transit(scene: Scene, one: Front) -> float:
-    """The longest time [s] that the front takes across a body."""
-    return max(_length(one.meeting, k) / wave_speed(scene.bodies[k]) for k in one.crossed)
 
 
 def _lands_flat(one: Meeting, k: int, body: Body, size: float) -> bool:

@@ -1,7 +1,9 @@
 """Scenes drawn at random, the same ones for the same seed: what promises and robustness are tried on."""
 
+import math
 import random
 from collections.abc import Sequence
+from pathlib import Path
 
 from orchestrate.sweeps.study import Point
 
@@ -177,3 +179,65 @@ def _harder(chance: random.Random, point: Point, c: float) -> Point:
 
 def _round(value: float) -> float:
     return float(f"{value:.3g}")
+
+
+# ---- faces that strike flat
+
+FLAT = Path(__file__).with_name("flat")       # their scenes
+# how many of sixty, and the accuracies that are asked for: those in space are dear
+FLAT_MIXTURE = {"block-wall": (18, (0.02, 0.05, 0.1)), "two-bars": (14, (0.02, 0.05, 0.1)), "polygon-wall": (14, (0.02, 0.05, 0.1)),
+                "cylinder-wall": (10, (0.02, 0.05, 0.1)), "box-wall": (4, (0.1,))}
+FLAT_NU = (0.0, 0.0, 0.1, 0.2, 0.3, 0.4, 0.45, 0.49)
+
+
+def flat(seed: int, count: int) -> list[tuple[str, Point]]:
+    """About `count` bodies with faces that strike flat, on planes and on each other, in all dimensions: scene and overrides."""
+    found = []
+    for scene, (share, accuracies) in FLAT_MIXTURE.items():
+        chance = random.Random(f"{seed} {scene}")
+        many = max(1, round(count * share / 60))
+        for k in range(many):
+            young, density, _ = MATERIALS[chance.choice(list(MATERIALS))]
+            speed = bar_speed(young, density) * math.exp(chance.uniform(math.log(SLOWEST), math.log(FASTEST_FLAT)))
+            point = {"young": young, "density": density, "nu": chance.choice(FLAT_NU), "law": chance.choice(["svk", "neohookean"]),
+                     "accuracy": chance.choice(accuracies)}
+            point |= {name: value if isinstance(value, list) else float(f"{value:.3g}") for name, value in
+                      FLAT_SHAPES[scene](chance, speed).items()}
+            found.append(((k + 0.5) / many, scene, point))
+    return [(scene, point) for _, scene, point in sorted(found, key=lambda one: one[0])]
+
+
+def _block(chance: random.Random, speed: float) -> Point:
+    height, width = (0.1 * chance.choice([0.25, 0.5, 1.0, 2.0]) for _ in range(2))
+    return {"body.1.width": width, "body.1.height": height, "body.1.position.2": height / 2, "body.1.velocity.2": -speed}
+
+
+def _bars(chance: random.Random, speed: float) -> Point:
+    lengths, height = [0.1 * chance.choice([0.5, 1.0, 2.0]) for _ in range(2)], 0.1 * chance.choice([0.2, 0.5])
+    sides = {f"body.{k}.{name}": value for k, length, side in ((1, lengths[0], -1), (2, lengths[1], 1)) for name, value in
+             {"width": length, "height": height, "position.1": side * length / 2, "velocity.1": -side * speed / 2}.items()}
+    return sides
+
+
+def _polygon(chance: random.Random, speed: float) -> Point:
+    """A trapezoid on its longer or its shorter side."""
+    base, top, height = (0.1 * chance.uniform(*ends) for ends in ((0.5, 2), (0.3, 1), (0.5, 2)))
+    corners = [[-base / 2, 0.0], [base / 2, 0.0], [top / 2, height], [-top / 2, height]]
+    corners = [[float(f"{x:.3g}") for x in corner] for corner in corners]
+    lowest = height * (base + 2 * top) / (3 * (base + top))
+    return {"body.1.vertices": corners, "body.1.position.2": lowest * 1.01, "body.1.velocity.2": -speed}
+
+
+def _cylinder(chance: random.Random, speed: float) -> Point:
+    radius, height = 0.05 * chance.choice([0.3, 1.0, 2.0]), 0.1 * chance.choice([0.5, 1.0, 2.0])
+    return {"body.1.radius": radius, "body.1.height": height, "body.1.position": height / 2, "body.1.velocity": -speed}
+
+
+def _box(chance: random.Random, speed: float) -> Point:
+    width, height, depth = (0.1 * chance.choice([0.5, 1.0]) for _ in range(3))
+    return {"body.1.width": width, "body.1.height": height, "body.1.depth": depth, "body.1.position.2": height / 2,
+            "body.1.velocity.2": -speed}
+
+
+FASTEST_FLAT = 0.03          # speed over sqrt(E/density)
+FLAT_SHAPES = {"block-wall": _block, "two-bars": _bars, "polygon-wall": _polygon, "cylinder-wall": _cylinder, "box-wall": _box}
