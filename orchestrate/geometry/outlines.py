@@ -13,6 +13,7 @@ SAMPLES = 400                # points on a loop where its shape is wanted as a p
 CHUNK = 500                  # points at a time, against as many segments as there are
 FINEST = 4000                # points on an outline at most where it is asked what touches
 COARSEST = 400
+FLUSH = 1e-6                 # of the bounding radius: gaps that differ by no more are one face on another
 
 
 @dataclass(frozen=True)
@@ -150,6 +151,7 @@ class Shape:
     `disc`."""
 
     points: np.ndarray
+    reach: float
     disc: tuple[np.ndarray, float] | None
     gap: Callable[[np.ndarray], np.ndarray]
 
@@ -165,7 +167,9 @@ class Shape:
             return normal_of(other, self.disc[0])
         if getattr(other, "disc", None):
             return -normal_of(self, other.disc[0])
-        return normal_of(other, self.points[other.gap(self.points).argmin()])
+        gaps = other.gap(self.points)
+        touching = self.points[gaps <= gaps.min() + FLUSH * self.reach]     # of a face that lies on another its middle has a normal
+        return normal_of(other, touching[np.linalg.norm(touching - touching.mean(axis=0), axis=1).argmin()])
 
 
 @dataclass(frozen=True)

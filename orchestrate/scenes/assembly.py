@@ -263,7 +263,7 @@ def _sizes(k: int, ask: Asker) -> Sizes:
     hits = [_hit(body, k, one, ask) for one in ask.met if k in (one.first, one.second)]
     mine = [front for front in ask.fronts.values() if k in front.sizes]
     if not body.mesh_size:
-        bulk = min([bulk, *(front.sizes[k] for front in mine if k in front.crossed)])
+        bulk = min((front.sizes[k] for front in mine if k in front.crossed), default=bulk)
     contact = body.contact_mesh_size or min([bulk, *(size for size, *_ in hits), *(front.sizes[k] for front in mine)])
     near = np.vstack([np.empty((0, ask.scene.dimension.axes)), *(points for _, points, _ in hits)])
     return Sizes(bulk, min(bulk, contact), near, max([0.0, *(slack for *_, slack in hits)]))

@@ -83,14 +83,14 @@ def _front(scene: Scene, one: Meeting) -> Front | None:
 
 
 def _wanted(scene: Scene, one: Meeting, k: int) -> float:
-    """The element size [m] that the accuracy asks for in body k, no smaller than the unknowns allow."""
+    """The element size [m] that the accuracy asks for in body k: no smaller than the unknowns allow, four across its thickness at least."""
     body, accuracy = scene.bodies[k], scene.values["accuracy"] / (1 if scene.values["accuracy_of"] == "promised" else 2)
     if body.mesh:
         cells = getattr(body.mesh, "cells", getattr(body.mesh, "triangles", None))
         return (_content(body) / len(cells) / (0.12 if scene.dimension is SOLID else 0.43))**(1 / scene.dimension.axes)
     power = 3 if scene.dimension is SOLID else 2
     least = (UNKNOWNS[power] * _content(body) / MOST_UNKNOWNS[power])**(1 / power)
-    return max(least, PER_ACCURACY * accuracy * _length(one, k))
+    return min(body.outline.half_thickness / 2, max(least, PER_ACCURACY * accuracy * _length(one, k)))
 
 
 def _content(body: Body) -> float:
