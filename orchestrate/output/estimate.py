@@ -48,7 +48,9 @@ BOUND = {"impulse": 0.4, "rebound": 0.51, "rebound_spin": 0.98, "energy": 0.81, 
 MEASURES = {"rebound_spin": "Ddd", "friction_work": "Add", "peak_force": "Ddd"}     # of the others: DdA
 ROOT = {"thresholded_contact_time": 4, "contact_time": 4}                           # of the others: 3
 ALIKE = {"D": 1.4, "impulse": 0.3, "rebound": 0.7, "rebound_spin": 0.5, "energy": 1.0, "friction_work": 0.03}   # over A, by steps alone
-FRONT = {"d": 2.2, "time": 1.3, "peak": 4.0}        # of flat strikes: front_errors(), calibrated likewise
+# of flat strikes: front_errors(), calibrated likewise
+FRONT = {"impulse": 3.0, "rebound": 3.0, "rebound_spin": 3.0, "energy": 4.0, "friction_work": 3.0, "thresholded_contact_time": 1.7,
+         "contact_time": 1.7, "peak_force": 4.0}
 PROMISED = tuple(USUAL)[:6]
 COURSE = {"thresholded_contact_time": "impulse", "contact_time": "impulse", "peak_force": "impulse"}   # whose course stands for theirs
 STILL = 1.6                 # friction work where nothing turns: small slip under a patch that mostly sticks, over BOUND
@@ -262,15 +264,15 @@ def front_errors(apart: Mapping[str, float], way: Mapping[str, float], rise: flo
     """The estimated errors of a flat strike, where answers converge with the first power of the element size and the penalty follows it.
     `rise` [1] is the rise time of the front over the contact time.
 
-    As in errors() one difference can be small by chance. An error is FRONT["d"] d sqrt(r), d the largest difference of its time history,
-    r the mean of the differences at the end over d. Contact ends 1.7 rises late (front.py), that is about its error.
+    As in errors() one difference can be small by chance. An error is FRONT d sqrt(r), d the largest difference of its time history,
+    r the mean of the differences at the end over d. Contact ends 1.7 rises late (front.py), which is about its error.
     """
     moved = [name for name in ("impulse", "rebound", "energy") if way[name] > NONE]
     share = math.sqrt(min(1.0, sum(apart[name] / way[name] for name in moved) / len(moved))) if moved else 0.0
-    found = {name: FRONT["d"] * way[name] * share for name in BOUND if name not in COURSE}
-    found |= {name: FRONT["time"] * (rise + apart[name]) for name in ("thresholded_contact_time", "contact_time")}
-    found["peak_force"] = FRONT["peak"] * (way["impulse"] + apart["peak_force"])
-    found = {name: max(apart[name], error) for name, error in found.items()}
+    measures = {name: way[name] * share for name in BOUND}
+    measures |= {name: rise + apart[name] for name in ("thresholded_contact_time", "contact_time")}
+    measures["peak_force"] = way["impulse"] + apart["peak_force"]
+    found = {name: max(apart[name], FRONT[name] * measure) for name, measure in measures.items()}
     return found | {OF_ITSELF: found["friction_work"] * way[OF_ITSELF] / way["friction_work"] if way["friction_work"] else 0.0}
 
 
