@@ -5,11 +5,12 @@ import gc
 import importlib
 import locale
 import os
+import re
 import sys
 from pathlib import Path
 
 from . import __version__, stopping
-from .failure import BadInput, Failure, Unreadable, brief
+from .failure import BadInput, Failure, Unreadable, brief, unknown
 from .places import COMMAND, from_source, shown
 
 # the commands with a module of their own, which has a main(argv), by its package; what is in none of ours needs the source folder
@@ -18,6 +19,7 @@ PACKAGES = {f"{__package__}.sweeps": ("sweep",), f"{__package__}.report": ("fric
             "verification.measurements": ("oblique-angles", "viscoelastic", "stress", "bench", "promise", "pairing-comparison",
                                           "disc-block-errors", "equal-errors", "scaling", "rubber")}
 OWN_MAIN = {name: f"{package}.{name.replace('-', '_')}" for package, names in PACKAGES.items() for name in names}
+CHOICES = re.compile(r"[^', ]+")   # the words in argparse's own message
 FROM_SOURCE = ("pages", "paper", *(name for name, module in OWN_MAIN.items() if module.startswith("verification.")))
 
 
@@ -50,6 +52,9 @@ def main(argv: list[str]) -> int:
 
 
 def _bad_usage(parser: argparse.ArgumentParser, message: str) -> None:
+    if choice := re.fullmatch(r"argument (\S+): invalid choice: (['\"])(.*)\2 \(choose from (.*)\)", message):
+        message = f"{choice[1]}: {unknown(choice[3], CHOICES.findall(choice[4]), ', ')}"
+        raise BadInput(f"{message} (see {parser.prog} --help)")
     raise BadInput(f"{brief(message)} (see {parser.prog} --help)")
 
 

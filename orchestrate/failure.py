@@ -1,8 +1,12 @@
 """Expected failures: one line for the user and an exit code (the table in the run contract)."""
 
+import difflib
+from collections.abc import Iterable
 from pathlib import Path
 
-MOST = 200   # characters of a value that a message repeats
+MOST = 200     # characters of a value that a message repeats
+ALIKE = 0.15   # a second word is suggested where its likeness to the user's is this near to that of the first
+SWITCHES = {"true": "on", "false": "off"}   # what a user may write for a word
 
 
 class Failure(Exception):
@@ -20,9 +24,24 @@ class Failure(Exception):
 
 
 def brief(value) -> str:
-    """A value as a message repeats it, however long it is."""
-    text = str(value)
+    """A value as a message repeats it, however long it is; true and false as TOML has them."""
+    text = str(value).lower() if isinstance(value, bool) else str(value)
     return text if len(text) <= MOST else f"{text[:MOST]} ..."
+
+
+def suggestion(word, accepted: Iterable[str]) -> str:
+    """What a message adds where one or two of the accepted words are near to the user's; empty where none is."""
+    given, words = brief(word).lower(), list(dict.fromkeys(accepted))
+    near = [one for one in (SWITCHES.get(given),) if one in words] or difflib.get_close_matches(given, words, n=2)
+    likeness = [difflib.SequenceMatcher(None, one, given).ratio() for one in near]
+    near = [one for one, like in zip(near, likeness) if like > likeness[0] - ALIKE]
+    return f"; did you mean {' or '.join(near)}?" if near else ""
+
+
+def unknown(word, accepted: Iterable[str], between: str = "|") -> str:
+    """What a message says of a word that is none of the accepted ones."""
+    words = list(accepted)
+    return f"'{brief(word)}' is not known{suggestion(word, words)} (accepted: {between.join(words)})"
 
 
 class TooLong(Failure):

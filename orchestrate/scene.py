@@ -1,9 +1,11 @@
 """Scenes as files: the built-in ones and those of one's own."""
 
+import re
 import tomllib
 from pathlib import Path
 
-from .failure import BadInput
+from .failure import BadInput, suggestion
+from .input import parameters
 from .scenes.scene import Scene, read
 
 SCENES = Path(__file__).resolve().parent / "scenes"
@@ -26,7 +28,24 @@ def read_toml(path: Path, missing: str) -> tuple[str, dict]:
     except RecursionError:
         raise BadInput(f"{path}: cannot be read: nested too deep") from None
     except (OSError, ValueError) as error:
-        raise BadInput(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
+        raise BadInput(f"{path}: {_unit_in(path, error) or 'cannot be read: ' + (getattr(error, 'strerror', None) or str(error))}") from None
+
+
+def _unit_in(path: Path, error: Exception) -> str:
+    """Of a file that is no TOML: the entry in the line of the error whose number has a unit; empty where that is not why."""
+    line = re.search(r"at line ([0-9]+)", str(error))
+    entry, _, value = path.read_text("utf-8").splitlines()[int(line[1]) - 1].partition("=") if line else ("", "", "")
+    rule = parameters.table().get(entry.strip())
+    said = parameters.with_unit(value.partition("#")[0].strip(), rule.unit if rule else "")
+    return said and f"{entry.strip()}: '{value.partition('#')[0].strip()}' {said}" + (f" (accepted: {rule.accepted})" if rule else "")
+
+
+def absent(name: str, kind: str, names: list[str]) -> str:
+    """The message where a word is neither the name of one of the built-in scenes (sweeps) nor a file."""
+    hint = suggestion(name.removesuffix(".toml"), names)
+    if name.endswith(".toml"):
+        return f"{name}: no such file{hint} (accepted: the path of a TOML {kind}, or a built-in one)"
+    return f"{name}: no such {kind}{hint} (built in: {', '.join(names)}; or the path of a TOML file)"
 
 
 def load(name: str | Path) -> Scene:
@@ -37,9 +56,7 @@ def load(name: str | Path) -> Scene:
     """
     name = str(name)
     path = SCENES / f"{name}.toml" if name in built_in() else Path(name)
-    words = ("file (accepted: the path of a TOML scene, or a built-in one)" if name.endswith(".toml") else
-             f"scene (built in: {', '.join(built_in())}; or the path of a TOML file)")
-    _, given = read_toml(path, f"{name}: no such {words}")
+    _, given = read_toml(path, absent(name, "scene", built_in()))
     try:
         return read(given, path.parent, path.stem)
     except BadInput as error:

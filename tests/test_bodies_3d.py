@@ -364,8 +364,8 @@ BAD = [
     ({"velocity": [0, 1]}, {}, "body.1.velocity: '[0, 1]' is no [x, y, z]"),
     ({"turn": [0, 0, 1], "angle": 3}, {}, "body.1.angle: '3' stands beside turn"),
     ({"shape": "disc"}, {}, "body.1.shape: 'disc' is not known (accepted: ball|box|cylinder|mesh)"),
-    ({"width": 3}, {}, "body.1.width: '3' belongs to no such key"),
-    ({"speed": 3}, {}, "body.1.speed: '3' belongs to no such key"),
+    ({"width": 3}, {}, "body.1.width: no such entry, set to '3'"),
+    ({"speed": 3}, {}, "body.1.speed: no such entry, set to '3'"),
     ({"radius": 0.3}, {}, "body.1.position: 'ball' overlaps 'block' (body.2)"),
     ({}, {"symmetry": "third"}, "symmetry: 'third' is not known (accepted: auto|full|half|quarter)"),
     ({"velocity": [0, -8, 1]}, {"symmetry": "half"}, "symmetry: half, but 'ball' moves along z (accepted: auto|full)"),
@@ -385,7 +385,7 @@ def test_what_is_wrong_is_named(entries, top, words):
 
 def test_symmetry_is_an_entry_of_three_dimensions():
     """In the plane the table has no such key."""
-    with pytest.raises(BadInput, match="^symmetry: 'half' belongs to no such key"):
+    with pytest.raises(BadInput, match="^symmetry: no such entry, set to 'half'"):
         read_scene({"symmetry": "half", "body": [{"shape": "disc", "radius": 1, "position": [0, 0]}]}, SCENES, "scene")
 
 

@@ -107,7 +107,7 @@ def test_mp4_wherever_there_is_ffmpeg(fake, ffmpeg, tmp_path):
 
 @pytest.mark.parametrize("arguments, code, words", [
     (["disc-nowhere"], 10, "disc-nowhere: no such scene"), (["disc-normal", "--frames", "1"], 10, "--frames: 1 is out of range"),
-    (["disc-normal", "--set", "sped=8"], 10, "sped: no such parameter"), (["disc-normal", "--format", "avi"], 10, "argument --format"),
+    (["disc-normal", "--set", "sped=8"], 10, "sped: no such parameter"), (["disc-normal", "--format", "avi"], 10, "--format: 'avi' is not known .accepted: mp4, gif."),
     (["disc-normal", "--format", "mp4"], 13, "ffmpeg not found.*apt-get install ffmpeg.*--format gif")])
 def test_bad_calls_are_one_line(fake, no_ffmpeg, tmp_path, capsys, arguments, code, words):
     """One line and its exit code, before anything runs."""

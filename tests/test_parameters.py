@@ -38,9 +38,9 @@ def test_numbers_that_are_accepted(given, value):
 @pytest.mark.parametrize("name, given, message", [
     ("speed", "8x", "speed: '8x' is not a number (accepted: 0 to 1e+09)"),
     ("speed", float("nan"), "speed: nan is out of range (accepted: 0 to 1e+09)"),
-    ("speed", True, "speed: 'True' is not a number (accepted: 0 to 1e+09)"),
+    ("speed", True, "speed: 'true' is not a number (accepted: 0 to 1e+09)"),
     ("fields", "2.5", "fields: '2.5' is not a whole number (accepted: 0 to 10000)"),
-    ("law", "hooke", "law: 'hooke' is not known (accepted: " + "|".join(parameters.table()["law"].words) + ")"),
+    ("law", "hooke", "law: 'hooke' is not known; did you mean neohookean? (accepted: " + "|".join(parameters.table()["law"].words) + ")"),
 ])
 def test_bad_values_are_named_with_what_is_accepted(name, given, message):
     """The message for a bad value names the parameter, the value and the range or the words, as the scripts do."""

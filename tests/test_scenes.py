@@ -135,8 +135,8 @@ def test_a_sweep_reaches_every_entry(mine):
     assert wanted.points == [{"body.2.young": 2e6, "contact.penalty": 5e9}, {"body.2.young": 8e6, "contact.penalty": 5e9}]
     rows = sweep.collect(wanted, path.parent / "sweep")
     assert (rows.exit == 0).all() and rows.rebound_vx_2.nunique() == 2 and (path.parent / "sweep/sweep.png").exists()
-    for text, words in (("body.3.young = [1e6]", "body.3.young: there is no body.3 in the scene"), ("body.2.yung = [1e6]", "body.2.yung: .* belongs to no such key"),
-                        ("body.1.velocity = [[1, 0], [2, 0]]", "single numbers and words"), ("radius = [1]", "radius: .* belongs to no such key")):
+    for text, words in (("body.3.young = [1e6]", "body.3.young: there is no body.3 in the scene"), ("body.2.yung = [1e6]", "body.2.yung: no such entry, set to "),
+                        ("body.1.velocity = [[1, 0], [2, 0]]", "single numbers and words"), ("radius = [1]", "radius: no such entry, set to ")):
         path.write_text(f'scene = "mine.toml"\n[product]\n{text}\n')
         with pytest.raises(BadInput, match=words):
             sweep.load(str(path))
@@ -196,7 +196,7 @@ def values(folder) -> dict:
     (("disc-block", "--mesh", "MESH"), "mesh: disc-block takes no such parameter (accepted: in disc-plane|ball-axisymmetric|bodies|bodies-axisymmetric|bodies-3d)"),
     (("two-discs", "--mesh", "MESH"), "mesh: is of one body"),
     (("two-discs", "--set", "body.3.young=1e6"), "body.3.young: there is no body.3 in the scene (accepted: body.1 to body.2)"),
-    (("two-discs", "--set", "radius=1"), "radius: '1' belongs to no such key"),
+    (("two-discs", "--set", "radius=1"), "radius: no such entry, set to '1'"),
     (("two-discs", "--set", "body.1.position=[0,0]"), "body.1.position: 'left' overlaps 'right' (body.2)"),
     (("two-discs", "--set", "contact.friction_dynamic=0.5"), "contact.friction_dynamic: 0.5 is larger than friction_static 0.3"),
 ])

@@ -1,12 +1,11 @@
 """The parameters of a run, as the scripts describe them: nothing is copied by hand."""
 
-import difflib
 import math
 import re
 from dataclasses import dataclass
 from functools import cache
 
-from ..failure import BadInput, brief
+from ..failure import BadInput, brief, suggestion, unknown
 from ..places import ROOT as ROOT
 
 Value = float | int | str
@@ -21,6 +20,13 @@ FOLLOWS = {"friction_dynamic": ("friction_static",), "viscosity": ("loss",),
 NOT_DECISIVE = ("checkpoint_every",)   # parameters that do not change the answer
 
 _NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]+)?|\.[0-9]+)([eE][+-]?[0-9]+)?")
+# A number with a unit behind it: factors of units, of which a prefix and a name make one.
+PREFIXES = {"": 1.0, "n": 1e-9, "u": 1e-6, "µ": 1e-6, "μ": 1e-6, "m": 1e-3, "c": 1e-2, "k": 1e3, "M": 1e6, "G": 1e9}
+_UNIT = rf"(?:[{''.join(PREFIXES)}]?(?:m|s|g|N|Pa|J|Hz|rad)|km|min|h|t|bar|psi|in|ft|deg(?:rees?)?|°|%)[²³]?(?:\^?-?[0-9])?"
+POWERS = {ord("²"): "2", ord("³"): "3", ord("^"): None}
+_QUANTITY = re.compile(rf"({_NUMBER.pattern}) *({_UNIT}(?:[*/· ]{_UNIT})*)")
+# of other units than those that a prefix makes: how many of an entry's own they are
+OTHER_UNITS = {"-": {"%": 0.01}, "deg": {"°": 1.0, "degree": 1.0, "degrees": 1.0}, "kg/m3": {"g/cm3": 1e3}, "m/s": {"km/h": 1 / 3.6}}
 
 
 @dataclass(frozen=True)
@@ -52,7 +58,7 @@ class Parameter:
         if isinstance(given, str) and given in self.words:
             return given
         if self.kind == "word":
-            raise BadInput(f"{self.name}: '{brief(given)}' is not known (accepted: {self.accepted})")
+            raise BadInput(f"{self.name}: {unknown(given, self.words)}")
         if self.kind == "numbers":
             each = given.split(",") if isinstance(given, str) else [str(one) for one in (given if isinstance(given, list) else [given])]
             if not each or not all(_NUMBER.fullmatch(one.strip()) for one in each):
@@ -61,7 +67,8 @@ class Parameter:
         wanted = "a whole number" if self.kind == "int" else "a number"
         is_number = _NUMBER.fullmatch(given) if isinstance(given, str) else type(given) in (int, float)
         if not is_number or (self.kind == "int" and not isinstance(given, int) and float(given) % 1 != 0):
-            raise BadInput(f"{self.name}: '{brief(given)}' is not {wanted} (accepted: {self.accepted})")
+            said = (isinstance(given, str) and with_unit(given, self.unit)) or f"is not {wanted}{suggestion(given, self.words)}"
+            raise BadInput(f"{self.name}: '{brief(given)}' {said} (accepted: {self.accepted})")
         try:
             value = float(given)
         except OverflowError:
@@ -69,6 +76,17 @@ class Parameter:
         if not self.low <= value <= self.high:
             raise BadInput(f"{self.name}: {brief(given)} is out of range (accepted: {self.accepted})")
         return int(value) if self.kind == "int" else value
+
+
+def with_unit(text: str, unit: str) -> str:
+    """What is wrong with a number that has a unit, where an entry in `unit` is wanted: the number to give, if a prefix makes the
+    difference; empty where the text is no number with a unit."""
+    if not (found := _QUANTITY.fullmatch(text)):
+        return ""
+    given = found[found.lastindex].translate(POWERS)
+    factors = {prefix + unit: factor for prefix, factor in PREFIXES.items()} | OTHER_UNITS.get(unit, {})
+    number = f": {float(found[1]) * factors[given]:.12g}" if given in factors else ""
+    return f"has a unit; give the number {'alone' if unit in ('', '-') else f'in {unit}'}{number}"
 
 
 @cache
@@ -103,9 +121,7 @@ def check(given: dict[str, Value], script: str = "") -> dict[str, Value]:
         if name in names() and script:
             taken(name, script)
         if name not in names():
-            close = difflib.get_close_matches(name, names(), n=2)
-            hint = f"; did you mean {' or '.join(close)}?" if close else ""
-            raise BadInput(f"{brief(name)}: no such parameter{hint} (accepted: {', '.join(names(script))})")
+            raise BadInput(f"{brief(name)}: no such parameter{suggestion(name, names())} (accepted: {', '.join(names(script))})")
     return {name: table()[name].check(value) for name, value in given.items()}
 
 

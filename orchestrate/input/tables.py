@@ -1,6 +1,5 @@
 """Tables of a scene's TOML file ([[body]], [contact] ...) read with one clear line for whatever is wrong in them."""
 
-import difflib
 import json
 import re
 from collections.abc import Sequence
@@ -8,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..failure import BadInput, brief
+from ..failure import BadInput, brief, suggestion
 from .parameters import Parameter, Value
 
 LONGEST = 1e9                # m, m/s: beyond the largest of anything
@@ -26,9 +25,8 @@ class Table:
         for key, value in given.items():
             if key not in accepted:
                 meant = (elsewhere or {}).get(key)
-                close = [meant] if meant else difflib.get_close_matches(key, accepted, n=2)
-                hint = f"; did you mean {' or '.join(close)}?" if close else ""
-                raise BadInput(f"{_at(path, brief(key))}: '{brief(value)}' belongs to no such key{hint} (accepted: {', '.join(accepted)})")
+                hint = f"; did you mean {meant}?" if meant else suggestion(key, accepted)
+                raise BadInput(f"{_at(path, brief(key))}: no such entry, set to '{brief(value)}'{hint} (accepted: {', '.join(accepted)})")
         self.path, self.given = path, given
 
     def at(self, key: str) -> str:
@@ -45,7 +43,7 @@ class Table:
     def number(self, key: str, low: float = SHORTEST, high: float = LONGEST, default: float | None = None) -> float:
         """A number between two bounds, a length where they are not given; required where there is no default."""
         self._wanted(key, default, f"{low:g} to {high:g}")
-        return self.parameter(key, _real(low, high, default))
+        return self.parameter(key, _real(low, high, default, "m" if (low, high) == (SHORTEST, LONGEST) else ""))
 
     def numbers(self, key: str, default: tuple[float, ...] | None = None, count: int = 2, low: float = -LONGEST,
                 high: float = LONGEST) -> np.ndarray:
@@ -135,8 +133,8 @@ def _at(path: str, key: str) -> str:
     return f"{path}.{key}" if path else key
 
 
-def _real(low: float, high: float, default: float | None = None) -> Parameter:
-    return Parameter("", "real", default, "", "", low, high)
+def _real(low: float, high: float, default: float | None = None, unit: str = "") -> Parameter:
+    return Parameter("", "real", default, unit, "", low, high)
 
 
 def placeholder(count: int) -> str:

@@ -11,7 +11,7 @@ import numpy as np
 from ..input import parameters
 from ..mesh import flat, mesh, revolution, solids
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
-from ..failure import BadInput, brief
+from ..failure import BadInput, brief, unknown
 from ..geometry.outlines import Outline
 from ..mesh.solid_mesh import SolidMesh
 from ..mesh.solids import Solid
@@ -79,11 +79,10 @@ def keys_of(dimension: Dimension) -> set[str]:
 
 
 def _body(path: str, given: dict, top: dict, folder: Path, geometry: ModuleType) -> Body:
-    shapes = "|".join(geometry.SHAPES)
     if "shape" not in given:
-        raise BadInput(f"{path}.shape: is missing (accepted: {shapes})")
+        raise BadInput(f"{path}.shape: is missing (accepted: {'|'.join(geometry.SHAPES)})")
     if not isinstance(given["shape"], str) or given["shape"] not in geometry.SHAPES:
-        raise BadInput(f"{path}.shape: '{brief(given['shape'])}' is not known (accepted: {shapes})")
+        raise BadInput(f"{path}.shape: {unknown(given['shape'], geometry.SHAPES)}")
     table = Table(path, given, (*COMMON, *geometry.MOTION, *geometry.SHAPES[given["shape"]]))
     outline, body_mesh = geometry.shape(table, folder)
     if not outline.half_thickness >= SHORTEST:

@@ -8,7 +8,7 @@ import numpy as np
 from ..geometry import implicit, polyline
 from .bodies import checked_name
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
-from ..failure import BadInput, brief
+from ..failure import BadInput, brief, unknown
 from ..mesh.revolution import mirrored, on_axis
 from ..input.tables import Table, placeholder
 
@@ -95,8 +95,7 @@ def settled(found: list[Obstacle], centre: np.ndarray, half: float) -> list[Obst
 def _obstacle(path: str, given: dict, dimension: Dimension) -> Obstacle:
     kind, kinds = given.get("kind"), KINDS[dimension]
     if kind not in tuple(kinds):
-        missing = "is missing" if kind is None else f"'{brief(kind)}' is not known"
-        raise BadInput(f"{path}.kind: {missing} (accepted: {'|'.join(kinds)})")
+        raise BadInput(f"{path}.kind: " + (f"is missing (accepted: {'|'.join(kinds)})" if kind is None else unknown(kind, kinds)))
     table = Table(path, given, ("name", "kind", "velocity", *kinds[kind]))
     shape = {"plane": _plane, "polyline": _polyline, "implicit": _implicit}.get(kind, _circle)
     return Obstacle(checked_name(path, given.get("name", path.replace(".", ""))), kind, shape(table, dimension),

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..failure import BadInput, brief
+from ..failure import BadInput, brief, unknown
 from ..freefem.describe import describe, describe_results
 from ..geometry.outlines import Shape, normal_of
 from ..input import dimension, parameters
@@ -199,7 +199,7 @@ def read(given: dict, folder: Path, name: str) -> Scene:
         raise BadInput(f"body: is missing, which script = '{brief(script)}' needs (accepted: one table [[body]] or more)")
     scripts = [word for word in describe()["scripts"].split("|") if word not in dimension.SCRIPTS]
     if script not in scripts:
-        raise BadInput(f"script: '{brief(script)}' is not known (accepted: {'|'.join(scripts)})")
+        raise BadInput(f"script: {unknown(script, scripts)}")
     set_here = {key: value for key, value in given.items() if key not in ("script", "title")}
     values = parameters.defaults(script) | parameters.check(set_here, script)
     return Scene(name, title, script, {"title": title, "script": script} | values, folder, values)

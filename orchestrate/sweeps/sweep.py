@@ -34,7 +34,7 @@ import pandas as pd
 
 from .. import scene
 from ..input import dimension, parameters
-from ..failure import BadInput, Busy, Failure, Unreadable, brief
+from ..failure import BadInput, Busy, Failure, Unreadable, brief, suggestion, unknown
 from ..freefem.describe import describe_results
 from ..input.parameters import Value
 from ..output.folder import result_folder
@@ -150,7 +150,7 @@ def built_in() -> list[str]:
 def load(name: str) -> Sweep:
     """A built-in sweep, or that of a TOML file; BadInput names the file, the field, the value and what is accepted."""
     path = SWEEPS / f"{name}.toml" if name in built_in() else Path(name)
-    text, given = scene.read_toml(path, f"{name}: no such sweep (built in: {', '.join(built_in())}; or the path of a TOML file)")
+    text, given = scene.read_toml(path, scene.absent(name, "sweep", built_in()))
     try:
         return _sweep(path, given, text)
     except BadInput as error:
@@ -160,7 +160,7 @@ def load(name: str) -> Sweep:
 def _sweep(path: Path, given: dict, text: str) -> Sweep:
     for key in given:
         if key not in KEYS:
-            raise BadInput(f"{brief(key)}: no such entry (accepted: {', '.join(KEYS)})")
+            raise BadInput(f"{brief(key)}: no such entry{suggestion(key, KEYS)} (accepted: {', '.join(KEYS)})")
     tables = {key: _is(given.get(key, {}), dict, key, "a table") for key in ("set", "product", "refine", "figure")}
     groups = _is(given.get("zip", []), list, "zip", "tables [[zip]]")
     name = given.get("scene", "disc-normal")
@@ -188,8 +188,10 @@ def _sweep(path: Path, given: dict, text: str) -> Sweep:
     known = [f"{each}_end" if each in varied else each for each in of.numbers]
     wanted = _is(given.get("collect", known), list, "collect", "a list of names")
     for each in wanted:
-        if each not in known or wanted.count(each) > 1:
-            raise BadInput(f"collect: '{brief(each)}' is {'given twice' if each in known else 'not known'} (accepted: {', '.join(known)})")
+        if each not in known:
+            raise BadInput(f"collect: {unknown(each, known, ', ')}")
+        if wanted.count(each) > 1:
+            raise BadInput(f"collect: '{brief(each)}' is given twice (accepted: {', '.join(known)})")
     limit = given.get("limit", LIMIT)
     if type(limit) not in (int, float) or not 1 <= limit <= 1e6:
         raise BadInput(f"limit: {brief(limit)} (accepted: 1 to 1e6 seconds)")
@@ -243,7 +245,7 @@ def _values(name: str, given: list | dict, of: scene.Scene) -> list[Value]:
             raise BadInput(f"{brief(name)}: {brief(given)} is no range (accepted: from, to, points and perhaps spacing)")
         low, high, points, spacing = *(given[key] for key in ("from", "to", "points")), given.get("spacing", "linear")
         if spacing not in ("linear", "log"):
-            raise BadInput(f"{brief(name)}: spacing '{brief(spacing)}' is not known (accepted: linear|log)")
+            raise BadInput(f"{brief(name)}: spacing {unknown(spacing, ('linear', 'log'))}")
         rule = parameters.table().get(name.rpartition(".")[2])
         if rule and rule.kind == "word" or not {type(low), type(high)} <= {int, float}:
             raise BadInput(f"{brief(name)}: a range needs a parameter that is a number, from and to numbers")

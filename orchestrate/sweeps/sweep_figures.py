@@ -21,7 +21,7 @@ import pandas as pd
 from matplotlib.ticker import LogLocator, NullLocator
 
 from ..input import parameters
-from ..failure import BadInput, brief
+from ..failure import BadInput, brief, suggestion, unknown
 from ..report import report
 from ..report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, SMALL, STYLE, as_written, numbers_of_the_paper, save
 from ..output.results import read_history
@@ -40,10 +40,10 @@ def check(given: dict, points: list[dict], collected: list[str], columns: list[s
         return {}
     kind, varied = given.get("kind", "lines"), list(points[0])
     if kind not in list(KINDS):
-        raise BadInput(f"figure: kind '{brief(kind)}' is not known (accepted: {'|'.join(KINDS)})")
+        raise BadInput(f"figure: kind {unknown(kind, KINDS)}")
     for key in given:
         if key not in ("kind", *KINDS[kind]):
-            raise BadInput(f"figure: {brief(key)}: no such entry for {kind} (accepted: {', '.join(KINDS[kind])})")
+            raise BadInput(f"figure: {brief(key)}: no such entry for {kind}{suggestion(key, KINDS[kind])} (accepted: {', '.join(KINDS[kind])})")
     figure = {"kind": kind, "by": None, "panel": None, "level": None, "band": 0.0} | given
     if kind != "map" and isinstance(figure.get("y"), str):
         figure["y"] = [figure["y"]]

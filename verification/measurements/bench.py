@@ -12,6 +12,7 @@ import pandas as pd
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from orchestrate import scene
+from orchestrate.failure import unknown
 from orchestrate.mesh import mesh
 from orchestrate.output.results import read_history
 from orchestrate.places import shown
@@ -95,7 +96,7 @@ def main(argv: list[str]) -> int:
     options = parser.parse_args(argv)
     for name in options.cases:
         if name not in CASES:
-            parser.error(f"'{name}' is not known (accepted: {', '.join(CASES)})")
+            parser.error(unknown(name, CASES, ", "))
     out, tables, pages = options.out, [], []
     cases = options.cases[:1] if options.quick else options.cases
     for name in in_turn("bench", cases):

@@ -7,6 +7,7 @@ from typing import Any
 
 import pandas as pd
 
+from orchestrate.failure import unknown
 from orchestrate.freefem import freefem
 from orchestrate.input.parameters import Value
 from orchestrate.places import shown
@@ -123,7 +124,7 @@ def main(argv: list[str]) -> int:
     options = parser.parse_args(argv)
     for name in options.cases:
         if name not in CASES:
-            parser.error(f"'{name}' is not known (accepted: {', '.join(CASES)})")
+            parser.error(unknown(name, CASES, ", "))
     freefem.find()      # which builds the kernels where there are none, outside all times
     tables, texts, agreed, ratios = [], [], {}, {}
     for name in in_turn("equal-errors", options.cases):

@@ -15,7 +15,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
-from orchestrate.failure import BadInput
+from orchestrate.failure import BadInput, unknown
 from orchestrate.output import estimate
 from orchestrate.output.results import read_scene
 from orchestrate.progress import in_turn
@@ -89,7 +89,7 @@ def words(name: str, text: str, known: list[str]) -> list[str]:
     given = [each.strip() for each in text.split(",")]
     for each in given:
         if each not in known:
-            raise BadInput(f"{name}: '{each}' is not known (accepted: {', '.join(known)}, with commas between them)")
+            raise BadInput(f"{name}: {unknown(each, known, ', ').removesuffix(')')}, with commas between them)")
     return [each for each in known if each in given]
 
 
