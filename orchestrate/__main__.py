@@ -123,7 +123,7 @@ def _parameters(options: argparse.Namespace) -> None:
 def _figures(options: argparse.Namespace) -> None:
     from .output import results
     from .report import drawing, solid
-    drawn = drawing.draw(options.folder, results.read_summary(options.folder)["warnings"])
+    drawn = drawing.draw(options.folder)
     for path in drawn:
         print(path)
     if "z" in results.read_history(options.folder) and options.folder / "figures/solid.png" not in drawn and (reason := solid.missing()):

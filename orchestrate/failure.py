@@ -4,6 +4,7 @@ import difflib
 from collections.abc import Iterable
 from pathlib import Path
 
+MORE = " ..."  # behind a text that is cut
 MOST = 200     # characters of a value that a message repeats
 ALIKE = 0.15   # a second word is suggested where its likeness to the user's is this near to that of the first
 SWITCHES = {"true": "on", "false": "off"}   # what a user may write for a word
@@ -26,7 +27,12 @@ class Failure(Exception):
 def brief(value) -> str:
     """A value as a message repeats it, however long it is; true and false as TOML has them."""
     text = str(value).lower() if isinstance(value, bool) else str(value)
-    return text if len(text) <= MOST else f"{text[:MOST]} ..."
+    return shortened(text, MOST + len(MORE))
+
+
+def shortened(text: str, most: int) -> str:
+    """A text of up to so many characters."""
+    return text if len(text) <= most else text[:most - len(MORE)] + MORE
 
 
 def suggestion(word, accepted: Iterable[str]) -> str:

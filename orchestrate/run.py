@@ -18,7 +18,7 @@ from pathlib import Path
 from . import __version__
 from .freefem import freefem
 from .mesh import gmsh_file, mesh
-from .output import estimate as estimates
+from .output import estimate as estimates, notes
 from .failure import BadInput, Failure, TooLong, Unreadable
 from .output.folder import checkpoints, clear, failed_beside, finished_in, replace, result_folder, staging, unfinished
 from .input.parameters import Value
@@ -32,7 +32,7 @@ from .input.tables import to_toml
 ENTRANCE = "scenes/assembly"           # the module that makes flags, mesh and scene.dat, with all that it imports
 # of these: what asks, starts, says and reads, and does not decide a result
 HARMLESS = {"failure", "places", "freefem/describe", "freefem/freefem", "output/estimate", "output/results"}
-ESTIMATING = ("output/estimate", "output/results")   # what decides the stated errors besides
+ESTIMATING = ("output/estimate", "output/notes", "output/results")   # what decides the stated errors besides
 
 
 def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | str | None = None, *,
@@ -105,7 +105,7 @@ def _tell_accuracy(path: Path, asked: float) -> None:
 def _finish(stage: Path, scene: Scene, found: dict, provenance: dict) -> None:
     """The summary with what was `found` beside the run and its provenance, last and by rename."""
     summary = read_summary(stage)
-    found["warnings"] = summary.get("warnings", []) + found.get("warnings", [])
+    found |= notes.settled(*(summary.get(kind, []) + found.get(kind, []) for kind in ("warnings", "notes")))
     found["skipped"] = found.get("skipped", []) + [name for name in summary["skipped"] if name != "error estimate"
                                                    or not found.get("estimated_error")]
     summary |= {"estimated_error": None, "released": list(scene.released)} | found | {"provenance": provenance | {"files": files_of(stage)}}

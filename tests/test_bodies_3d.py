@@ -446,7 +446,7 @@ def test_report_and_figures(falls, tmp_path):
     plane, = bodies.obstacles_of(found.scene)
     assert plane.gap_in_plane(np.array([[3, 2.0]]), 1.0) == pytest.approx([2.0])
     for run_of in (found, falls["full"]):
-        assert {"energies", "force", "velocity", "shapes"} <= {path.stem for path in drawing.draw(run_of.folder, [])}
+        assert {"energies", "force", "velocity", "shapes"} <= {path.stem for path in drawing.draw(run_of.folder)}
 
 
 def test_it_is_the_ball_of_the_other_dimension(falls, tmp_path):

@@ -13,7 +13,7 @@ from triangles import areas
 
 def test_all_figures_are_drawn(finished_folder):
     """A folder with snapshots gives four pictures that are not empty."""
-    files = drawing.draw(finished_folder, [])
+    files = drawing.draw(finished_folder)
     assert sorted(f.name for f in files) == ["energies.png", "force.png", "shapes.png", "velocity.png"]
     assert all(f.stat().st_size > 5000 for f in files)
 
@@ -21,7 +21,7 @@ def test_all_figures_are_drawn(finished_folder):
 def test_no_snapshots_no_shapes(finished_folder):
     """Without snapshots the shapes are left out and nothing else."""
     (finished_folder / "fields.pvd").unlink()
-    assert sorted(f.stem for f in drawing.draw(finished_folder, [])) == ["energies", "force", "velocity"]
+    assert sorted(f.stem for f in drawing.draw(finished_folder)) == ["energies", "force", "velocity"]
 
 
 def test_half_a_body_is_mirrored(finished_folder):

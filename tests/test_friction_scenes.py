@@ -81,7 +81,7 @@ def test_whole_body_without_friction(tmp_path):
 def test_figures_of_unusual_runs(tmp_path, values):
     """Falls from rest, spins, runs that end inside the contact or keep one or no snapshot are drawn without an error."""
     result = run.run(scene.load("disc-oblique"), COARSE | values, tmp_path / "run", estimate=False)
-    names = {path.stem for path in drawing.draw(result.folder, [])}
+    names = {path.stem for path in drawing.draw(result.folder)}
     assert FRICTIONLESS - {"shapes", "contact"} <= names and ("flight" in names) == (result.scene["fields"] > 2)
 
 

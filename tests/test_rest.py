@@ -170,7 +170,7 @@ def test_a_scene_says_it_in_toml_and_python(tmp_path):
     coarse = {"mesh_size": 0.02, "contact_mesh_size": 0.005, "loss": 2, "penalty": 1e10, "height": 0.05, "accuracy": 0.2}
     found = run.run(scene.load("disc-rest"), coarse, tmp_path / "out", estimate=False)
     assert found.scene["until"] == "rest" and found.summary["ended"] == "rest"
-    drawing.draw(found.folder, [])
+    drawing.draw(found.folder)
     assert (found.folder / "figures/height.png").stat().st_size > 5000
     with pytest.raises(BadInput, match="until: 'sleep'"):
         scene.load("disc-rest").override({"until": "sleep"})

@@ -139,7 +139,7 @@ def test_picture_and_film(ball, symmetry):
     result = ball(symmetry)
     if reason := solid.missing():
         pytest.skip(reason)
-    assert result.folder / "figures/solid.png" in drawing.draw(result.folder, [])
+    assert result.folder / "figures/solid.png" in drawing.draw(result.folder)
     stage = movie.of(result)
     assert isinstance(stage, movie.SolidStage)
     start = [picture.get_array().copy() for picture in stage.pictures]
@@ -160,7 +160,7 @@ def test_whole_ball_is_cut_for_figures_and_films(ball, no_pyvista, tmp_path):
     assert areas(snapshot).sum() == pytest.approx(np.pi * RADIUS**2, rel=0.02)
     outline = figures._pose(t, path, result.history).outline
     assert len(outline) > 12 and np.hypot(*(outline - (0, RADIUS)).T) == pytest.approx(RADIUS, rel=0.03)
-    assert "shapes" in {drawn.stem for drawn in drawing.draw(result.folder, [])}
+    assert "shapes" in {drawn.stem for drawn in drawing.draw(result.folder)}
     stage = movie.of(result)
     assert isinstance(stage, movie.PlaneStage)
     stage.show(stage.times[1])

@@ -100,7 +100,7 @@ def test_the_history_has_their_pressure(tmp_path):
     area = abs(np.linalg.det(np.stack([b - a, c - a], axis=1)))
     assert found.history["hydrostatic_pressure"][-1] == pytest.approx(np.average(field[shot.triangles].mean(axis=1), weights=area), rel=0.02)
     assert field.max() < found.history["max_hydrostatic_pressure"][-1] < 1.5 * field.max()
-    drawing.draw(found.folder, [])
+    drawing.draw(found.folder)
     assert (found.folder / "figures/pressure.png").stat().st_size > 5000
     plain = run.run(scene.load("disc-normal"), {"accuracy": 0.2, "fields": 0}, tmp_path / "plain", estimate=False)
     assert list(found.history) == scene.load("disc-normal-incompressible").columns

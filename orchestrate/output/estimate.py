@@ -69,7 +69,7 @@ Solve = Callable[[dict[str, Value], Path], None]   # runs the scene with these v
 def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solve, read: Callable, scaled: Scaled | None = None) -> dict:
     """What joins the summary of the run in `stage`, made from the scene `values`: estimated_error (by answer, see difference(); None if it
     could not be estimated), estimated_error_excludes (what all runs have alike), estimate_cpu_seconds, refinements, the sentences
-    `warnings`, and `skipped`, which steps the first run has not chosen and why, where it is not the one in `stage` at last.
+    `warnings` and `notes` (notes.py), and `skipped`, which steps the first run has not chosen and why, where it is not the one in `stage` at last.
 
     Where sizes and steps follow from the accuracy and the estimate is above it, finer runs take the run's place in `stage`.
     `read` gives the Answers of a folder, `scaled` the entries of the scene with larger or smaller elements and steps (left out: other).
@@ -81,6 +81,7 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
     why = [words for words in summary["skipped"] if words.startswith(STEPS)] if chosen else []
     sizes = lambda *given: (scaled or other)(*given) | chosen   # noqa: E731
     asked, seconds, refinements, estimated, before, sentences = values["accuracy"], 0.0, 0, None, math.inf, []
+    notes = []
     if failure := _ended(solve, sizes(values, used, COARSER, own_mesh), coarser):
         sentences = [f"the error is not estimated: the run with {COARSER:.1f} times larger elements and steps ended with: {failure}"]
     while not sentences:
@@ -88,21 +89,22 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
         coarse = before_it.summary
         seconds += coarse["cpu_seconds"]
         if all(coarse.get(name) == summary.get(name) is not None for name in ("dofs", "steps")):
-            sentences = ["the error is not estimated: steps 1.4 times larger are too large for this scene, a second run took the same "
-                         "ones: ask for a smaller accuracy"]
+            sentences = ["the error is not estimated: with steps 1.4 times larger a second run took the same ones: they are too large for "
+                         "this scene: ask for a smaller accuracy"]
             break
         estimated = _estimated(answers, before_it)
         estimated["energy"] = max(estimated["energy"], summary.get("energy_drift", 0.0))   # of which the pair may have the same
         above = [name for name in wanted(values["accuracy_of"]) if estimated[name] > WORTH * asked]
         scatters = above == [SCATTERS] and (summary.get("front_rise") is not None or estimated[SCATTERS] > before / 2)
         before = estimated[SCATTERS]
-        sentences = excess(estimated, asked, values["accuracy_of"])
-        sentences = sentences and (touches(summary, coarse) or sentences)
+        told = excess(estimated, asked, values["accuracy_of"])
+        told = told and (touches(summary, coarse) or told)
+        sentences, notes = (told, []) if above and not scatters else ([], told)
         fixed = not own_mesh or any(values[name] for name in SIZES)
         if not above or scatters or fixed or refinements == MOST or summary.get("ellipticity_lost_time") is not None:
             break
         if failure := _ended(solve, sizes(values, used, 1 / COARSER, own_mesh) | {"fields": values["fields"]}, finer):
-            sentences.append(f"a run with {COARSER:.1f} times smaller elements and steps ended with: {failure}")
+            sentences.append(f"no finer run: with {COARSER:.1f} times smaller elements and steps it ended with: {failure}")
             break
         _swap(stage, coarser, finer)
         answers = read(stage)
@@ -110,12 +112,12 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
         refinements += 1
         sentences = []
     if estimated and not own_mesh:
-        sentences.append("estimated errors are those of the step: what the mesh of the file is good for they do not say: run a finer one "
-                         "beside it")
+        notes.append("mesh of the file: estimated errors are those of the step: what the mesh is good for they do not say: run a finer one "
+                     "beside it")
     for folder in (coarser, finer):
         shutil.rmtree(folder, ignore_errors=True)
     return {"estimated_error": estimated, "estimated_error_excludes": [*REGULARISED, *([] if own_mesh else ["mesh"])],
-            "estimate_cpu_seconds": seconds, "refinements": refinements, "warnings": sentences, "skipped": why if refinements else []}
+            "estimate_cpu_seconds": seconds, "refinements": refinements, "warnings": sentences, "notes": notes, "skipped": why if refinements else []}
 
 
 def _estimated(fine: Answers, coarse: Answers) -> dict[str, float]:
@@ -301,7 +303,7 @@ def largest(estimated: Mapping[str, float]) -> float:
 def touches(fine: Mapping, coarse: Mapping) -> list[str]:
     """A sentence where the runs of a pair saw different numbers of touches, so that what they differ by estimates nothing."""
     seen, other = (summary.get("contact_intervals") for summary in (fine, coarse))
-    return [f"touches: contact intervals are {seen} in the run and {other} in one with {COARSER:.1f} times larger elements and steps: "
+    return [f"touches: {seen} contact intervals, {other} in a run with {COARSER:.1f} times larger elements and steps: "
             f"answers that are beyond the accuracy asked for are known to no more than that: look at contacts.csv for what each touch "
             f"does, or ask for a smaller accuracy"] if seen != other else []
 
@@ -310,7 +312,7 @@ def excess(estimated: Mapping[str, float], accuracy: float, also: str) -> list[s
     """A sentence about the answers whose estimated error is above the accuracy; above LOOSER times it where it is not promised."""
     limits = {name: accuracy for name in wanted(also)} | {name: LOOSER * accuracy for name in ("contact_time", "peak_force")
                                                           if name != also}
-    above = [f"{name.replace('_', ' ')} {100 * estimated[name]:.2g} %" for name, limit in limits.items() if estimated[name] > limit]
-    return [f"estimated errors above the {100 * accuracy:g} % that are asked for: {', '.join(above)}: take these answers as known to no "
-            f"more than that, or ask for a smaller accuracy (contact times and peak forces scatter in hard impacts on any "
-            f"mesh, and are named from {LOOSER} times the accuracy on)"] if above else []
+    above = {name: f"{name.replace('_', ' ')} {100 * estimated[name]:.2g} %" for name, limit in limits.items() if estimated[name] > limit}
+    promised = [name for name in wanted(also) if name in above] or [*above]
+    return [f"estimated errors: {above[max(promised, key=estimated.get)]}, asked for {100 * accuracy:g} %: {', '.join(above.values())} are "
+            "above that: take these answers as known to no more, or ask for a smaller accuracy"] if above else []

@@ -62,7 +62,7 @@ def draw(results: dict[str, RunResult], path: Path) -> None:
             t, per = 1e3 * h["t"], per_metre(used)
             heavy, start = (_mass(result), result.summary["energy_initial"]) if mixed else (1.0, 1.0)
             force.plot(t, 1e-3 * (_push(h) if mixed else h["normal_force"]) / heavy, color=colour,
-                       label=f"{name}: {_material(used)}{result.summary['dofs']} dofs{_doubts(result.summary)}")
+                       label=f"{name}: {_material(used)}{result.summary['dofs']} dofs")
             _contact(force, result, colour)
             drag.plot(t, 1e-3 * h["friction_force"] / heavy if rubs else h["max_penetration"] * 1e3, color=colour)
             energy.plot(t, mechanical_energy(h) / start, color=colour, linewidth=2.4,
@@ -118,12 +118,6 @@ def _mass(result: RunResult) -> float:
 def _material(used: dict) -> str:
     """Law, nu and penalty, where the scene has one of them."""
     return f"{LAWS.get(used['law'], used['law'])}, ν = {used['nu']:g}, k = {report.stiffness(used)}, " if "law" in used else ""
-
-
-def _doubts(summary: dict) -> str:
-    """The names of the warnings of a run."""
-    return "".join(f"\n    ! {', '.join(dict.fromkeys(sentence.partition(':')[0] for sentence in summary['warnings']))}"
-                   if summary.get("warnings") else "")
 
 
 def _key(axes: plt.Axes, lines: dict[str, str]) -> None:

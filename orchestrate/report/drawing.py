@@ -1,4 +1,4 @@
-"""All figures of a finished run, each with its title and the run's warnings."""
+"""All figures of a finished run, each with its title."""
 
 import re
 from pathlib import Path
@@ -10,20 +10,20 @@ from ..failure import Unreadable
 from ..input import dimension
 from ..input.parameters import Value
 from ..output import vtu
-from ..output.results import Contents, body_names, check_files, read_history, read_json, read_scene
+from ..output.results import Contents, body_names, check_files, read_history, read_scene, read_summary
 from ..places import COMMAND
 from . import bodies, contact as contacts, impacts, solid
-from .figures import BODY, STYLE, as_written, footer, is_half, material, per_metre, plt, save, touched
+from .figures import BODY, STYLE, as_written, is_half, material, per_metre, plt, save, touched
 
 LETTERS, MOST_LINES = 14, 4       # of a title: letters an inch, lines of each of its parts
 
 
-def draw(folder: Path, warnings: list[str]) -> list[Path]:
-    """Draws all figures of the run in `folder` into folder/figures, with its warnings below; the files. Unreadable where the
-    folder is broken. energies.png is the last: where it is, all are."""
+def draw(folder: Path) -> list[Path]:
+    """Draws all figures of the run in `folder` into folder/figures; the files. Unreadable where the folder is broken. energies.png is
+    the last: where it is, all are."""
     check_files(folder)
     history, scene = impacts.with_flights(read_history(folder)), read_scene(folder)
-    scene["touched"] = touched(read_json(folder / "summary.json"))
+    scene["touched"] = touched(read_summary(folder))
     if scene["script"] in dimension.SCRIPTS and "body" not in scene:
         raise Unreadable(f"{folder}: of a run without Python, which keeps neither names of bodies nor obstacles (accepted: a folder of "
                          f"{COMMAND} run)")
@@ -51,7 +51,6 @@ def draw(folder: Path, warnings: list[str]) -> list[Path]:
         drawn = {name: figure for name, figure in drawn.items() if figure}
         for name, figure in reversed(drawn.items()):
             figure.suptitle(wrapped(title(scene), figure.get_figwidth()))
-            footer(figure, warnings)
             save(figure, target / f"{name}.png")
     return [target / f"{name}.png" for name in drawn]
 

@@ -6,7 +6,6 @@ import zlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from textwrap import wrap
 from warnings import filterwarnings
 
 import matplotlib
@@ -85,7 +84,7 @@ def png(pixels: np.ndarray, dpi: float) -> bytes:
 
 
 def arrange(figure: plt.Figure) -> None:
-    """The panels of the grid as large as what stands around them leaves room, below titles and above footers. Each is measured once: to
+    """The panels of the grid as large as what stands around them leaves room, below titles. Each is measured once: to
     measure takes as long as to draw, and constrained_layout, which a figure of several grids asks for, does it twice."""
     renderer, pad = figure.canvas.get_renderer(), PAD * figure.dpi
     grid = figure.axes[0].get_gridspec()
@@ -105,9 +104,8 @@ def arrange(figure: plt.Figure) -> None:
             side[k] = max(side[k], room + pad / 2)
     ends = [pad / 2, pad / 2]                                                                        # of the figure, above and below
     for text in figure.texts:
-        above = text.get_verticalalignment() == "top"
-        text.set_y(1 - pad / figure.bbox.height if above else pad / figure.bbox.height)
-        ends[not above] += text.get_window_extent(renderer).height + pad
+        text.set_y(1 - pad / figure.bbox.height)
+        ends[0] += text.get_window_extent(renderer).height + pad
     (left, right), (top, bottom) = (
         _cut(size, *edges, *sides) for size, edges, *sides in
         ((figure.bbox.width, (pad / 2, pad / 2), before[0], after[0], grid.get_width_ratios()),
@@ -121,15 +119,6 @@ def _cut(size: float, start: float, end: float, before: list[float], after: list
     room = (size - start - end - sum(before) - sum(after)) * np.array(ratios) / sum(ratios)
     ends = start + np.cumsum(before + room + after) - after
     return np.array([ends - room, ends]) / size
-
-
-def footer(figure: plt.Figure, warnings: list[str]) -> None:
-    """The warnings of the run, small, below the figure, which grows by their height; without what to do about them."""
-    width, height = figure.get_size_inches()
-    lines = [line for sentence in warnings for line in wrap("! " + sentence.rpartition(": ")[0], int(17.5 * width), subsequent_indent="  ")]
-    if lines:
-        figure.set_size_inches(width, height + 0.14 * len(lines) + 0.05)
-        figure.supxlabel("\n".join(lines), fontsize=SMALL, color=ORANGE, x=0.01, ha="left")
 
 
 def material(one: dict[str, Value]) -> str:

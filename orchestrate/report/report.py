@@ -6,8 +6,9 @@ from dataclasses import dataclass, replace
 
 from ..input import dimension
 from ..input.parameters import Value
-from ..places import shown
+from ..output import notes
 from ..output.results import RunResult, body_names, suffixes
+from ..places import shown
 from . import literature
 
 
@@ -92,7 +93,7 @@ def draw(result: RunResult) -> None:
         return
     try:
         from . import drawing   # matplotlib: only where something is drawn
-        drawing.draw(result.folder, result.summary["warnings"])
+        drawing.draw(result.folder)
     except Exception as error:
         why = f"{error.filename or result.folder}: {error.strerror}" if isinstance(error, OSError) and error.strerror else repr(error)
         print(f"ffimpact: the figures could not be drawn: {why}", file=sys.stderr)
@@ -127,6 +128,20 @@ def _friction(contact: dict[str, Value]) -> str:
     return f", friction {given:g} static, {contact['friction_dynamic']:g} dynamic" if given else ""
 
 
+def marks(summary: dict) -> dict[str, str]:
+    """The mark of each number that has a note, by its key, in the order of the notes."""
+    return {key: f" [{k}]" for k, key in enumerate(dict.fromkeys(map(notes.number, summary.get("notes", []))), 1)}
+
+
+def told(summary: dict) -> list[str]:
+    """A line of each warning, then of each note behind its mark, then where the whole text stands."""
+    mark = marks(summary)
+    footnotes = sorted(summary.get("notes", []), key=lambda note: list(mark).index(notes.number(note)))
+    lines = [notes.line(f"  {'warning':<10}", sentence) for sentence in summary["warnings"]]
+    lines += [notes.line(f"  {mark[notes.number(note)].strip():<10}", note) for note in footnotes]
+    return lines and [*lines, f"  {'in full':<10}warnings and notes of summary.json"]
+
+
 def _of_bodies(quantity: Quantity, scene: dict[str, Value], summary: dict) -> list[Quantity]:
     """A row of each of several bodies, where the summary has it of each."""
     of = suffixes(summary)
@@ -147,19 +162,19 @@ def report(result: RunResult) -> str:
     quantities = [one for row in rows(dimension.per_metre(script)) for one in _of_bodies(row, scene, summary)]
     if scene.get("end_time"):           # not of an impact alone
         quantities = [replace(quantity, label=quantity.label.replace("rebound", "final")) for quantity in quantities]
-    width = max(24, *(len(quantity.label) + 1 for quantity in quantities))
+    width, mark = max(24, *(len(quantity.label) + 1 for quantity in quantities)), marks(summary)
     for quantity in quantities:
         value = summary.get(quantity.key)
         if value is None or (abs(value) < 1e-9 and re.sub("_[0-9]+$", "", quantity.key) in LEFT_OUT_AT_ZERO):
             continue
         beside = [quantity.beside(number) for number in known.get(quantity.key, [])] or [""]
-        lines.append(f"  {quantity.label:<{width}}{quantity.text(value):<18}{beside[0]}".rstrip())
+        lines.append(f"  {quantity.label:<{width}}{quantity.text(value) + mark.get(quantity.key, ''):<18}{beside[0]}".rstrip())
         lines += [f"  {'':<{width + 18}}{more}" for more in beside[1:]]
     if stated := summary.get("estimated_error"):
         errors = ", ".join(f"{name.replace('_', ' ')} {100 * value:.2g} %" for name, value in stated.items() if value >= 5e-6)
-        lines.append(f"  {'stated errors':<{width}}{errors}; not in them: what another "
+        lines.append(f"  {'stated errors':<{width}}{errors}{mark.get('estimated_error', '')}; not in them: what another "
                      f"{' or '.join(summary['estimated_error_excludes']).replace('_', ' ')} would change")
-    lines += [f"  {'warning':<{width}}{sentence}" for sentence in summary["warnings"]]
+    lines += told(summary)
     lines += [f"  {'released':<{width}}{sentence}" for sentence in summary.get("released", [])]
     if summary.get("skipped"):
         lines.append(f"  {'skipped':<{width}}{', '.join(summary['skipped'])}")
