@@ -95,7 +95,7 @@ def test_a_peg_between_the_points_is_measured_and_named(tmp_path):
     found = go(tmp_path, coarse, [FLOOR | {"point": [0, -1]}, peg(0.001)], end_time=0.01)
     assert found.summary["max_penetration"] == pytest.approx(0.03, abs=0.003)
     (small,), (deep,) = said(found, "small obstacle"), said(found, "penetration")
-    assert "disc and peg meet where its radius is 0.001 m" in small and "how far disc and peg overlap" in deep
+    assert "disc and peg meet where its radius is 0.001 m" in small and "so far disc and peg overlap" in deep
 
 
 def test_a_spike_is_measured_and_named(tmp_path):

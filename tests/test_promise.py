@@ -110,6 +110,15 @@ def test_each_promised_answer_is_to_be_covered():
     assert not promise.covered(table)
 
 
+@pytest.mark.parametrize("note, told", [
+    ("thresholded contact time: known to 3 %", True), ("peak force: moves", False), ("contact time: grazing", False), ("estimated errors: impulse 2 %", False),
+    ("estimated errors: thresholded contact time 2 %", True)])
+def test_a_note_counts_where_it_is_about_an_answer_that_is_off(note, told):
+    """By the name of the answer, or where the error that is stated of it is above what was asked, too."""
+    row = dict.fromkeys(estimate.PROMISED, 0.5) | {"thresholded_contact_time": 2.0, "thresholded_contact_time stated": 3.0 if told else 0.9}
+    assert promise.is_about(note, row) == told and not promise.is_about(note, row | {"thresholded_contact_time": 0.9})
+
+
 def test_silent_are_those_above_without_a_warning():
     """A warning says so, whatever it is about; missing ones (read from a file: nan) are none."""
     table = errors(0.5, 1.5, 2.0, 3.0).assign(warnings=["", "", None, "penalty: ..."])

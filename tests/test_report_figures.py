@@ -39,7 +39,7 @@ def closed():
 
 
 def test_nothing_overlaps_and_nothing_is_cut():
-    """Panels with all that stands around them, their numbers, legends, second axes, bars of colours and marks outside, titles and warnings
+    """Panels with all that stands around them, their numbers, legends, second axes, bars of colours and marks outside, and titles
     are in the picture and apart from each other, also where they grow or shrink to fit."""
     with figures.plt.rc_context(figures.STYLE):
         figure, grid = figures.plt.subplots(2, 2, figsize=(6, 4), height_ratios=[2, 1])
@@ -53,7 +53,6 @@ def test_nothing_overlaps_and_nothing_is_cut():
         second.set_ylabel("on the right")
         figure.colorbar(grid[1, 0].pcolormesh([[1, 2], [3, 4]]), cax=grid[1, 0].inset_axes((1.04, 0, 0.06, 1)), label="pressure [MPa]")
         figure.suptitle("two lines\nof a title")
-        figures.footer(figure, ["a warning: what to do"])
         figures.arrange(figure)
         figure.canvas.draw()
         boxes = [axes.get_tightbbox() for axes in grid.flat] + [text.get_window_extent() for text in figure.texts]
@@ -63,12 +62,13 @@ def test_nothing_overlaps_and_nothing_is_cut():
 
 
 def test_the_key_of_a_comparison_stands_above_its_panels(tmp_path, monkeypatch):
-    """The names of the runs, with their warnings, cover no panel and are in the picture."""
+    """The names of the runs cover no panel and are in the picture, without their warnings."""
     summary = dict(dofs=294, warnings=["ellipticity: lost", "peak force: scatters"], reach=0.05, energy_initial=432.8)
     run = SimpleNamespace(history=history(max_penetration=np.full(100, 1e-4)), scene=SCENE | {"exponent": 1}, summary=summary)
     monkeypatch.setattr(compare.plt, "close", lambda figure: None)
     compare.draw({"disc-normal": run, "disc-normal-neohookean": run}, tmp_path / "both.png")
     figure = compare.plt.gcf()
+    assert "ellipticity" not in " ".join(text.get_text() for one in figure.legends for text in one.get_texts())
     boxes = [one.get_tightbbox() for one in (*figure.legends, *figure.axes)]
     assert all(0 <= box.y0 and box.y1 <= figure.bbox.y1 for box in boxes)
     assert not [pair for pair in itertools.combinations(boxes, 2) if Bbox.intersection(*pair)]

@@ -1,4 +1,4 @@
-"""Warnings: each appears where its condition holds, with its number, and not where it does not; tables, figures and reports show them."""
+"""Warnings and notes: each appears where its condition holds, with its number, and not where it does not; tables and reports show them."""
 
 import json
 import re
@@ -9,9 +9,8 @@ import pytest
 
 from orchestrate import run, scene
 from orchestrate.freefem import freefem
-from orchestrate.output import results
-from orchestrate.report import figures, report
-from orchestrate.report.figures import plt
+from orchestrate.output import notes, results
+from orchestrate.report import drawing, report
 from orchestrate.sweeps import study
 from orchestrate.sweeps import sweep
 from verification import measure
@@ -22,7 +21,11 @@ LONG = dict(mesh_size=0.008, contact_mesh_size=0.006, dt=2e-5, penalty=1e10)   #
 RELAXING = COARSE | dict(relaxation_modulus=1e6)
 DAMPED = COARSE | dict(integrator="backward-euler", accuracy=0.02)
 SPINS = COARSE | dict(speed=1, spin=60, angle=90, height=0.01, law="neohookean", accuracy=0.002, dt=1e-4, without="flight")
+STEEL = dict(young=2.1e11, nu=0.3, density=7850, speed=1)
 CASES = [   # name, flags with which it appears, flags with which it does not, a number it tells and what that is about
+    ("density", COARSE | dict(density=1.7), COARSE | dict(density=30, young=1e7), r"density: (\S+) kg/m3 beside young = 7e\+06 Pa, is it in g/cm3", (1.7, 1.7)),
+    ("density", COARSE | STEEL | dict(density=7.85), COARSE | STEEL, r"sqrt\(E/rho\) is (\S+) m/s", (1.6e5, 1.7e5)),
+    ("density", COARSE | dict(density=9, young=2e5), COARSE | dict(density=9, young=5e4, speed=1), r"density: (\S+) kg/m3", (9, 9)),
     ("penalty", COARSE | dict(penalty=1e9), COARSE, r"(\S+) % of the elastic energy", (2, 50)),
     ("penetration", COARSE | dict(penalty=1e8), COARSE | dict(penalty=1e9), r"(\S+) % of the radius", (10, 40)),
     ("creep", OBLIQUE | dict(slip_velocity=2), OBLIQUE | dict(slip_velocity=0.05), r"at (\S+) % of the centre's speed", (10, 40)),
@@ -34,9 +37,8 @@ CASES = [   # name, flags with which it appears, flags with which it does not, a
     ("momentum", COARSE | dict(integrator="bdf2", accuracy=0.01, dt=3e-4), COARSE | dict(integrator="backward-euler", accuracy=0.01, dt=3e-4), r"off by (\S+) %", (2, 8)),
     ("angular momentum", SPINS | dict(integrator="backward-euler"), SPINS, r"off by (\S+) %", (0.3, 2)),
     ("newmark", OBLIQUE | dict(integrator="newmark"), COARSE | dict(integrator="newmark"), r"and (\S+) % of the energy", (1, 30)),
-    ("contact time", LONG, LONG | dict(accuracy=0.05), r"for the last (\S+) % of it", (0.5, 5)),
-    ("locking", COARSE | dict(nu=0.495, speed=2, volume="plain"), COARSE | dict(nu=0.495, speed=2), r"quadratic elements stiffen at nu = (\S+)", (0.495, 0.495)),
-    ("locking", COARSE | dict(degree=1, speed=2), COARSE | dict(degree=1, nu=0.4, speed=2), r"linear elements are too stiff at nu = (\S+)", (0.45, 0.45)),
+    ("locking", COARSE | dict(nu=0.495, speed=2, volume="plain"), COARSE | dict(nu=0.495, speed=2), r"quadratic elements stiffen at nu = ([0-9.]+)", (0.495, 0.495)),
+    ("locking", COARSE | dict(degree=1, speed=2), COARSE | dict(degree=1, nu=0.4, speed=2), r"linear elements are too stiff at nu = ([0-9.]+)", (0.45, 0.45)),
     ("relaxation", RELAXING | dict(relaxation_time=2e-5), RELAXING | dict(relaxation_time=1e-2), r"more viscous by (\S+) %", (47, 48)),
     ("ellipticity", COARSE | dict(speed=9), COARSE | dict(speed=9, law="neohookean"), r"eigenvalue of the acoustic tensor (\S+) mu", (-1, 0)),
     ("breakdown", COARSE | dict(speed=14, breakdown="continue"), COARSE | dict(speed=9, breakdown="continue"), r"from t = (\S+) s", (1e-4, 3e-3)),
@@ -58,8 +60,8 @@ def disc(tmp_path_factory):
     return go
 
 
-def found(outcome: measure.Outcome, name: str) -> list[str]:
-    return [sentence for sentence in outcome.summary["warnings"] if sentence.startswith(name + ": ")]
+def found(outcome: measure.Outcome, name: str, kind: str = "warnings") -> list[str]:
+    return [sentence for sentence in outcome.summary[kind] if sentence.startswith(name + ": ")]
 
 
 @pytest.mark.parametrize("name, bad, good, number, limits", CASES)
@@ -69,6 +71,61 @@ def test_each_warning_appears_where_it_should_and_only_there(disc, name, bad, go
     assert len(sentences) == 1 and ": take " in sentences[0] and not set(sentences[0]) & set('";'), sentences
     assert limits[0] <= float(re.search(number, sentences[0])[1]) <= limits[1], sentences[0]
     assert disc(bad).summary["message"] == "" and found(disc(good), name) == []
+
+
+NOTES = [("contact time", LONG, LONG | dict(accuracy=0.05), r"for the last (\S+) % of it", (0.5, 5)),
+         ("thresholded contact time", LONG, LONG | dict(accuracy=0.05), r"known to (\S+) %", (0.4, 5)),
+         ("peak force", COARSE, COARSE | dict(speed=1), r"at (\S+) % of the wave speed", (12, 13))]
+
+
+@pytest.mark.parametrize("name, bad, good, number, limits", NOTES)
+def test_what_is_always_so_of_a_number_is_a_note(disc, name, bad, good, number, limits):
+    """It has the number, is no warning, and names the number of the summary that it is a footnote of."""
+    sentence, = found(disc(bad), name, "notes")
+    assert limits[0] <= float(re.search(number, sentence)[1]) <= limits[1], sentence
+    assert found(disc(bad), name) == [] == found(disc(good), name, "notes") and disc(bad).summary[notes.number(sentence)] > 0
+
+
+# metal foam, expanded polystyrene, aerogel, metallic microlattice, diamond, beryllium, tungsten, a soft gel in units of its own
+REAL = [(300, 1e9), (11, 3e6), (3, 1e4), (5, 5e4), (3500, 1.1e12), (1850, 2.9e11), (19300, 4.1e11), (1, 1)]
+
+
+@pytest.mark.parametrize("density, young", REAL)
+def test_real_materials_are_not_asked_about(disc, density, young):
+    speed = 0.05 * (young / density)**0.5
+    assert found(disc(COARSE | dict(density=density, young=young, speed=speed, nu=0.3)), "density") == []
+
+
+@pytest.mark.parametrize("name, names", [("disc-normal", []), ("disc-oblique-svk", ["ellipticity"]), ("ball-axisymmetric-svk", ["breakdown"])])
+def test_scenes_of_the_paper_have_no_warning_or_the_one_that_a_reader_must_know(tmp_path, name, names):
+    """Each as it is called first, with its estimate. The screen has a line of each sentence, with its mark at the number, and where the whole text is."""
+    result = run.run(scene.load(name), {"fields": 0}, tmp_path / "out")
+    assert [notes.name(each) for each in result.summary["warnings"]] == names
+    lines = report.report(result).splitlines()
+    assert [line.split()[1] for line in lines if line.startswith("  warning ")] == [f"{each}:" for each in names]
+    footnotes = [line for line in lines if line.startswith("  [")]
+    assert len(footnotes) == len(result.summary["notes"]) and "  in full   warnings and notes of summary.json" in lines
+    assert all(len(line) <= 100 and not line.endswith("...") for line in footnotes + [line for line in lines if line.startswith("  warning")])
+    assert any(re.match(r"  peak force +\S+ kN(/m)? \[1\]( |$)", line) for line in lines) and footnotes[0].startswith("  [1]       peak force: ")
+    for note in result.summary["notes"]:
+        assert any(notes.line("", note) in line for line in footnotes)
+
+
+def test_what_stands_behind_a_warning_is_a_note():
+    """A warning that says that the answers are no good stands alone; nothing is lost, and what it does not explain stays."""
+    warnings = ["ellipticity: a", "breakdown: b", "penalty: c", "locking: d", "penetration: e", "estimated errors: f"]
+    told = notes.settled(warnings, ["peak force: g"])
+    assert told["warnings"] == ["breakdown: b", "penetration: e"] and sorted(told["warnings"] + told["notes"]) == sorted([*warnings, "peak force: g"])
+    assert notes.settled(["touches: a", "penalty: b"], []) == {"warnings": ["touches: a"], "notes": ["penalty: b"]}
+    assert notes.settled(["estimated errors: a", "steps: b", "penalty: c"], []) == {"warnings": ["estimated errors: a", "penalty: c"], "notes": ["steps: b"]}
+    assert notes.settled(["penalty: a", "contact points: b"], ["peak force: c"]) == {"warnings": ["penalty: a", "contact points: b"], "notes": ["peak force: c"]}
+
+
+def test_a_line_is_no_wider_than_the_screen():
+    """Up to the second colon; a name that is too long for the screen is cut."""
+    assert notes.line("  warning   ", "mass: it is off: whose: take") == "  warning   mass: it is off"
+    assert len(notes.line("  warning   ", f"mass: {'x' * 200}: take")) == notes.WIDEST
+    assert notes.line("", "no contact: by the end_time") == "no contact: by the end_time"
 
 
 def test_numbers_of_the_warnings_are_those_of_the_history(disc):
@@ -135,23 +192,23 @@ def test_no_contact_no_contact_time(disc):
 
 
 def test_direct_run_prints_its_warnings(tmp_path):
-    """Lines `warning` at the end of what FreeFem++ prints, the sentences of summary.json."""
+    """Lines `warning` and `note` at the end of what FreeFem++ prints: what is so, of the sentences of summary.json."""
     process = freefem.find().call("edp/disc-plane.edp", "-accuracy", "0.1", "-penalty", "1e8", "-out", str(tmp_path / "out"), timeout=120)
-    said = re.findall(r"^warning +(.*)$", process.stdout, re.MULTILINE)
-    assert len(said) > 1 and said == results.read_summary(tmp_path / "out")["warnings"]
+    for kind, least in (("warning", 2), ("note", 1)):
+        said, told = re.findall(rf"^{kind} +(.*)$", process.stdout, re.MULTILINE), results.read_summary(tmp_path / "out")[f"{kind}s"]
+        assert len(said) >= least and said == [notes.line("", sentence) for sentence in told]
+    assert all(len(line) <= 100 for line in process.stdout.splitlines() if re.match("warning|note", line))
 
 
-def test_report_and_figures_show_them(tmp_path):
-    """A row each in the report; below each figure, without what to do."""
+def test_the_report_shows_them_and_figures_do_not(tmp_path):
+    """A line each in the report; pictures are the same, whatever the warnings are."""
     result = run.run(scene.load("disc-normal"), dict(penalty=1e8, accuracy=0.1, fields=0), tmp_path / "out", estimate=False)
     told, lines = result.summary["warnings"], report.report(result).splitlines()
-    assert len(told) > 1 and [line.split(None, 1)[1] for line in lines if line.startswith("  warning ")] == told
-    figure, _ = plt.subplots(figsize=(5.2, 3.2))
-    figures.footer(figure, told)
-    shown = " ".join(figure.get_supxlabel().split())
-    assert all(sentence.rpartition(": ")[0] in shown for sentence in told) and "take" not in shown and figure.get_figheight() > 3.2
-    figures.footer(figure, [])
-    plt.close(figure)
+    assert len(told) > 1 and [line for line in lines if line.startswith("  warning ")] == [notes.line("  warning   ", each) for each in told]
+    drawn = {path: path.read_bytes() for path in drawing.draw(result.folder)}
+    path = result.folder / "summary.json"
+    path.write_text(json.dumps(json.loads(path.read_text()) | {"warnings": [], "notes": []}))
+    assert {path: path.read_bytes() for path in drawing.draw(result.folder)} == drawn and len(drawn) > 2
 
 
 def test_tables_have_a_column_of_them(tmp_path, capsys):

@@ -303,7 +303,7 @@ def largest(estimated: Mapping[str, float]) -> float:
 def touches(fine: Mapping, coarse: Mapping) -> list[str]:
     """A sentence where the runs of a pair saw different numbers of touches, so that what they differ by estimates nothing."""
     seen, other = (summary.get("contact_intervals") for summary in (fine, coarse))
-    return [f"touches: {seen} contact intervals, {other} in a run with {COARSER:.1f} times larger elements and steps: "
+    return [f"touches: contact intervals {seen}, with {COARSER:.1f} times larger elements and steps {other}: "
             f"answers that are beyond the accuracy asked for are known to no more than that: look at contacts.csv for what each touch "
             f"does, or ask for a smaller accuracy"] if seen != other else []
 
@@ -314,5 +314,5 @@ def excess(estimated: Mapping[str, float], accuracy: float, also: str) -> list[s
                                                           if name != also}
     above = {name: f"{name.replace('_', ' ')} {100 * estimated[name]:.2g} %" for name, limit in limits.items() if estimated[name] > limit}
     promised = [name for name in wanted(also) if name in above] or [*above]
-    return [f"estimated errors: {above[max(promised, key=estimated.get)]}, asked for {100 * accuracy:g} %: {', '.join(above.values())} are "
-            "above that: take these answers as known to no more, or ask for a smaller accuracy"] if above else []
+    return [f"estimated errors: {above[max(promised, key=estimated.get)]}, asked for {100 * accuracy:g} %: in all {', '.join(above.values())}: "
+            "take these answers as known to no more, or ask for a smaller accuracy"] if above else []

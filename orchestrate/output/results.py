@@ -210,7 +210,7 @@ def read_summary(folder: Path) -> dict:
         summary = json.loads(path.read_text("utf-8"))
         if summary["status"] != "ok":
             raise ValueError(f"status is {summary['status']!r}")
-        for name, kind in (("provenance", dict), ("warnings", list)):
+        for name, kind in (("provenance", dict), ("warnings", list), ("notes", list)):
             if not isinstance(summary.get(name, kind()), kind):
                 raise ValueError(f"{name} is no {kind.__name__}")
         return Contents(summary, path)

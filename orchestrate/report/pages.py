@@ -15,6 +15,18 @@ SCRIPTS = ("disc-plane", "disc-block", "ball-axisymmetric", "ball-plane")
 EQUATION = re.compile(r"// ((?:\(\d+\)(?:, |–| ))*\(\d+\))(?::| |$)")
 
 
+KINDS = {"warn": "warning", "note": "note"}
+# of what no call above has the words
+OF_ESTIMATES = "".join(f"| {name} | {kind} | {words} |\n" for name, kind, words in (
+    ("chatter", "warning", "the body left and was back within a wave's transit … times in a row (`chatter=continue`)"),
+    ("estimated errors", "warning / note", "of a promised answer from 1.5 times what was asked on; a note below that, of a contact time that "
+     "scatters whatever the mesh, and of the exact contact time and the peak force from twice that on (`orchestrate/output/estimate.py`)"),
+    ("touches", "warning / note", "instead of these, where the two runs of an estimate saw different numbers of intervals of contact"),
+    ("mesh of the file", "note", "estimated errors are those of the step alone: the mesh of a file is not varied"),
+    ("no finer run", "warning", "the error is above what was asked, and the run that was to make it smaller came to no end"),
+    ("the error is not estimated", "warning", "the second run came to no end, or took the same steps")))
+
+
 def main(argv: list[str]) -> int:
     """Writes the pages below the source folder; with --site what MkDocs makes a site of."""
     parser = argparse.ArgumentParser(prog=f"{COMMAND} pages", description=__doc__)
@@ -72,14 +84,13 @@ def warnings() -> str:
     """Every sentence of warnings.idp and estimate.py by its first words."""
     rows = {}
     for path in sorted((ROOT / "edp/core").rglob("*.idp")):
-        for call in re.finditer(r"\bwarn\((.*?)\);\n", path.read_text(), re.DOTALL):
-            sentence = _literal(call[1])
-            rows.setdefault(sentence.partition(":")[0], []).append(sentence.partition(": ")[2])
-    found = "".join(f"| {name} | {cell(' / '.join(dict.fromkeys(words)))} |\n" for name, words in sorted(rows.items()) if words != [""])
-    return ("| warning | says |\n|---|---|\n" + found
-            + "| estimated errors | of an answer above what was asked, of the exact contact time and the peak force above twice that "
-              "(`orchestrate/output/estimate.py`) |\n"
-            + "| touches | instead of these, where the two runs of an estimate saw different numbers of intervals of contact |\n")
+        for call in re.finditer(r"\b(warn|note)\((.*?)\);\n", path.read_text(), re.DOTALL):
+            sentence = _literal(call[2])
+            rows.setdefault(sentence.partition(":")[0], []).append((call[1], sentence.partition(": ")[2]))
+    found = "".join(f"| {name} | {' / '.join(dict.fromkeys(KINDS[kind] for kind, _ in told))} | "
+                    f"{cell(' / '.join(dict.fromkeys(words for _, words in told)))} |\n"
+                    for name, told in sorted(rows.items()) if told[0][1])
+    return "| name | kind | says |\n|---|---|---|\n" + found + OF_ESTIMATES
 
 
 def _literal(expression: str) -> str:

@@ -12,7 +12,7 @@ import pandas as pd
 from orchestrate import run, scene
 from orchestrate.failure import Failure, TooLong
 from orchestrate.input.parameters import Value, whole
-from orchestrate.output import estimate
+from orchestrate.output import estimate, notes
 from orchestrate.output.results import read_answers
 from orchestrate.sweeps import study
 
@@ -138,14 +138,21 @@ def _compared(wanted: scene.Scene, folder: Path) -> dict:
     stated = found["estimated_error"]
     row = {answer: apart[answer] / asked for answer in estimate.BOUND}
     row |= {f"{answer} stated": stated[answer] / asked for answer in estimate.BOUND if answer in (stated or {})}
+    footnotes = [note for note in answers.summary.get("notes", []) + found["notes"] if is_about(note, row)]
     return row | {"error": max(row[answer] for answer in estimate.PROMISED), "message": "",
                   "estimated": estimate.largest(stated) / asked if stated else float("nan"),
                   "seconds": seconds, "finer seconds": paid[0] - seconds,
-                  "warnings": "; ".join(answers.summary.get("warnings", []) + found["warnings"])}
+                  "warnings": "; ".join(answers.summary.get("warnings", []) + found["warnings"] + footnotes)}
+
+
+def is_about(note: str, row: study.Point) -> bool:
+    """Whether a note is about a promised answer whose error is above what was asked: by its name, or as the stated one is above it too."""
+    above = [answer for answer in estimate.PROMISED if row[answer] > 1]
+    return notes.number(note) in above or notes.name(note) == "estimated errors" and any(row.get(f"{answer} stated", 0) > 1 for answer in above)
 
 
 def silent(table: pd.DataFrame) -> int:
-    """How many scenes are above what was asked without a warning."""
+    """How many scenes are above what was asked without a warning, or a note on that answer."""
     return int(((table.error > 1) & (table.warnings.fillna("") == "")).sum())
 
 
