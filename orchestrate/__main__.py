@@ -123,6 +123,7 @@ def _parameters(options: argparse.Namespace) -> None:
 def _figures(options: argparse.Namespace) -> None:
     from .output import results
     from .report import drawing, solid
+    results.read_summary(options.folder)               # Unreadable where there is no finished run
     drawn = drawing.draw(options.folder)
     for path in drawn:
         print(path)

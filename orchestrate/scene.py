@@ -28,16 +28,19 @@ def read_toml(path: Path, missing: str) -> tuple[str, dict]:
     except RecursionError:
         raise BadInput(f"{path}: cannot be read: nested too deep") from None
     except (OSError, ValueError) as error:
-        raise BadInput(f"{path}: {_unit_in(path, error) or 'cannot be read: ' + (getattr(error, 'strerror', None) or str(error))}") from None
+        why = f"cannot be read: {getattr(error, 'strerror', None) or error}"
+        raise BadInput(f"{path}: {_unit_in(path, error) or why}") from None
 
 
 def _unit_in(path: Path, error: Exception) -> str:
-    """Of a file that is no TOML: the entry in the line of the error whose number has a unit; empty where that is not why."""
-    line = re.search(r"at line ([0-9]+)", str(error))
-    entry, _, value = path.read_text("utf-8").splitlines()[int(line[1]) - 1].partition("=") if line else ("", "", "")
-    rule = parameters.table().get(entry.strip())
-    said = parameters.with_unit(value.partition("#")[0].strip(), rule.unit if rule else "")
-    return said and f"{entry.strip()}: '{value.partition('#')[0].strip()}' {said}" + (f" (accepted: {rule.accepted})" if rule else "")
+    """Of a file that is no TOML: the entry in the line of the error, where its number has a unit; else empty."""
+    if not (line := re.search(r"at line ([0-9]+)", str(error))):
+        return ""
+    entry, _, value = path.read_text("utf-8").splitlines()[int(line[1]) - 1].partition("=")
+    entry, value = entry.strip(), value.partition("#")[0].strip()
+    rule = parameters.table().get(entry)
+    said = parameters.with_unit(value, rule.unit if rule else "")
+    return said and f"{entry}: '{value}' {said}" + (f" (accepted: {rule.accepted})" if rule else "")
 
 
 def absent(name: str, kind: str, names: list[str]) -> str:

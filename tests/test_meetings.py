@@ -238,3 +238,10 @@ def test_the_bottom_of_a_bowl_may_lie_where_its_expression_has_no_slope(tmp_path
     disc = {"name": "disc", "shape": "disc", "radius": 0.05, "position": [0, 0.051], "velocity": [0, -4]}
     runs = [go(tmp_path / kind["kind"], disc, kind) for kind in ({"kind": "implicit", "distance": "0.1-sqrt(x^2+(y-0.1)^2)"}, {"kind": "bowl", "centre": [0, 0.1], "radius": 0.1})]
     assert runs[0].summary["impulse"] == pytest.approx(runs[1].summary["impulse"], rel=2e-3)
+
+
+@pytest.mark.parametrize("shape, kind", [({"shape": "rectangle", "width": 0.2, "height": 0.1}, "warnings"), ({"shape": "disc", "radius": 0.05}, "notes")])
+def test_a_hard_flat_strike_is_warned_of_and_a_hard_round_one_has_a_note(tmp_path, shape, kind):
+    """At a tenth of the wave speed: the peak of a face that lands as a whole is one of a stiff penalty, not of the bodies, whatever the speed."""
+    found = go(tmp_path, shape | {"name": "body", "position": [0, 0.0501], "velocity": [0, -8]}, FLOOR, accuracy=0.02, density=1000, contact={"penalty": 1e13})
+    assert {each: any(one.startswith("peak force: ") for one in found.summary[each]) for each in ("warnings", "notes")} == {"warnings": kind == "warnings", "notes": kind == "notes"}

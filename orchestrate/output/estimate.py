@@ -16,6 +16,8 @@ Steps grow no more above 0.3 of a transit of waves (sizes.idp), those of a pair 
 that of a promised answer is more than WORTH times what is asked finer runs follow. Where the contact time alone is off and a finer run has
 not halved its estimate it scatters with the vibration at the last touch (by 0.8 % rms in hard impacts, on any mesh and at any step that
 was tried): no finer run follows, and the estimate says by how much.
+An answer that is then still above WORTH times what is asked is a warning. What is above it by less, or scatters, or is not
+promised, is a note (notes.py).
 """
 
 import math
@@ -60,6 +62,10 @@ SHARES = np.linspace(0, 1, 201)   # of the impulse
 NONE = 1e-12                # a difference that is round-off
 STEPS = ("explicit steps (", "implicit steps (")        # as `skipped` says of those not chosen by integrator = auto
 SCATTERS = "thresholded_contact_time"
+SAME_STEPS = ("the error is not estimated: with steps 1.4 times larger a second run took the same ones: they are too "
+              "large for this scene: ask for a smaller accuracy")
+FILE_MESH = ("mesh of the file: estimated errors are those of the step: what the mesh is good for they do not say: "
+             "run a finer one beside it")
 OF_ITSELF = "friction_work of itself"   # accuracy_of = friction_work
 
 Scaled = Callable[[Mapping, Mapping, float, bool], dict[str, Value]]
@@ -69,7 +75,7 @@ Solve = Callable[[dict[str, Value], Path], None]   # runs the scene with these v
 def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solve, read: Callable, scaled: Scaled | None = None) -> dict:
     """What joins the summary of the run in `stage`, made from the scene `values`: estimated_error (by answer, see difference(); None if it
     could not be estimated), estimated_error_excludes (what all runs have alike), estimate_cpu_seconds, refinements, the sentences
-    `warnings` and `notes` (notes.py), and `skipped`, which steps the first run has not chosen and why, where it is not the one in `stage` at last.
+    `warnings` and `notes`, and `skipped`, which steps the first run has not chosen and why, where it is not the one in `stage` at last.
 
     Where sizes and steps follow from the accuracy and the estimate is above it, finer runs take the run's place in `stage`.
     `read` gives the Answers of a folder, `scaled` the entries of the scene with larger or smaller elements and steps (left out: other).
@@ -80,8 +86,8 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
     chosen = {"integrator": summary["integrator"]} if values.get("integrator") == "auto" else {}   # a pair differs in sizes alone
     why = [words for words in summary["skipped"] if words.startswith(STEPS)] if chosen else []
     sizes = lambda *given: (scaled or other)(*given) | chosen   # noqa: E731
-    asked, seconds, refinements, estimated, before, sentences = values["accuracy"], 0.0, 0, None, math.inf, []
-    notes = []
+    asked, seconds, refinements, estimated, before = values["accuracy"], 0.0, 0, None, math.inf
+    sentences, notes = [], []
     if failure := _ended(solve, sizes(values, used, COARSER, own_mesh), coarser):
         sentences = [f"the error is not estimated: the run with {COARSER:.1f} times larger elements and steps ended with: {failure}"]
     while not sentences:
@@ -89,8 +95,7 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
         coarse = before_it.summary
         seconds += coarse["cpu_seconds"]
         if all(coarse.get(name) == summary.get(name) is not None for name in ("dofs", "steps")):
-            sentences = ["the error is not estimated: with steps 1.4 times larger a second run took the same ones: they are too large for "
-                         "this scene: ask for a smaller accuracy"]
+            sentences = [SAME_STEPS]
             break
         estimated = _estimated(answers, before_it)
         estimated["energy"] = max(estimated["energy"], summary.get("energy_drift", 0.0))   # of which the pair may have the same
@@ -104,20 +109,18 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
         if not above or scatters or fixed or refinements == MOST or summary.get("ellipticity_lost_time") is not None:
             break
         if failure := _ended(solve, sizes(values, used, 1 / COARSER, own_mesh) | {"fields": values["fields"]}, finer):
-            sentences.append(f"no finer run: with {COARSER:.1f} times smaller elements and steps it ended with: {failure}")
+            sentences.append(f"no finer run: with {COARSER:.1f} times smaller elements and steps it ended: {failure}")
             break
         _swap(stage, coarser, finer)
         answers = read(stage)
         summary, used = answers.summary, answers.used
         refinements += 1
         sentences = []
-    if estimated and not own_mesh:
-        notes.append("mesh of the file: estimated errors are those of the step: what the mesh is good for they do not say: run a finer one "
-                     "beside it")
     for folder in (coarser, finer):
         shutil.rmtree(folder, ignore_errors=True)
     return {"estimated_error": estimated, "estimated_error_excludes": [*REGULARISED, *([] if own_mesh else ["mesh"])],
-            "estimate_cpu_seconds": seconds, "refinements": refinements, "warnings": sentences, "notes": notes, "skipped": why if refinements else []}
+            "estimate_cpu_seconds": seconds, "refinements": refinements, "warnings": sentences,
+            "notes": [*notes, *([FILE_MESH] if estimated and not own_mesh else [])], "skipped": why if refinements else []}
 
 
 def _estimated(fine: Answers, coarse: Answers) -> dict[str, float]:
@@ -312,7 +315,8 @@ def excess(estimated: Mapping[str, float], accuracy: float, also: str) -> list[s
     """A sentence about the answers whose estimated error is above the accuracy; above LOOSER times it where it is not promised."""
     limits = {name: accuracy for name in wanted(also)} | {name: LOOSER * accuracy for name in ("contact_time", "peak_force")
                                                           if name != also}
-    above = {name: f"{name.replace('_', ' ')} {100 * estimated[name]:.2g} %" for name, limit in limits.items() if estimated[name] > limit}
-    promised = [name for name in wanted(also) if name in above] or [*above]
-    return [f"estimated errors: {above[max(promised, key=estimated.get)]}, asked for {100 * accuracy:g} %: in all {', '.join(above.values())}: "
+    above = {name: f"{name.replace('_', ' ')} {100 * estimated[name]:.2g} %"
+             for name, limit in limits.items() if estimated[name] > limit}
+    worst = max([name for name in wanted(also) if name in above] or above, key=estimated.get, default=None)
+    return [f"estimated errors: {above[worst]}, asked for {100 * accuracy:g} %: in all {', '.join(above.values())}: "
             "take these answers as known to no more, or ask for a smaller accuracy"] if above else []

@@ -10,7 +10,7 @@ from ..failure import Unreadable
 from ..input import dimension
 from ..input.parameters import Value
 from ..output import vtu
-from ..output.results import Contents, body_names, check_files, read_history, read_scene, read_summary
+from ..output.results import Contents, body_names, check_files, read_history, read_json, read_scene
 from ..places import COMMAND
 from . import bodies, contact as contacts, impacts, solid
 from .figures import BODY, STYLE, as_written, is_half, material, per_metre, plt, save, touched
@@ -19,11 +19,11 @@ LETTERS, MOST_LINES = 14, 4       # of a title: letters an inch, lines of each o
 
 
 def draw(folder: Path) -> list[Path]:
-    """Draws all figures of the run in `folder` into folder/figures; the files. Unreadable where the folder is broken. energies.png is
-    the last: where it is, all are."""
+    """Draws all figures of the run in `folder` into folder/figures; the files. Unreadable where the
+    folder is broken. energies.png is the last: where it is, all are."""
     check_files(folder)
     history, scene = impacts.with_flights(read_history(folder)), read_scene(folder)
-    scene["touched"] = touched(read_summary(folder))
+    scene["touched"] = touched(read_json(folder / "summary.json"))
     if scene["script"] in dimension.SCRIPTS and "body" not in scene:
         raise Unreadable(f"{folder}: of a run without Python, which keeps neither names of bodies nor obstacles (accepted: a folder of "
                          f"{COMMAND} run)")

@@ -19,12 +19,14 @@ KINDS = {"warn": "warning", "note": "note"}
 # of what no call above has the words
 OF_ESTIMATES = "".join(f"| {name} | {kind} | {words} |\n" for name, kind, words in (
     ("chatter", "warning", "the body left and was back within a wave's transit … times in a row (`chatter=continue`)"),
-    ("estimated errors", "warning / note", "of a promised answer from 1.5 times what was asked on; a note below that, of a contact time that "
-     "scatters whatever the mesh, and of the exact contact time and the peak force from twice that on (`orchestrate/output/estimate.py`)"),
-    ("touches", "warning / note", "instead of these, where the two runs of an estimate saw different numbers of intervals of contact"),
+    ("estimated errors", "warning / note", "a warning where a promised answer is off by more than 1.5 times what was "
+     "asked, a note below that, of a contact time that scatters whatever the mesh, and of the exact contact time and "
+     "the peak force from twice that on (`orchestrate/output/estimate.py`)"),
+    ("touches", "warning / note", "instead of these, where the two runs of an estimate saw different numbers of "
+     "intervals of contact"),
     ("mesh of the file", "note", "estimated errors are those of the step alone: the mesh of a file is not varied"),
-    ("no finer run", "warning", "the error is above what was asked, and the run that was to make it smaller came to no end"),
-    ("the error is not estimated", "warning", "the second run came to no end, or took the same steps")))
+    ("no finer run", "warning", "the error is above what was asked, and the run that was to make it smaller failed"),
+    ("the error is not estimated", "warning", "the second run failed, or took the same steps")))
 
 
 def main(argv: list[str]) -> int:

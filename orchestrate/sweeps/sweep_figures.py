@@ -43,7 +43,8 @@ def check(given: dict, points: list[dict], collected: list[str], columns: list[s
         raise BadInput(f"figure: kind {unknown(kind, KINDS)}")
     for key in given:
         if key not in ("kind", *KINDS[kind]):
-            raise BadInput(f"figure: {brief(key)}: no such entry for {kind}{suggestion(key, KINDS[kind])} (accepted: {', '.join(KINDS[kind])})")
+            raise BadInput(f"figure: {brief(key)}: no such entry for {kind}{suggestion(key, KINDS[kind])} "
+                           f"(accepted: {', '.join(KINDS[kind])})")
     figure = {"kind": kind, "by": None, "panel": None, "level": None, "band": 0.0} | given
     if kind != "map" and isinstance(figure.get("y"), str):
         figure["y"] = [figure["y"]]

@@ -146,9 +146,11 @@ def _compared(wanted: scene.Scene, folder: Path) -> dict:
 
 
 def is_about(note: str, row: study.Point) -> bool:
-    """Whether a note is about a promised answer whose error is above what was asked: by its name, or as the stated one is above it too."""
+    """Whether a note is about a promised answer whose error is above what was asked: by its name, or as the
+    stated error is above it, too."""
     above = [answer for answer in estimate.PROMISED if row[answer] > 1]
-    return notes.number(note) in above or notes.name(note) == "estimated errors" and any(row.get(f"{answer} stated", 0) > 1 for answer in above)
+    named = notes.name(note) == "estimated errors" and any(row.get(f"{answer} stated", 0) > 1 for answer in above)
+    return named or notes.number(note) in above
 
 
 def silent(table: pd.DataFrame) -> int:
