@@ -100,11 +100,12 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
         estimated = _estimated(answers, before_it)
         estimated["energy"] = max(estimated["energy"], summary.get("energy_drift", 0.0))   # of which the pair may have the same
         above = [name for name in wanted(values["accuracy_of"]) if estimated[name] > WORTH * asked]
-        scatters = above == [SCATTERS] and (summary.get("front_rise") is not None or estimated[SCATTERS] > before / 2)
+        flat = summary.get("front_rise") is not None       # its contact time is not of a scatter, but no finer run is worth it
+        scatters = above == [SCATTERS] and (flat or estimated[SCATTERS] > before / 2)
         before = estimated[SCATTERS]
         told = excess(estimated, asked, values["accuracy_of"])
         told = told and (touches(summary, coarse) or told)
-        sentences, notes = (told, []) if above and not scatters else ([], told)
+        sentences, notes = (told, []) if above and (flat or not scatters) else ([], told)
         fixed = not own_mesh or any(values[name] for name in SIZES)
         if not above or scatters or fixed or refinements == MOST or summary.get("ellipticity_lost_time") is not None:
             break
