@@ -118,7 +118,7 @@ def _keep_failed(stage: Path, failure: Failure, scene: Scene, provenance: dict) 
     """failure.json: the one the script wrote, or what is known; never a summary.json."""
     (stage / "summary.json").unlink(missing_ok=True)
     if not (stage / "scene.toml").exists():
-        (stage / USED).exists() or (stage / USED).write_text(to_toml(scene.given), "utf-8")
+        (stage / USED).exists() or (stage / USED).write_text(to_toml(scene.with_files_in(stage, scene.given)), "utf-8")
         os.replace(stage / USED, stage / "scene.toml")
     record = {"status": FAILURES.get(failure.code, "crashed"), "message": str(failure)} | read_json(stage / "failure.json")
     write_json(stage / "failure.json", record | {"exit_code": failure.code, "provenance": provenance})

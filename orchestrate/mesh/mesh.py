@@ -6,6 +6,7 @@ boundary. The lowest point of the disc touches the plane y = 0.
 
 import atexit
 import math
+import os
 import pickle
 import signal
 import subprocess
@@ -22,7 +23,7 @@ from types import ModuleType
 import numpy as np
 
 from ..failure import BadInput, NotInstalled
-from ..places import INSTALLED, ROOT
+from ..places import INSTALLED, PACKAGE
 
 FREE, AXIS = 1, 2          # boundary labels
 # of a triangle; of a tetrahedron, seen from outside
@@ -214,9 +215,11 @@ def start_gmsh() -> ModuleType:
 def in_own_process(read: Callable, path: Path, *given):
     """read(path, *given) in a process of its own, where gmsh reads the file: some broken files kill it. BadInput as there, or with how it
     ended."""
-    with tempfile.NamedTemporaryFile() as answer:
-        child = subprocess.run([sys.executable, "-c", f"from {__name__} import _answer; _answer()", answer.name], cwd=ROOT,
-                               input=pickle.dumps((read, path, *given)), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    modules = os.pathsep.join([str(PACKAGE.parent), *filter(None, [os.environ.get("PYTHONPATH")])])
+    with tempfile.NamedTemporaryFile() as answer:     # in the same working folder: a relative path means the same there
+        child = subprocess.run([sys.executable, "-P", "-c", f"from {__name__} import _answer; _answer()", answer.name],
+                               env=os.environ | {"PYTHONPATH": modules}, input=pickle.dumps((read, path, *given)),
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         if child.returncode == 0 and (said := answer.read()):     # a script in a geometry may end gmsh
             found = pickle.loads(said)
             if isinstance(found, BadInput):
@@ -273,8 +276,10 @@ def elements_of(model, dimensions: Sequence[int], nodes: dict[int, int], one: st
                            f"{' or '.join(map(str, nodes.values()))} nodes)")
     if not kinds:
         raise BadInput(f"it has no {many}")
-    corners = [model.mesh.getElementsByType(kind)[1].reshape(-1, nodes[kind])[:, :min(nodes.values())] for kind in kinds]
-    used, elements = np.unique(np.vstack(corners), return_inverse=True)
+    corners = np.vstack([model.mesh.getElementsByType(kind)[1].reshape(-1, nodes[kind])[:, :min(nodes.values())] for kind in kinds])
+    # gmsh 2.2 writes an element once for each physical group that it belongs to
+    once = np.unique(np.sort(corners, axis=1), axis=0, return_index=True)[1]
+    used, elements = np.unique(corners[np.sort(once)], return_inverse=True)
     tags, coordinates, _ = model.mesh.getNodes()
     row = np.full(int(max(tags.max(), used.max())) + 1, -1)
     row[tags] = np.arange(len(tags))

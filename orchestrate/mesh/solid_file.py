@@ -3,6 +3,7 @@
 Faces of a physical surface named `contact` may touch, others never; without physical surfaces the outer surface may, cavities never.
 """
 
+import re
 from functools import cache
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from .mesh import FREE, Sizes, boundary, in_own_process, is_outer, pieces
 from .solid_mesh import NEVER, TURN, SolidMesh, cell_volumes, cells_of, generate
 
 MESHES, GEOMETRIES = (".msh", ".mesh"), (".geo", ".step", ".stp")
+OTHERS = re.compile(r"\b(Merge|Include|ShapeFromFile)\b")       # words of a .geo that take in another file
 CONTACT = "contact"
 HEADER = b"$MeshFormat"
 TRIANGLES = {2: 3, 9: 6}         # gmsh's types of element: their nodes, of which the first three are the corners
@@ -23,6 +25,11 @@ COARSE = 15                      # elements along the largest extent where only 
 def is_geometry(path: Path) -> bool:
     """Whether gmsh has to mesh it."""
     return path.suffix.lower() in GEOMETRIES
+
+
+def takes_in_others(path: Path) -> bool:
+    """Whether it is a .geo that names other files."""
+    return path.suffix.lower() == ".geo" and bool(OTHERS.search(path.read_text(errors="replace")))
 
 
 def read(path: Path) -> SolidMesh:

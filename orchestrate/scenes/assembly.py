@@ -79,7 +79,7 @@ def prepare(scene: Scene, where: Path, foreign: bytes | None = None,
         refuse_nothing(scene, met)
         built = assemble(scene, met=met)
         built.write(where)
-        text = to_toml(built.used)
+        text = to_toml(scene.with_files_in(where, built.used))
         return built.values | {"mesh": file, "bodies": where / "scene.dat"}, tomllib.loads(text), text
     said = (like or scene).description(foreign)
     if not scene.meshed:

@@ -3,6 +3,8 @@ names; or one of the paper's, whose script makes the bodies of its parameters, a
 
 import hashlib
 import itertools
+import os
+import shutil
 import tempfile
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -16,6 +18,7 @@ from ..input import dimension, parameters
 from ..input.dimension import AXISYMMETRIC, SOLID, Dimension
 from ..input.parameters import Parameter, Value
 from ..input.tables import Table, listed
+from ..mesh.solid_file import takes_in_others
 from ..output import estimate
 from . import bodies, mirror, obstacles
 from .bodies import MATERIAL, SIZES, Body
@@ -91,6 +94,22 @@ class Scene:
         meshes = {name: hashlib.sha256((self.folder / name).read_bytes()).hexdigest() for name in files}
         harmless = ("title", "script", *parameters.NOT_DECISIVE)
         return {name: value for name, value in self.given.items() if name not in harmless} | {"files": meshes}
+
+    def with_files_in(self, where: Path, tables: dict) -> dict:
+        """The tables of the scene with copies of the bodies' files, made in `where`/body-files: a scene.toml there finds them wherever the folder
+        is moved. A .geo that takes in other files stays beside them: its path is relative to `where`."""
+        listed = []
+        for body, table in zip(self.bodies, tables.get("body", [])):
+            if "file" in table:
+                path, copy = self.folder / table["file"], Path("body-files", f"{body.name}{Path(table['file']).suffix}")
+                if takes_in_others(path):
+                    copy = Path(os.path.relpath(path, where))
+                else:
+                    (where / copy).parent.mkdir(exist_ok=True)
+                    shutil.copyfile(path, where / copy)
+                table = table | {"file": copy.as_posix()}
+            listed.append(table)
+        return tables | ({"body": listed} if listed else {})
 
     @property
     def numbers(self) -> list[str]:
@@ -190,6 +209,7 @@ class Scene:
 
 def read(given: dict, folder: Path, name: str) -> Scene:
     """The scene in a file's tables; mesh files are sought from `folder` on. BadInput for whatever is wrong in it."""
+    folder = folder.absolute()                        # so that files are found from any working folder
     if {"body", "obstacle", "contact", "dimension"} & set(given):
         return _of_tables(given, folder, name)
     if not given:
