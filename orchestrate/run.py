@@ -26,6 +26,7 @@ from .places import INSTALLED, PACKAGE, RESULTS, ROOT, shown
 from .progress import Line
 from .output.results import RunResult, check_files, files_of, read_answers, read_json, read_scene, read_summary, write_json
 from .scene import Scene
+from .scenes.bodies import SIZES
 from .running.solver import FAILURES, USED, Solver, runs
 from .input.tables import to_toml
 
@@ -44,7 +45,10 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | str
     With `estimate` a second, coarser run estimates the error, and finer ones follow until it is below the accuracy (estimate.py).
     """
     started = time.monotonic()
-    scene = scene.override(overrides or {})
+    overrides = overrides or {}
+    if mesh_file and not scene.bodies:      # which has sizes of its own: those that a scene fixes are for another mesh
+        overrides = dict.fromkeys(SIZES, 0) | overrides
+    scene = scene.override(overrides)
     folder = result_folder(Path(out or RESULTS / scene.name))
     mesh_file = mesh_file and _mesh_path(Path(mesh_file))
     foreign = gmsh_file.load(mesh_file) if mesh_file else None

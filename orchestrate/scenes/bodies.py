@@ -13,6 +13,7 @@ from ..mesh import flat, mesh, revolution, solids
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
 from ..failure import BadInput, brief
 from ..geometry.outlines import Outline
+from ..mesh.solid_file import GEOMETRIES
 from ..mesh.solid_mesh import SolidMesh
 from ..mesh.solids import Solid
 from ..input.parameters import Value
@@ -31,7 +32,7 @@ NAME = re.compile(r"[A-Za-z][A-Za-z0-9_.-]*")
 @dataclass(frozen=True)
 class Body:
     """`outline` and `mesh` (of a mesh file, else None) are about the centre of area (or volume), not turned; angle [rad], in three
-    dimensions a vector as spin is; a mesh size of 0 is open."""
+    dimensions a vector as spin is; a mesh size of 0 is open, or that of the file."""
 
     name: str
     outline: Outline | Solid
@@ -88,7 +89,10 @@ def _body(path: str, given: dict, top: dict, folder: Path, geometry: ModuleType)
     outline, body_mesh = geometry.shape(table, folder)
     if not outline.half_thickness >= SHORTEST:
         raise BadInput(f"{path}: is {2 * outline.half_thickness:.3g} m thick (accepted: from {2 * SHORTEST:g} m)")
-    bulk, contact = _sizes(table, top)
+    bulk, contact = (0.0, 0.0) if body_mesh else _sizes(table, top)
+    if body_mesh and (sizes := [key for key in SIZES if key in table]):
+        raise BadInput(f"{table.at(sizes[0])}: '{brief(table.given[sizes[0]])}' for a mesh from a file, which has its own element sizes "
+                       f"(accepted: {', '.join(SIZES)} where gmsh makes the mesh: of a shape, or of a geometry, {', '.join(GEOMETRIES)})")
     return Body(checked_name(path, given.get("name", path.replace(".", ""))), outline, body_mesh, **geometry.motion(table),
                 **_material(table, top), mesh_size=bulk, contact_mesh_size=contact)
 

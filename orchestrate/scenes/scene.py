@@ -234,6 +234,10 @@ def _of_tables(given: dict, folder: Path, name: str) -> Scene:
     all_bodies = bodies.read(listed(given, "body"), given, folder, of)
     if not all_bodies:
         raise BadInput("body: is missing (accepted: one table [[body]] or more)")
+    for key in SIZES:
+        if table.given.get(key) and all(body.mesh for body in all_bodies):
+            raise BadInput(f"{key}: '{brief(given[key])}' changes nothing, as the mesh of every body is that of its file, with its own "
+                           f"element sizes (accepted: 0)")
     rigid = listed(given, "obstacle")
     for k, one in enumerate(rigid, 1):
         _of_the_scene(f"obstacle.{k}", one)
