@@ -23,6 +23,7 @@ from types import ModuleType
 import numpy as np
 
 from ..failure import BadInput, NotInstalled
+from ..input.tables import Table
 from ..places import INSTALLED, PACKAGE
 
 FREE, AXIS = 1, 2          # boundary labels
@@ -53,6 +54,10 @@ class Mesh:
     def moved(self, by: np.ndarray) -> "Mesh":
         """The same mesh, `by` [m] elsewhere."""
         return replace(self, points=self.points + by, hubs=None if self.hubs is None else self.hubs + by)
+
+    def scaled(self, factor: float) -> "Mesh":
+        """The same mesh, `factor` times as large."""
+        return replace(self, points=self.points * factor, hubs=None if self.hubs is None else self.hubs * factor)
 
 
 @dataclass(frozen=True)
@@ -346,4 +351,11 @@ def read(path: Path) -> Mesh:
         raise BadInput(f"mesh: {path} cannot be read: {error.strerror}") from None
     except ValueError:
         raise BadInput(f"mesh: {path} is no mesh (accepted: a 2D mesh as FreeFEM's savemesh or gmsh writes it, .msh)") from None
-    return Mesh(points[:, :2], triangles[:, :3].astype(int) - 1, edges[:, :2].astype(int) - 1, edges[:, 2].astype(int))
+    regions = np.unique(triangles[:, 3]).astype(int)
+    return Mesh(points[:, :2], triangles[:, :3].astype(int) - 1, edges[:, :2].astype(int) - 1, edges[:, 2].astype(int),
+                region=int(regions[0]) if len(regions) == 1 else 0)
+
+
+def scale_of(table: Table) -> float:
+    """Metres per unit of length in the file of a [[body]] table."""
+    return table.number("scale", 1e-9, 1e9, 1.0)

@@ -4,6 +4,7 @@ Faces of a physical surface named `contact` may touch, others never; without phy
 """
 
 import re
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
@@ -25,6 +26,22 @@ COARSE = 15                      # elements along the largest extent where only 
 def is_geometry(path: Path) -> bool:
     """Whether gmsh has to mesh it."""
     return path.suffix.lower() in GEOMETRIES
+
+
+@dataclass(frozen=True)
+class Geometry:
+    """A geometry in a file: metres per unit of the file, where in it the centre of its volume is [m], and about that a mesh that is good for
+    its shape only."""
+
+    path: Path
+    scale: float
+    centre: np.ndarray
+    coarse: SolidMesh
+
+    def meshed(self, sizes: Sizes) -> SolidMesh:
+        """Its mesh as it lies in the file, in m, with element sizes [m] about its centre."""
+        lengths = (sizes.bulk, sizes.contact, sizes.near + self.centre, sizes.slack)
+        return meshed(self.path, Sizes(*(length / self.scale for length in lengths))).scaled(self.scale)
 
 
 def takes_in_others(path: Path) -> bool:

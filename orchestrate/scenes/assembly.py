@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from ..mesh import mesh, revolution, solid_mesh, solids
-from .approach import Meeting, meetings, refuse_nothing, turned
+from .approach import Meeting, meetings, refuse_nothing, refuse_sinking, turned
 from .bodies import DAMPING, MATERIAL, Body
 from .front import Front, fronts
 from ..freefem.describe import describe
@@ -77,6 +77,7 @@ def prepare(scene: Scene, where: Path, foreign: bytes | None = None,
         scene = turned(scene)
         met = meetings(scene)
         refuse_nothing(scene, met)
+        refuse_sinking(scene, met)
         built = assemble(scene, met=met)
         built.write(where)
         text = to_toml(scene.with_files_in(where, built.used))

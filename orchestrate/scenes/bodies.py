@@ -59,6 +59,18 @@ class Body:
         return any(getattr(self, name) for name in DAMPED)
 
     @property
+    def sides(self) -> tuple[np.ndarray, np.ndarray] | None:
+        """The boundary edges or faces of a body from a file: corners (f, axes, axes), about its centre and not turned, and whether
+        each may touch (f,)."""
+        geometry = isinstance(self.outline, Solid) and self.outline.geometry
+        found = geometry.coarse if geometry else self.mesh
+        if not found:
+            return None
+        outer = found.labels != mesh.AXIS
+        corners = found.faces if isinstance(found, SolidMesh) else found.edges
+        return found.points[corners[outer]], found.labels[outer] == mesh.FREE
+
+    @property
     def placed(self) -> Outline | Solid:
         """The outline where it is at the start."""
         return self.at(0.0, self.position)
@@ -89,8 +101,8 @@ def _body(path: str, given: dict, top: dict, folder: Path, geometry: ModuleType)
     outline, body_mesh = geometry.shape(table, folder)
     if not outline.half_thickness >= SHORTEST:
         raise BadInput(f"{path}: is {2 * outline.half_thickness:.3g} m thick (accepted: from {2 * SHORTEST:g} m)")
-    bulk, contact = (0.0, 0.0) if body_mesh else _sizes(table, top)
-    if body_mesh and (sizes := [key for key in SIZES if key in table]):
+    bulk, contact = _sizes(table, {} if body_mesh else top)
+    if body_mesh and (sizes := [key for key in SIZES if table.given.get(key)]):
         raise BadInput(f"{table.at(sizes[0])}: '{brief(table.given[sizes[0]])}' for a mesh from a file, which has its own element sizes "
                        f"(accepted: {', '.join(SIZES)} where gmsh makes the mesh: of a shape, or of a geometry, {', '.join(GEOMETRIES)})")
     return Body(checked_name(path, given.get("name", path.replace(".", ""))), outline, body_mesh, **geometry.motion(table),

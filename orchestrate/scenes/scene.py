@@ -32,6 +32,7 @@ CONTACT = (*OWN, "exponent", "slip_velocity", "regularization", "friction_transi
 SELF_CONTACT = Parameter("self_contact", "word", "auto", "-", "", words=("auto", "on", "off"))
 # of Outline.folding: that of a ring as thick as its inner radius; what closes only at more does not touch itself
 FOLDING = 0.2
+WIDE = 100.0                 # m: a body of a file that is wider may be in other units
 TOUCHING = 1e-9              # of a body's thickness: an overlap up to it is round-off
 
 
@@ -347,15 +348,24 @@ def _partners(path: str, given, index: dict[str, int]) -> tuple[int, int]:
 def _apart(found: Scene) -> None:
     """BadInput where a body overlaps another one or an obstacle at the start."""
     for (i, body), (j, other) in itertools.combinations(enumerate(found.bodies, 1), 2):
-        _refuse_overlap(f"body.{i}", body, f"body.{j}", other.name, gap_between(body.placed, other.placed))
+        _refuse_overlap(f"body.{i}", body, f"body.{j}", other.name, gap_between(body.placed, other.placed),
+                        _units(found, i, body) or _units(found, j, other))
     for (i, body), (j, other) in itertools.product(enumerate(found.bodies, 1), enumerate(found.obstacles, 1)):
-        _refuse_overlap(f"body.{i}", body, f"obstacle.{j}", other.name, gap_to_obstacle(body.placed, other))
+        _refuse_overlap(f"body.{i}", body, f"obstacle.{j}", other.name, gap_to_obstacle(body.placed, other), _units(found, i, body))
 
 
-def _refuse_overlap(path: str, body: Body, other_path: str, other: str, gap: float) -> None:
+def _units(found: Scene, i: int, body: Body) -> str:
+    """A hint where body i comes from a file and is very large in m."""
+    width = 2 * body.outline.reach
+    return (f"; its file is {width:.3g} m wide: other units? body.{i}.scale = 0.001 takes them as mm"
+            if width > WIDE and "file" in found.given["body"][i - 1] else "")
+
+
+def _refuse_overlap(path: str, body: Body, other_path: str, other: str, gap: float, hint: str = "") -> None:
     if gap < -TOUCHING * body.outline.half_thickness:
         raise BadInput(f"{path}.position: '{body.name}' overlaps '{other}' ({other_path}) by {-gap:.3g} m at the start "
-                       f"(accepted: apart or touching{'' if other_path.startswith('body') else ', on the side that its normal points to'})")
+                       f"(accepted: apart or touching{'' if other_path.startswith('body') else ', on the side that its normal points to'})"
+                       f"{hint}")
 
 
 def gap_between(first: Shape, second: Shape) -> float:
