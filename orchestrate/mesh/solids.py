@@ -20,6 +20,7 @@ SHAPES = {"ball": ("radius",), "box": ("width", "height", "depth"), "cylinder": 
 MOTION = ("angle", "turn", "spin")
 SAMPLES = 1500               # points on a surface where its shape is wanted as points
 NEAREST = 16                 # triangles of a surface, by their centres, among which the nearest one is sought
+CUT = 0.25                   # share of the accuracy by which flat elements on roundings may change the volume of a geometry
 AT_ONCE = 500_000            # pairs of a point and a triangle
 
 
@@ -219,7 +220,7 @@ class Solid(outlines.Shape):
 
 # ---- meshes
 
-def mesh_of(body, sizes: Sizes | None, folded: tuple[int, ...]) -> SolidMesh:
+def mesh_of(body, sizes: Sizes | None, folded: tuple[int, ...], accuracy: float) -> SolidMesh:
     """The mesh of a body (bodies.Body) about its centre of volume, turned as it is at the start: that of its file, or one with sizes, which
     are of the body not turned; of that what lies on the positive side of the planes across the axes `folded`."""
     solid = body.at(0.0, np.zeros(3))
@@ -230,7 +231,7 @@ def mesh_of(body, sizes: Sizes | None, folded: tuple[int, ...]) -> SolidMesh:
         raise BadInput(f"mesh_size: '{body.name}' would have about {expected:.2g} tetrahedra (accepted: up to {MOST_CELLS}; larger "
                        f"mesh_size, contact_mesh_size or accuracy)")
     if solid.geometry:
-        made = solid.geometry.meshed(sizes)
+        made = solid.geometry.meshed(sizes, CUT * accuracy * solid.volume / float(np.prod(solid.extent)))
         centre = solid.geometry.centre if solid.disc else made.centre
         return _with_curves(replace(made, points=(made.points - centre) @ solid.rotation.T))
     return mesh_shape(solid.shape.kind, solid.shape.lengths, solid.rotation, folded, replace(sizes, near=sizes.near @ solid.rotation.T),

@@ -123,7 +123,8 @@ def _sections(scene: Scene, sizes: list[Sizes | None]) -> tuple[mesh.Mesh, np.nd
 def _solids(scene: Scene, sizes: list[Sizes | None]) -> tuple[solid_mesh.SolidMesh, np.ndarray, np.ndarray, list[tuple]]:
     """The same in three dimensions: bodies turned as they are at the start, one above the other; half or a quarter where that is enough."""
     folded = FOLDED[copies(scene)]
-    meshes = [solids.mesh_of(body, one, folded) for body, one in zip(scene.bodies, sizes)]
+    accuracy = float(scene.values["accuracy"])
+    meshes = [solids.mesh_of(body, one, folded, accuracy) for body, one in zip(scene.bodies, sizes)]
     count = sum(solid_mesh.unknowns(one.cells, scene.values["degree"]) for one in meshes)
     if count > solid_mesh.MOST_UNKNOWNS:
         raise BadInput(f"mesh_size: the bodies have {count} unknowns (accepted: up to {solid_mesh.MOST_UNKNOWNS}; larger mesh_size, "
