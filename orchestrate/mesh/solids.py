@@ -209,9 +209,12 @@ class Solid(outlines.Shape):
         spacing = math.sqrt(self.shape.area / np.clip(4 * self.shape.area / size**2, SAMPLES, 20000))
         return self.sampled(spacing), spacing
 
-    def width(self, count: int, spacing: float) -> float:
-        """Of a patch with so many of the samples."""
-        return 2 * spacing * math.sqrt(count / math.pi)
+    def width(self, points: np.ndarray, spacing: float) -> float:
+        """Of a patch with these of the samples; those of a mesh are denser where its faces are smaller than the spacing."""
+        count = len(points)
+        if self.shape.kind == "surface":
+            count = len(np.unique(np.floor(points / spacing), axis=0))
+        return 2 * spacing * math.sqrt(max(2, count) / math.pi)
 
     def gap(self, points: np.ndarray) -> np.ndarray:
         """Signed distances (n,) of points (n, 3), negative inside."""

@@ -280,7 +280,7 @@ def _hit(body: Body, k: int, one: Meeting, ask: Asker) -> tuple[float, np.ndarra
     points, spacing = body.outline.samples(size)
     near = _near(body, k, one, depth, points)
     # than the contact of a disc: flat faces; or less wide: corners, pegs
-    wider = body.outline.width(max(2, len(near)), spacing) / (2 * arc * one.radius)
+    wider = body.outline.width(near, spacing) / (2 * arc * one.radius)
     if small > 0:                              # a sharp corner no elements resolve
         wider = min(max(1.0, wider), wider / NARROW, POINTED * small / (2 / math.pi * arc * one.radius))
     if small > 0 and wider < 1:
