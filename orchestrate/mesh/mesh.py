@@ -57,7 +57,8 @@ class Mesh:
 
     def scaled(self, factor: float) -> "Mesh":
         """The same mesh, `factor` times as large."""
-        return replace(self, points=self.points * factor, hubs=None if self.hubs is None else self.hubs * factor)
+        hubs = None if self.hubs is None else self.hubs * factor
+        return replace(self, points=self.points * factor, hubs=hubs)
 
 
 @dataclass(frozen=True)
@@ -221,10 +222,11 @@ def in_own_process(read: Callable, path: Path, *given):
     """read(path, *given) in a process of its own, where gmsh reads the file: some broken files kill it. BadInput as there, or with how it
     ended."""
     modules = os.pathsep.join([str(PACKAGE.parent), *filter(None, [os.environ.get("PYTHONPATH")])])
-    with tempfile.NamedTemporaryFile() as answer:     # in the same working folder: a relative path means the same there
-        child = subprocess.run([sys.executable, "-P", "-c", f"from {__name__} import _answer; _answer()", answer.name],
-                               env=os.environ | {"PYTHONPATH": modules}, input=pickle.dumps((read, path, *given)),
-                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    command = [sys.executable, "-P", "-c", f"from {__name__} import _answer; _answer()"]
+    with tempfile.NamedTemporaryFile() as answer:     # in this working folder: relative paths stay
+        child = subprocess.run([*command, answer.name], env=os.environ | {"PYTHONPATH": modules},
+                               input=pickle.dumps((read, path, *given)), stdout=subprocess.DEVNULL,
+                               stderr=subprocess.DEVNULL)
         if child.returncode == 0 and (said := answer.read()):     # a script in a geometry may end gmsh
             found = pickle.loads(said)
             if isinstance(found, BadInput):
@@ -281,7 +283,8 @@ def elements_of(model, dimensions: Sequence[int], nodes: dict[int, int], one: st
                            f"{' or '.join(map(str, nodes.values()))} nodes)")
     if not kinds:
         raise BadInput(f"it has no {many}")
-    corners = np.vstack([model.mesh.getElementsByType(kind)[1].reshape(-1, nodes[kind])[:, :min(nodes.values())] for kind in kinds])
+    found = [model.mesh.getElementsByType(kind)[1].reshape(-1, nodes[kind]) for kind in kinds]
+    corners = np.vstack([each[:, :min(nodes.values())] for each in found])
     # gmsh 2.2 writes an element once for each physical group that it belongs to
     once = np.unique(np.sort(corners, axis=1), axis=0, return_index=True)[1]
     used, elements = np.unique(corners[np.sort(once)], return_inverse=True)

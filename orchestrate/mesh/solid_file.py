@@ -16,13 +16,13 @@ from .mesh import FREE, Sizes, boundary, in_own_process, is_outer, pieces
 from .solid_mesh import NEVER, SolidMesh, cell_volumes, cells_of, generate
 
 MESHES, GEOMETRIES = (".msh", ".mesh"), (".geo", ".step", ".stp")
-OTHERS = re.compile(r"\b(Merge|Include|ShapeFromFile)\b")       # words of a .geo that take in another file
+OTHERS = re.compile(r"\b(Merge|Include|ShapeFromFile)\b")       # in a .geo: takes in another file
 CONTACT = "contact"
 HEADER = b"$MeshFormat"
 TRIANGLES = {2: 3, 9: 6}         # gmsh's types of element: their nodes, of which the first three are the corners
 COARSE = 15                      # elements along the largest extent where only the shape of a geometry is wanted
 
-SHAPE_CUT = 1e-3                 # and what flat elements on its roundings cut of it at most, over the volume of its box
+SHAPE_CUT = 1e-3                 # likewise: what flat elements cut off its box at most (rounding.py)
 
 
 def is_geometry(path: Path) -> bool:
@@ -32,8 +32,8 @@ def is_geometry(path: Path) -> bool:
 
 @dataclass(frozen=True)
 class Geometry:
-    """A geometry in a file: metres per unit of the file, where in it the centre of its volume is [m], and about that a mesh that is good for
-    its shape only."""
+    """A geometry in a file: metres per unit of the file, the centre of its volume in it [m], and about
+    that centre a mesh that is good for its shape only."""
 
     path: Path
     scale: float
@@ -41,9 +41,11 @@ class Geometry:
     coarse: SolidMesh
 
     def meshed(self, sizes: Sizes, cut: float) -> SolidMesh:
-        """Its mesh as it lies in the file, in m, with element sizes [m] about its centre and a cut (rounding.py)."""
+        """Its mesh as it lies in the file, in m, with element sizes [m] about its centre and a cut
+        (rounding.py)."""
         lengths = (sizes.bulk, sizes.contact, sizes.near + self.centre, sizes.slack)
-        return meshed(self.path, Sizes(*(length / self.scale for length in lengths)), cut).scaled(self.scale)
+        inside = Sizes(*(length / self.scale for length in lengths))
+        return meshed(self.path, inside, cut).scaled(self.scale)
 
 
 def takes_in_others(path: Path) -> bool:
@@ -65,7 +67,8 @@ def read(path: Path) -> SolidMesh:
 
 
 def meshed(path: Path, sizes: Sizes | None = None, cut: float = SHAPE_CUT) -> SolidMesh:
-    """The mesh in a file, that of a geometry with element sizes, which are of the coordinates in the file, and a cut (rounding.py)."""
+    """The mesh in a file, that of a geometry with element sizes, which are of the coordinates in the
+    file, and a cut (rounding.py)."""
     try:
         return in_own_process(_taken, path, sizes, cut)
     except BadInput as error:

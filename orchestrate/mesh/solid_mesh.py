@@ -139,9 +139,11 @@ def cells_of(model) -> tuple[np.ndarray, np.ndarray]:
     return points, right_handed(points, cells)
 
 
-def generate(build: Callable, sizes: Sizes, turn: int, take: Callable = cells_of, cut: float | None = None):
-    """What `take` makes of the model that `build` puts into gmsh, meshed; on curved surfaces `turn` elements a full turn at least, or, where
-    `cut` is given, as rounding.py says. A bulk size of 0 is that of `build`, the largest."""
+def generate(build: Callable, sizes: Sizes, turn: int, take: Callable = cells_of,
+             cut: float | None = None):
+    """What `take` makes of the model that `build` puts into gmsh, meshed; on curved surfaces with
+    `turn` elements a full turn at least, or, where `cut` is given, as rounding.py says. A bulk size
+    of 0 is open: `build` sets the largest."""
     with mesh.gmsh_session() as gmsh:
         build(gmsh)
         for name, value in {"FromPoints": 0, "ExtendFromBoundary": 0, "FromCurvature": turn}.items():
@@ -159,9 +161,11 @@ def _grade(gmsh, sizes: Sizes, cut: float | None) -> None:
     """The size grows linearly with the distance from the points where the body touches."""
     field, sources, made = gmsh.model.mesh.field, _sources(gmsh, sizes), []
     if sources:
-        made.append(mesh.graded(field, "PointsList", sources, (sizes.contact, sizes.bulk), flat=sizes.slack))
+        both = sizes.contact, sizes.bulk
+        made.append(mesh.graded(field, "PointsList", sources, both, flat=sizes.slack))
     if cut is not None:
-        made += rounding.fields(gmsh, sizes, sources, gmsh.option.getNumber("Mesh.MeshSizeMax"), cut)
+        bulk = gmsh.option.getNumber("Mesh.MeshSizeMax")
+        made += rounding.fields(gmsh, sizes, sources, bulk, cut)
     if made:
         least = field.add("Min")
         field.setNumbers(least, "FieldsList", made)
@@ -173,7 +177,8 @@ def _sources(gmsh, sizes: Sizes) -> list[int]:
     if not len(sizes.near) or sizes.contact >= sizes.bulk:
         return []
     free = 1 + max(tag for _, tag in gmsh.model.getEntities(0))      # whose own numbers do not know those of another kernel
-    points = [gmsh.model.geo.addPoint(*point, tag=free + k) for k, point in enumerate(sizes.near[::-(-len(sizes.near) // MOST_SOURCES)])]
+    near = sizes.near[::-(-len(sizes.near) // MOST_SOURCES)]
+    points = [gmsh.model.geo.addPoint(*point, tag=free + k) for k, point in enumerate(near)]
     gmsh.model.geo.synchronize()
     return points
 

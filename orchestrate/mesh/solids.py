@@ -20,7 +20,8 @@ SHAPES = {"ball": ("radius",), "box": ("width", "height", "depth"), "cylinder": 
 MOTION = ("angle", "turn", "spin")
 SAMPLES = 1500               # points on a surface where its shape is wanted as points
 NEAREST = 16                 # triangles of a surface, by their centres, among which the nearest one is sought
-CUT = 0.25                   # share of the accuracy by which flat elements on roundings may change the volume of a geometry
+# share of the accuracy by which flat elements on its roundings may change the volume of a geometry
+CUT = 0.25
 AT_ONCE = 500_000            # pairs of a point and a triangle
 
 
@@ -210,7 +211,7 @@ class Solid(outlines.Shape):
         return self.sampled(spacing), spacing
 
     def width(self, points: np.ndarray, spacing: float) -> float:
-        """Of a patch with these of the samples; those of a mesh are denser where its faces are smaller than the spacing."""
+        """Of a patch with these of the samples; those of a mesh are denser where its faces are small."""
         count = len(points)
         if self.shape.kind == "surface":
             count = len(np.unique(np.floor(points / spacing), axis=0))
@@ -234,7 +235,8 @@ def mesh_of(body, sizes: Sizes | None, folded: tuple[int, ...], accuracy: float)
         raise BadInput(f"mesh_size: '{body.name}' would have about {expected:.2g} tetrahedra (accepted: up to {MOST_CELLS}; larger "
                        f"mesh_size, contact_mesh_size or accuracy)")
     if solid.geometry:
-        made = solid.geometry.meshed(sizes, CUT * accuracy * solid.volume / float(np.prod(solid.extent)))
+        cut = CUT * accuracy * solid.volume / float(np.prod(solid.extent))
+        made = solid.geometry.meshed(sizes, cut)
         centre = solid.geometry.centre if solid.disc else made.centre
         return _with_curves(replace(made, points=(made.points - centre) @ solid.rotation.T))
     return mesh_shape(solid.shape.kind, solid.shape.lengths, solid.rotation, folded, replace(sizes, near=sizes.near @ solid.rotation.T),
@@ -273,7 +275,8 @@ def _of_file(table: Table, folder: Path) -> tuple[Solid, SolidMesh | None]:
     centred = found.moved(-centre)
     shape = ball(sphere.radius) if sphere else surface(centred.points[centred.faces])
     if solid_file.is_geometry(path):
-        return Solid(shape, np.zeros(3), np.eye(3), solid_file.Geometry(path, mesh.scale_of(table), centre, centred)), None
+        geometry = solid_file.Geometry(path, mesh.scale_of(table), centre, centred)
+        return Solid(shape, np.zeros(3), np.eye(3), geometry), None
     return Solid(shape, np.zeros(3), np.eye(3)), centred
 
 

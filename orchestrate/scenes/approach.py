@@ -150,8 +150,9 @@ def _lever(shape: Shape, point: np.ndarray, n: np.ndarray) -> float:
 
 
 def turned(scene: Scene) -> Scene:
-    """The scene with the discs that gmsh meshes turned so that what touches first is their lowest point when they are not turned: where a disc is meshed
-    finely does not depend on the frame in which the scene is written."""
+    """The scene with the discs that gmsh meshes turned so that what touches first is their lowest point
+    when they are not turned: where a disc is meshed finely does not depend on the frame in which the
+    scene is written."""
     if scene.dimension is not PLANE_STRAIN:
         return scene
     met = meetings(scene)
@@ -185,7 +186,8 @@ def refuse_nothing(scene: Scene, met: list[Meeting]) -> None:
 
 
 def refuse_sinking(scene: Scene, met: list[Meeting]) -> None:
-    """BadInput where a body first comes to a plane, and with a part of its boundary that may not touch: it would go through."""
+    """BadInput where a body first comes to a plane, and with a part of its boundary that may not
+    touch: it would go through."""
     for k, body in enumerate(scene.bodies):
         mine = [one for one in met if k in (one.first, one.second)]
         first = min(mine, key=lambda one: one.time, default=None)
@@ -199,8 +201,9 @@ def refuse_sinking(scene: Scene, met: list[Meeting]) -> None:
         nearest = gaps.reshape(corners.shape[:2]).min(axis=1)
         if nearest[may_touch].min() > nearest.min() + MET * first.radius:
             place = ", ".join(f"{x:.3g}" for x in placed[gaps.argmin()])
-            raise BadInput(f"body.{k + 1}.file: '{body.name}' comes to '{obstacle.name}' with ({place}) m, which may not touch and would go "
-                           f"through it (accepted: a file whose label {mesh.FREE}, or physical group 'contact', is there, too)")
+            raise BadInput(f"body.{k + 1}.file: '{body.name}' comes to '{obstacle.name}' with ({place}) "
+                           f"m, which may not touch and would go through it (accepted: a file whose "
+                           f"label {mesh.FREE}, or physical group 'contact', is there, too)")
 
 
 def _parts(vector: np.ndarray, normal: np.ndarray) -> tuple[float, float]:

@@ -60,8 +60,8 @@ class Body:
 
     @property
     def sides(self) -> tuple[np.ndarray, np.ndarray] | None:
-        """The boundary edges or faces of a body from a file: corners (f, axes, axes), about its centre and not turned, and whether
-        each may touch (f,)."""
+        """The boundary edges or faces of a body from a file: corners (f, axes, axes), about its centre
+        and not turned, and whether each may touch (f,)."""
         geometry = isinstance(self.outline, Solid) and self.outline.geometry
         found = geometry.coarse if geometry else self.mesh
         if not found:
@@ -103,8 +103,9 @@ def _body(path: str, given: dict, top: dict, folder: Path, geometry: ModuleType)
         raise BadInput(f"{path}: is {2 * outline.half_thickness:.3g} m thick (accepted: from {2 * SHORTEST:g} m)")
     bulk, contact = _sizes(table, {} if body_mesh else top)
     if body_mesh and (sizes := [key for key in SIZES if table.given.get(key)]):
-        raise BadInput(f"{table.at(sizes[0])}: '{brief(table.given[sizes[0]])}' for a mesh from a file, which has its own element sizes "
-                       f"(accepted: {', '.join(SIZES)} where gmsh makes the mesh: of a shape, or of a geometry, {', '.join(GEOMETRIES)})")
+        raise BadInput(f"{table.at(sizes[0])}: '{brief(table.given[sizes[0]])}' for a mesh from a file, "
+                       f"which has its own element sizes (accepted: {', '.join(SIZES)} where gmsh makes "
+                       f"the mesh: of a shape, or of a geometry, {', '.join(GEOMETRIES)})")
     return Body(checked_name(path, given.get("name", path.replace(".", ""))), outline, body_mesh, **geometry.motion(table),
                 **_material(table, top), mesh_size=bulk, contact_mesh_size=contact)
 

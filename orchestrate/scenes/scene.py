@@ -97,12 +97,14 @@ class Scene:
         return {name: value for name, value in self.given.items() if name not in harmless} | {"files": meshes}
 
     def with_files_in(self, where: Path, tables: dict) -> dict:
-        """The tables of the scene with copies of the bodies' files, made in `where`/body-files: a scene.toml there finds them wherever the folder
-        is moved. A .geo that takes in other files stays beside them: its path is relative to `where`."""
+        """The tables of the scene with copies of the bodies' files, made in `where`/body-files: a
+        scene.toml there finds them wherever the folder is moved. A .geo that takes in other files stays
+        beside them: its path is relative to `where`."""
         listed = []
         for body, table in zip(self.bodies, tables.get("body", [])):
             if "file" in table:
-                path, copy = self.folder / table["file"], Path("body-files", f"{body.name}{Path(table['file']).suffix}")
+                path = self.folder / table["file"]
+                copy = Path("body-files", f"{body.name}{path.suffix}")
                 if takes_in_others(path):
                     copy = Path(os.path.relpath(path, where))
                 else:
@@ -237,8 +239,8 @@ def _of_tables(given: dict, folder: Path, name: str) -> Scene:
         raise BadInput("body: is missing (accepted: one table [[body]] or more)")
     for key in SIZES:
         if table.given.get(key) and all(body.mesh for body in all_bodies):
-            raise BadInput(f"{key}: '{brief(given[key])}' changes nothing, as the mesh of every body is that of its file, with its own "
-                           f"element sizes (accepted: 0)")
+            raise BadInput(f"{key}: '{brief(given[key])}' changes nothing, as the mesh of every body is "
+                           f"that of its file, with its own element sizes (accepted: 0)")
     rigid = listed(given, "obstacle")
     for k, one in enumerate(rigid, 1):
         _of_the_scene(f"obstacle.{k}", one)
@@ -351,7 +353,8 @@ def _apart(found: Scene) -> None:
         _refuse_overlap(f"body.{i}", body, f"body.{j}", other.name, gap_between(body.placed, other.placed),
                         _units(found, i, body) or _units(found, j, other))
     for (i, body), (j, other) in itertools.product(enumerate(found.bodies, 1), enumerate(found.obstacles, 1)):
-        _refuse_overlap(f"body.{i}", body, f"obstacle.{j}", other.name, gap_to_obstacle(body.placed, other), _units(found, i, body))
+        _refuse_overlap(f"body.{i}", body, f"obstacle.{j}", other.name, gap_to_obstacle(body.placed, other),
+                        _units(found, i, body))
 
 
 def _units(found: Scene, i: int, body: Body) -> str:
