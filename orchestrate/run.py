@@ -45,10 +45,7 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | str
     With `estimate` a second, coarser run estimates the error, and finer ones follow until it is below the accuracy (estimate.py).
     """
     started = time.monotonic()
-    overrides = overrides or {}
-    if mesh_file and not scene.bodies:      # which has sizes of its own: those that a scene fixes are for another mesh
-        overrides = dict.fromkeys(SIZES, 0) | overrides
-    scene = scene.override(overrides)
+    scene = scene.override(_sizes_left_to(mesh_file, scene) | (overrides or {}))
     folder = result_folder(Path(out or RESULTS / scene.name))
     mesh_file = mesh_file and _mesh_path(Path(mesh_file))
     foreign = gmsh_file.load(mesh_file) if mesh_file else None
@@ -186,6 +183,12 @@ def _same_scene(folder: Path, scene: Scene, mesh_file: Path | None) -> bool:
 
 
 # ---- the mesh
+
+def _sizes_left_to(mesh_file: Path | str | None, scene: Scene) -> dict[str, Value]:
+    """The element sizes of a scene, open where a mesh file has its own: those it fixes are for another
+    mesh."""
+    return dict.fromkeys(SIZES, 0) if mesh_file and not scene.bodies else {}
+
 
 def _mesh_path(given: Path) -> Path:
     try:

@@ -362,7 +362,7 @@ def data_file(scene: Scene, disc: dict[str, Value], centres: np.ndarray, rounds:
     lines += [(body.name, body.law + (f":{body.law_parameters}" if body.law_parameters != "none" else ""), body.young, body.nu,
                body.density, *centre, *start) for body, centre, start in zip(scene.bodies, centres, starts)]
     lines += rounds
-    files = [(k, int(bool(body.mesh))) for k, (given, body)
+    files = [(k, 1 if body.mesh else 2) for k, (given, body)
              in enumerate(zip(scene.given["body"], scene.bodies)) if "file" in given]
     lines += [("files", len(files)), *files]
     lines += [("obstacles", len(scene.obstacles))]
