@@ -387,8 +387,8 @@ def rounded_box(radius: float) -> float:
 
 
 def test_fillets_that_touch_nothing_cost_little(tmp_path):
-    """A box with fillets of 2 mm on all edges, which elements of 10 mm do not resolve, takes little
-    more than the box (15 times as many with elements of its curvature); the volume is kept to a quarter
+    """A box with fillets of 2 mm on all edges, which its elements do not resolve, takes little
+    more than the box (six times as many with elements of its curvature); the volume is kept to a quarter
     of the accuracy."""
     write_step(tmp_path / "box.step")
     write_step(tmp_path / "small.step", 2)
