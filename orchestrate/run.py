@@ -26,6 +26,7 @@ from .places import INSTALLED, PACKAGE, RESULTS, ROOT, shown
 from .progress import Line
 from .output.results import RunResult, check_files, files_of, read_answers, read_json, read_scene, read_summary, write_json
 from .scene import Scene
+from .scenes.bodies import SIZES
 from .running.solver import FAILURES, USED, Solver, runs
 from .input.tables import to_toml
 
@@ -44,7 +45,7 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | str
     With `estimate` a second, coarser run estimates the error, and finer ones follow until it is below the accuracy (estimate.py).
     """
     started = time.monotonic()
-    scene = scene.override(overrides or {})
+    scene = scene.override(_sizes_left_to(mesh_file, scene) | (overrides or {}))
     folder = result_folder(Path(out or RESULTS / scene.name))
     mesh_file = mesh_file and _mesh_path(Path(mesh_file))
     foreign = gmsh_file.load(mesh_file) if mesh_file else None
@@ -118,7 +119,7 @@ def _keep_failed(stage: Path, failure: Failure, scene: Scene, provenance: dict) 
     """failure.json: the one the script wrote, or what is known; never a summary.json."""
     (stage / "summary.json").unlink(missing_ok=True)
     if not (stage / "scene.toml").exists():
-        (stage / USED).exists() or (stage / USED).write_text(to_toml(scene.given), "utf-8")
+        (stage / USED).exists() or (stage / USED).write_text(to_toml(scene.with_files_in(stage, scene.given)), "utf-8")
         os.replace(stage / USED, stage / "scene.toml")
     record = {"status": FAILURES.get(failure.code, "crashed"), "message": str(failure)} | read_json(stage / "failure.json")
     write_json(stage / "failure.json", record | {"exit_code": failure.code, "provenance": provenance})
@@ -182,6 +183,12 @@ def _same_scene(folder: Path, scene: Scene, mesh_file: Path | None) -> bool:
 
 
 # ---- the mesh
+
+def _sizes_left_to(mesh_file: Path | str | None, scene: Scene) -> dict[str, Value]:
+    """The element sizes of a scene, open where a mesh file has its own: those it fixes are for another
+    mesh."""
+    return dict.fromkeys(SIZES, 0) if mesh_file and not scene.bodies else {}
+
 
 def _mesh_path(given: Path) -> Path:
     try:

@@ -21,7 +21,7 @@ def read_toml(path: Path, missing: str) -> tuple[str, dict]:
     try:
         if path.exists() and not path.is_file() and not path.is_dir():   # reading a pipe or a device might never end
             raise BadInput(f"{path}: is no file")
-        text = path.read_text("utf-8")
+        text = path.read_text("utf-8-sig")          # some editors write a byte order mark
         return text, tomllib.loads(text)
     except (FileNotFoundError, IsADirectoryError, NotADirectoryError):
         raise BadInput(missing) from None

@@ -170,7 +170,7 @@ def test_flats_among_the_arcs_of_a_file_stay_flat(tmp_path):
     assert placed.area_centre == pytest.approx([1, 2], abs=1e-12) and placed.extent == pytest.approx([2 * radius, 1.2 * radius], rel=1e-4)
     assert placed.gap(np.array([[1.0, 2.4], [1, 2], [1.6, 2]])) == pytest.approx([0.1, -0.3, 0.1], abs=1e-4)
     lines = assembly.assemble(scene).data.splitlines()
-    assert lines[4] == "circles 1" and np.array(lines[5].split(), dtype=float) == pytest.approx([0, 0, 0, radius], abs=1e-12) and lines[6:8] == ["files 1", "0"]
+    assert lines[4] == "circles 1" and np.array(lines[5].split(), dtype=float) == pytest.approx([0, 0, 0, radius], abs=1e-12) and lines[6:8] == ["files 1", "0 1"]
 
 
 def test_a_segment_of_a_circle_has_its_area_and_centre():

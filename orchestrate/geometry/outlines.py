@@ -244,9 +244,9 @@ class Outline(Shape):
         spacing = self.length / np.clip(2 * self.length / size, COARSEST, FINEST)
         return np.vstack([loop.sampled(spacing) for loop in self.loops]), spacing
 
-    def width(self, count: int, spacing: float) -> float:
-        """Of a stretch with so many of the samples."""
-        return (count - 1) * spacing
+    def width(self, points: np.ndarray, spacing: float) -> float:
+        """Of a stretch with these of the samples."""
+        return (max(2, len(points)) - 1) * spacing
 
     def folding(self, revolved: bool = False) -> float:
         """The strain (or less) of the body bent until its outline, or half a section, touches itself; infinite where it never does."""

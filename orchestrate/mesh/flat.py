@@ -15,7 +15,7 @@ from ..geometry.outlines import Loop, Outline, circle_loop, ellipse_loop, polygo
 from ..input.tables import LONGEST, SHORTEST, Table
 
 SHAPES = {"disc": ("radius",), "ellipse": ("semi_axes",), "rectangle": ("width", "height"), "ring": ("radius", "inner_radius"),
-          "polygon": ("vertices", "holes"), "mesh": ("file",)}
+          "polygon": ("vertices", "holes"), "mesh": ("file", "scale")}
 LOOPS = {"disc": lambda radius: (circle_loop(radius),), "ring": lambda radius, inner: (circle_loop(radius), circle_loop(inner)),
          "ellipse": lambda semi_axes: (ellipse_loop(*semi_axes),),
          "rectangle": lambda *sides: (Loop(np.array(sides) / 2 * [[-1, -1], [1, -1], [1, 1], [-1, 1]]),)}
@@ -111,10 +111,18 @@ def mesh_file(table: Table, folder: Path, script: str) -> mesh.Mesh:
                 raise BadInput(f"mesh: '{brief(name)}' has edges with the label {mesh.AXIS} of a symmetry axis (accepted: whole bodies, "
                                f"labels {mesh.FREE}: may touch, 3 and more: never touch)")
             size = float(np.ptp(found.points, axis=0).max()) if len(found.points) else 0.0
+            if size and not (found.labels == mesh.FREE).any():
+                raise BadInput(f"mesh: {file.name}: no boundary edge has the label {mesh.FREE} of what "
+                               f"may touch, but labels from {found.labels.min()} to "
+                               f"{found.labels.max()}")
+            # as if all of it may touch: that script has a plane below, which this scene may not have
+            labels = np.where(found.labels > mesh.AXIS, mesh.FREE, found.labels)
+            mesh.write(replace(found, labels=labels), Path(file.name))
             said = describe({"mesh": file.name, "radius": size / 2 if SHORTEST < size < LONGEST else 1.0}, script)
     except BadInput as error:
         raise BadInput(f"{table.path}.file: {str(error).removeprefix('mesh: ').replace(file.name if file else name, name)}") from None
-    return replace(found, hubs=np.array([*said["circles"], [math.nan] * 3])[said["circle_of"], :2])
+    hubs = np.array([*said["circles"], [math.nan] * 3])[said["circle_of"], :2]
+    return replace(found, hubs=hubs).scaled(mesh.scale_of(table))
 
 
 def _may_be_read(path: Path) -> bool:

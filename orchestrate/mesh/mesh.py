@@ -6,6 +6,7 @@ boundary. The lowest point of the disc touches the plane y = 0.
 
 import atexit
 import math
+import os
 import pickle
 import signal
 import subprocess
@@ -22,7 +23,8 @@ from types import ModuleType
 import numpy as np
 
 from ..failure import BadInput, NotInstalled
-from ..places import INSTALLED, ROOT
+from ..input.tables import Table
+from ..places import INSTALLED, PACKAGE
 
 FREE, AXIS = 1, 2          # boundary labels
 # of a triangle; of a tetrahedron, seen from outside
@@ -52,6 +54,11 @@ class Mesh:
     def moved(self, by: np.ndarray) -> "Mesh":
         """The same mesh, `by` [m] elsewhere."""
         return replace(self, points=self.points + by, hubs=None if self.hubs is None else self.hubs + by)
+
+    def scaled(self, factor: float) -> "Mesh":
+        """The same mesh, `factor` times as large."""
+        hubs = None if self.hubs is None else self.hubs * factor
+        return replace(self, points=self.points * factor, hubs=hubs)
 
 
 @dataclass(frozen=True)
@@ -214,9 +221,12 @@ def start_gmsh() -> ModuleType:
 def in_own_process(read: Callable, path: Path, *given):
     """read(path, *given) in a process of its own, where gmsh reads the file: some broken files kill it. BadInput as there, or with how it
     ended."""
-    with tempfile.NamedTemporaryFile() as answer:
-        child = subprocess.run([sys.executable, "-c", f"from {__name__} import _answer; _answer()", answer.name], cwd=ROOT,
-                               input=pickle.dumps((read, path, *given)), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    modules = os.pathsep.join([str(PACKAGE.parent), *filter(None, [os.environ.get("PYTHONPATH")])])
+    command = [sys.executable, "-P", "-c", f"from {__name__} import _answer; _answer()"]
+    with tempfile.NamedTemporaryFile() as answer:     # in this working folder: relative paths stay
+        child = subprocess.run([*command, answer.name], env=os.environ | {"PYTHONPATH": modules},
+                               input=pickle.dumps((read, path, *given)), stdout=subprocess.DEVNULL,
+                               stderr=subprocess.DEVNULL)
         if child.returncode == 0 and (said := answer.read()):     # a script in a geometry may end gmsh
             found = pickle.loads(said)
             if isinstance(found, BadInput):
@@ -273,8 +283,11 @@ def elements_of(model, dimensions: Sequence[int], nodes: dict[int, int], one: st
                            f"{' or '.join(map(str, nodes.values()))} nodes)")
     if not kinds:
         raise BadInput(f"it has no {many}")
-    corners = [model.mesh.getElementsByType(kind)[1].reshape(-1, nodes[kind])[:, :min(nodes.values())] for kind in kinds]
-    used, elements = np.unique(np.vstack(corners), return_inverse=True)
+    found = [model.mesh.getElementsByType(kind)[1].reshape(-1, nodes[kind]) for kind in kinds]
+    corners = np.vstack([each[:, :min(nodes.values())] for each in found])
+    # gmsh 2.2 writes an element once for each physical group that it belongs to
+    once = np.unique(np.sort(corners, axis=1), axis=0, return_index=True)[1]
+    used, elements = np.unique(corners[np.sort(once)], return_inverse=True)
     tags, coordinates, _ = model.mesh.getNodes()
     row = np.full(int(max(tags.max(), used.max())) + 1, -1)
     row[tags] = np.arange(len(tags))
@@ -341,4 +354,11 @@ def read(path: Path) -> Mesh:
         raise BadInput(f"mesh: {path} cannot be read: {error.strerror}") from None
     except ValueError:
         raise BadInput(f"mesh: {path} is no mesh (accepted: a 2D mesh as FreeFEM's savemesh or gmsh writes it, .msh)") from None
-    return Mesh(points[:, :2], triangles[:, :3].astype(int) - 1, edges[:, :2].astype(int) - 1, edges[:, 2].astype(int))
+    regions = np.unique(triangles[:, 3]).astype(int)
+    return Mesh(points[:, :2], triangles[:, :3].astype(int) - 1, edges[:, :2].astype(int) - 1, edges[:, 2].astype(int),
+                region=int(regions[0]) if len(regions) == 1 else 0)
+
+
+def scale_of(table: Table) -> float:
+    """Metres per unit of length in the file of a [[body]] table."""
+    return table.number("scale", 1e-9, 1e9, 1.0)

@@ -15,7 +15,8 @@ from ..failure import BadInput
 from ..geometry.outlines import Loop, Outline, circle_loop, cross, ellipse_loop
 from ..input.tables import LONGEST, Table
 
-SHAPES = {"ball": ("radius",), "ellipsoid": ("semi_axes",), "cylinder": ("radius", "height"), "polygon": ("vertices",), "mesh": ("file",)}
+SHAPES = {"ball": ("radius",), "ellipsoid": ("semi_axes",), "cylinder": ("radius", "height"), "polygon": ("vertices",),
+          "mesh": ("file", "scale")}
 LOOPS = {"ball": circle_loop, "ellipsoid": lambda semi_axes: ellipse_loop(*semi_axes),
          "cylinder": lambda r, height: Loop(np.array([r, height / 2]) * [[0, -1], [1, -1], [1, 1], [0, 1], [-1, 1], [-1, -1]])}
 MOTION = ()

@@ -3,6 +3,8 @@
 Faces of a physical surface named `contact` may touch, others never; without physical surfaces the outer surface may, cavities never.
 """
 
+import re
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
@@ -11,18 +13,44 @@ import numpy as np
 from . import mesh
 from ..failure import BadInput
 from .mesh import FREE, Sizes, boundary, in_own_process, is_outer, pieces
-from .solid_mesh import NEVER, TURN, SolidMesh, cell_volumes, cells_of, generate
+from .solid_mesh import NEVER, SolidMesh, cell_volumes, cells_of, generate
 
 MESHES, GEOMETRIES = (".msh", ".mesh"), (".geo", ".step", ".stp")
+OTHERS = re.compile(r"\b(Merge|Include|ShapeFromFile)\b")       # in a .geo: takes in another file
 CONTACT = "contact"
 HEADER = b"$MeshFormat"
 TRIANGLES = {2: 3, 9: 6}         # gmsh's types of element: their nodes, of which the first three are the corners
 COARSE = 15                      # elements along the largest extent where only the shape of a geometry is wanted
 
+SHAPE_CUT = 1e-3                 # likewise: what flat elements cut off its box at most (rounding.py)
+
 
 def is_geometry(path: Path) -> bool:
     """Whether gmsh has to mesh it."""
     return path.suffix.lower() in GEOMETRIES
+
+
+@dataclass(frozen=True)
+class Geometry:
+    """A geometry in a file: metres per unit of the file, the centre of its volume in it [m], and about
+    that centre a mesh that is good for its shape only."""
+
+    path: Path
+    scale: float
+    centre: np.ndarray
+    coarse: SolidMesh
+
+    def meshed(self, sizes: Sizes, cut: float) -> SolidMesh:
+        """Its mesh as it lies in the file, in m, with element sizes [m] about its centre and a cut
+        (rounding.py)."""
+        lengths = (sizes.bulk, sizes.contact, sizes.near + self.centre, sizes.slack)
+        inside = Sizes(*(length / self.scale for length in lengths))
+        return meshed(self.path, inside, cut).scaled(self.scale)
+
+
+def takes_in_others(path: Path) -> bool:
+    """Whether it is a .geo that names other files."""
+    return path.suffix.lower() == ".geo" and bool(OTHERS.search(path.read_text(errors="replace")))
 
 
 def read(path: Path) -> SolidMesh:
@@ -38,25 +66,26 @@ def read(path: Path) -> SolidMesh:
     return _read(path.resolve(), stamp.st_mtime_ns)
 
 
-def meshed(path: Path, sizes: Sizes | None) -> SolidMesh:
-    """The mesh in a file, that of a geometry with element sizes, which are of the coordinates in the file."""
+def meshed(path: Path, sizes: Sizes | None = None, cut: float = SHAPE_CUT) -> SolidMesh:
+    """The mesh in a file, that of a geometry with element sizes, which are of the coordinates in the
+    file, and a cut (rounding.py)."""
     try:
-        return in_own_process(_taken, path, sizes)
+        return in_own_process(_taken, path, sizes, cut)
     except BadInput as error:
         raise BadInput(f"'{path.name}': {error}") from None
 
 
 @cache
 def _read(path: Path, changed: int) -> SolidMesh:
-    return meshed(path, None)
+    return meshed(path)
 
 
 # ---- in the process of its own
 
-def _taken(path: Path, sizes: Sizes | None) -> SolidMesh:
+def _taken(path: Path, sizes: Sizes | None, cut: float) -> SolidMesh:
     try:
         if is_geometry(path):
-            return _meshed(path, sizes)
+            return _meshed(path, sizes, cut)
         if path.suffix.lower() == ".msh":              # what gmsh does not know it runs as a script
             with open(path, "rb") as file:
                 if not file.read(len(HEADER)) == HEADER:
@@ -70,7 +99,7 @@ def _taken(path: Path, sizes: Sizes | None) -> SolidMesh:
         raise BadInput(f"gmsh cannot read or mesh it: {error}") from None
 
 
-def _meshed(path: Path, sizes: Sizes | None) -> SolidMesh:
+def _meshed(path: Path, sizes: Sizes | None, cut: float) -> SolidMesh:
     def build(gmsh) -> None:
         gmsh.option.setString("Geometry.OCCTargetUnit", "M")
         gmsh.open(str(path))
@@ -80,7 +109,7 @@ def _meshed(path: Path, sizes: Sizes | None) -> SolidMesh:
             low, high = np.reshape(gmsh.model.getBoundingBox(-1, -1), (2, 3))
             gmsh.option.setNumber("Mesh.MeshSizeMax", float((high - low).max()) / COARSE)
 
-    return generate(build, sizes or Sizes(0.0, 0.0, np.empty((0, 3)), 0.0), TURN, _labelled)
+    return generate(build, sizes or Sizes(0.0, 0.0, np.empty((0, 3)), 0.0), 0, _labelled, cut)
 
 
 def _labelled(model) -> SolidMesh:

@@ -10,12 +10,11 @@ from pathlib import Path
 
 import numpy as np
 
-from . import mesh
+from . import mesh, rounding
 from .mesh import AXIS, FREE, GROWTH, Sizes
 
 DEPTH, NEVER = 3, 4
 PLANES = {0: AXIS, 2: DEPTH}       # of symmetry: the axis across it, and its label
-TURN = 20                          # elements on a full turn of a curved surface at least
 LARGEST = 0.52                     # element of a ball over its radius: twelve on a full turn
 MOST_SOURCES = 2000                # points that sizes are measured from
 FILL = 0.118                       # volume of a regular tetrahedron over the cube of its side
@@ -56,6 +55,10 @@ class SolidMesh:
     def moved(self, by: np.ndarray) -> "SolidMesh":
         """The same mesh, `by` [m] elsewhere."""
         return replace(self, points=self.points + by)
+
+    def scaled(self, factor: float) -> "SolidMesh":
+        """The same mesh, `factor` times as large."""
+        return replace(self, points=self.points * factor)
 
     @property
     def volumes(self) -> np.ndarray:
@@ -113,7 +116,7 @@ def mesh_shape(kind: str, lengths: np.ndarray, rotation: np.ndarray, folded: tup
             occ.intersect([(3, tag)], [(3, half)])
         occ.synchronize()
 
-    points, cells = generate(build, inside, TURN if kind == "cylinder" else 0)
+    points, cells = generate(build, inside, rounding.TURN if kind == "cylinder" else 0)
     points = points * scale
     faces = mesh.boundary(cells)
     labels = np.full(len(faces), FREE)
@@ -136,9 +139,11 @@ def cells_of(model) -> tuple[np.ndarray, np.ndarray]:
     return points, right_handed(points, cells)
 
 
-def generate(build: Callable, sizes: Sizes, turn: int, take: Callable = cells_of):
-    """What `take` makes of the model that `build` puts into gmsh, meshed; on curved surfaces `turn` elements a full turn at least. Sizes of
-    0 are open: `build` sets the largest."""
+def generate(build: Callable, sizes: Sizes, turn: int, take: Callable = cells_of,
+             cut: float | None = None):
+    """What `take` makes of the model that `build` puts into gmsh, meshed; on curved surfaces with
+    `turn` elements a full turn at least, or, where `cut` is given, as rounding.py says. A bulk size
+    of 0 is open: `build` sets the largest."""
     with mesh.gmsh_session() as gmsh:
         build(gmsh)
         for name, value in {"FromPoints": 0, "ExtendFromBoundary": 0, "FromCurvature": turn}.items():
@@ -147,20 +152,35 @@ def generate(build: Callable, sizes: Sizes, turn: int, take: Callable = cells_of
             gmsh.option.setNumber("Mesh.MeshSizeMax", sizes.bulk)
         gmsh.option.setNumber("Mesh.Algorithm", 6)
         gmsh.option.setNumber("Mesh.OptimizeNetgen", 1)
-        _grade(gmsh, sizes)
+        _grade(gmsh, sizes, cut)
         gmsh.model.mesh.generate(3)
         return take(gmsh.model)
 
 
-def _grade(gmsh, sizes: Sizes) -> None:
+def _grade(gmsh, sizes: Sizes, cut: float | None) -> None:
     """The size grows linearly with the distance from the points where the body touches."""
+    field, sources, made = gmsh.model.mesh.field, _sources(gmsh, sizes), []
+    if sources:
+        both = sizes.contact, sizes.bulk
+        made.append(mesh.graded(field, "PointsList", sources, both, flat=sizes.slack))
+    if cut is not None:
+        bulk = gmsh.option.getNumber("Mesh.MeshSizeMax")
+        made += rounding.fields(gmsh, sizes, sources, bulk, cut)
+    if made:
+        least = field.add("Min")
+        field.setNumbers(least, "FieldsList", made)
+        field.setAsBackgroundMesh(least)
+
+
+def _sources(gmsh, sizes: Sizes) -> list[int]:
+    """Points of gmsh where the body touches, where elements are smaller."""
     if not len(sizes.near) or sizes.contact >= sizes.bulk:
-        return
+        return []
     free = 1 + max(tag for _, tag in gmsh.model.getEntities(0))      # whose own numbers do not know those of another kernel
-    sources = [gmsh.model.geo.addPoint(*point, tag=free + k) for k, point in enumerate(sizes.near[::-(-len(sizes.near) // MOST_SOURCES)])]
+    near = sizes.near[::-(-len(sizes.near) // MOST_SOURCES)]
+    points = [gmsh.model.geo.addPoint(*point, tag=free + k) for k, point in enumerate(near)]
     gmsh.model.geo.synchronize()
-    field = gmsh.model.mesh.field
-    field.setAsBackgroundMesh(mesh.graded(field, "PointsList", sources, (sizes.contact, sizes.bulk), flat=sizes.slack))
+    return points
 
 
 def expected_cells(volume: float, sizes: Sizes) -> float:

@@ -11,15 +11,17 @@ from pathlib import Path
 import numpy as np
 
 from ..geometry import outlines, tumbling
-from . import curved, solid_file
+from . import curved, mesh, solid_file
 from ..failure import BadInput, brief
 from .solid_mesh import MOST_CELLS, Sizes, SolidMesh, expected_cells, mesh_shape
 from ..input.tables import Table
 
-SHAPES = {"ball": ("radius",), "box": ("width", "height", "depth"), "cylinder": ("radius", "height"), "mesh": ("file",)}
+SHAPES = {"ball": ("radius",), "box": ("width", "height", "depth"), "cylinder": ("radius", "height"), "mesh": ("file", "scale")}
 MOTION = ("angle", "turn", "spin")
 SAMPLES = 1500               # points on a surface where its shape is wanted as points
 NEAREST = 16                 # triangles of a surface, by their centres, among which the nearest one is sought
+# share of the accuracy by which flat elements on its roundings may change the volume of a geometry
+CUT = 0.25
 AT_ONCE = 500_000            # pairs of a point and a triangle
 
 
@@ -160,13 +162,12 @@ def distance_to_triangles(points: np.ndarray, triangles: np.ndarray) -> np.ndarr
 
 @dataclass(frozen=True)
 class Solid(outlines.Shape):
-    """A shape with its centre of volume at `centre`, turned by the matrix `rotation`; where gmsh is to mesh a file, that `geometry` and
-    where in it the centre is."""
+    """A shape with its centre of volume at `centre`, turned by the matrix `rotation`; where gmsh is to mesh a file, that `geometry`."""
 
     shape: Shape
     centre: np.ndarray
     rotation: np.ndarray
-    geometry: tuple[Path, np.ndarray] | None = None
+    geometry: solid_file.Geometry | None = None
 
     volume, extent, reach = (property(attrgetter(f"shape.{name}")) for name in ("volume", "extent", "reach"))
     area_centre = property(attrgetter("centre"))
@@ -209,9 +210,12 @@ class Solid(outlines.Shape):
         spacing = math.sqrt(self.shape.area / np.clip(4 * self.shape.area / size**2, SAMPLES, 20000))
         return self.sampled(spacing), spacing
 
-    def width(self, count: int, spacing: float) -> float:
-        """Of a patch with so many of the samples."""
-        return 2 * spacing * math.sqrt(count / math.pi)
+    def width(self, points: np.ndarray, spacing: float) -> float:
+        """Of a patch with these of the samples; those of a mesh are denser where its faces are small."""
+        count = len(points)
+        if self.shape.kind == "surface":
+            count = len(np.unique(np.floor(points / spacing), axis=0))
+        return 2 * spacing * math.sqrt(max(2, count) / math.pi)
 
     def gap(self, points: np.ndarray) -> np.ndarray:
         """Signed distances (n,) of points (n, 3), negative inside."""
@@ -220,7 +224,7 @@ class Solid(outlines.Shape):
 
 # ---- meshes
 
-def mesh_of(body, sizes: Sizes | None, folded: tuple[int, ...]) -> SolidMesh:
+def mesh_of(body, sizes: Sizes | None, folded: tuple[int, ...], accuracy: float) -> SolidMesh:
     """The mesh of a body (bodies.Body) about its centre of volume, turned as it is at the start: that of its file, or one with sizes, which
     are of the body not turned; of that what lies on the positive side of the planes across the axes `folded`."""
     solid = body.at(0.0, np.zeros(3))
@@ -231,9 +235,10 @@ def mesh_of(body, sizes: Sizes | None, folded: tuple[int, ...]) -> SolidMesh:
         raise BadInput(f"mesh_size: '{body.name}' would have about {expected:.2g} tetrahedra (accepted: up to {MOST_CELLS}; larger "
                        f"mesh_size, contact_mesh_size or accuracy)")
     if solid.geometry:
-        path, centre = solid.geometry
-        made = solid_file.meshed(path, replace(sizes, near=sizes.near + centre))
-        return _with_curves(replace(made, points=(made.points - (centre if solid.disc else made.centre)) @ solid.rotation.T))
+        cut = CUT * accuracy * solid.volume / float(np.prod(solid.extent))
+        made = solid.geometry.meshed(sizes, cut)
+        centre = solid.geometry.centre if solid.disc else made.centre
+        return _with_curves(replace(made, points=(made.points - centre) @ solid.rotation.T))
     return mesh_shape(solid.shape.kind, solid.shape.lengths, solid.rotation, folded, replace(sizes, near=sizes.near @ solid.rotation.T),
                       solid.half_thickness)
 
@@ -261,7 +266,7 @@ def _of_file(table: Table, folder: Path) -> tuple[Solid, SolidMesh | None]:
         raise BadInput(f"{table.at('file')}: is missing (accepted: {', '.join(solid_file.MESHES + solid_file.GEOMETRIES)})")
     path = folder / name
     try:
-        found = solid_file.read(path)
+        found = solid_file.read(path).scaled(mesh.scale_of(table))
     except BadInput as error:
         raise BadInput(f"{table.path}.file: {error}") from None
     sphere = next((one for one, own in curved.surfaces(found.points, found.faces) if not len(one.axis) and len(own) == len(found.faces)),
@@ -270,7 +275,8 @@ def _of_file(table: Table, folder: Path) -> tuple[Solid, SolidMesh | None]:
     centred = found.moved(-centre)
     shape = ball(sphere.radius) if sphere else surface(centred.points[centred.faces])
     if solid_file.is_geometry(path):
-        return Solid(shape, np.zeros(3), np.eye(3), (path, centre)), None
+        geometry = solid_file.Geometry(path, mesh.scale_of(table), centre, centred)
+        return Solid(shape, np.zeros(3), np.eye(3), geometry), None
     return Solid(shape, np.zeros(3), np.eye(3)), centred
 
 

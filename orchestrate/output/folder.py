@@ -24,7 +24,7 @@ RECORDS = ("scene.toml", "history.csv", "contacts.csv", "modes.csv", "summary.js
 FIELDS = [f"fields/{name}" for name in ("[0-9][0-9][0-9][0-9].vtu", "contact.csv", "contact.pvd", "contact-[0-9][0-9][0-9][0-9].vtp")]
 FIGURES = ("energies", "velocity", "force", "rolling", "shapes", "pressure", "flight", "contact", "bounces", "height", "vibration", "solid")
 OWN = (*RECORDS, "unfinished/*", "failure.json", "log.txt", "mesh.msh", "mesh.mesh", "scene.dat", "summary.json.part", "checkpoint",
-       "checkpoint.json", "fields.pvd", *FIELDS, *(f"figures/{name}.png" for name in FIGURES))
+       "checkpoint.json", "body-files/*", "fields.pvd", *FIELDS, *(f"figures/{name}.png" for name in FIGURES))
 OURS = {"scene.toml", "failure.json", "unfinished", "checkpoint.json"}   # a folder with one of these is the program's
 
 

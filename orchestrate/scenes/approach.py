@@ -15,6 +15,7 @@ from .bodies import Body
 from ..input.dimension import PLANE_STRAIN
 from ..failure import BadInput
 from .scene import Scene, gap_between
+from ..mesh import mesh
 from .obstacles import Obstacle
 from ..geometry.outlines import Outline, Shape
 
@@ -149,15 +150,16 @@ def _lever(shape: Shape, point: np.ndarray, n: np.ndarray) -> float:
 
 
 def turned(scene: Scene) -> Scene:
-    """The scene with its discs turned so that what touches first is their lowest point when they are not turned: where a disc is meshed
-    finely does not depend on the frame in which the scene is written."""
+    """The scene with the discs that gmsh meshes turned so that what touches first is their lowest point
+    when they are not turned: where a disc is meshed finely does not depend on the frame in which the
+    scene is written."""
     if scene.dimension is not PLANE_STRAIN:
         return scene
     met = meetings(scene)
     found = list(scene.bodies)
     for k, body in enumerate(scene.bodies):
         mine = [one for one in met if k in (one.first, one.second)]
-        if not body.outline.disc or not mine:
+        if body.mesh or not body.outline.disc or not mine:
             continue
         soonest = min(one.time for one in mine)
         first = next(one for one in mine if one.time <= soonest * (1 + 1e-9))
@@ -181,6 +183,27 @@ def refuse_nothing(scene: Scene, met: list[Meeting]) -> None:
         if one.second < 0 and one.time == 0 and one.closing == 0 and not np.any(body.spin) and _fall(scene) @ one.normal < 0:
             raise BadInput(f"end_time: 0 is the end of the contact, but '{body.name}' is set down on "
                            f"'{scene.obstacles[-1 - one.second].name}' and does not leave it (accepted: an end_time > 0)")
+
+
+def refuse_sinking(scene: Scene, met: list[Meeting]) -> None:
+    """BadInput where a body first comes to a plane, and with a part of its boundary that may not
+    touch: it would go through."""
+    for k, body in enumerate(scene.bodies):
+        mine = [one for one in met if k in (one.first, one.second)]
+        first = min(mine, key=lambda one: one.time, default=None)
+        if not first or not math.isfinite(first.time) or first.second >= 0 or not body.sides:
+            continue
+        obstacle, (corners, may_touch) = scene.obstacles[-1 - first.second], body.sides
+        if obstacle.kind != "plane" or 0 < scene.values["end_time"] < first.time:
+            continue
+        placed = body.outline.carried(first.outlines[0], corners.reshape(-1, corners.shape[2]))
+        gaps = obstacle.gap(placed)
+        nearest = gaps.reshape(corners.shape[:2]).min(axis=1)
+        if nearest[may_touch].min() > nearest.min() + MET * first.radius:
+            place = ", ".join(f"{x:.3g}" for x in placed[gaps.argmin()])
+            raise BadInput(f"body.{k + 1}.file: '{body.name}' comes to '{obstacle.name}' with ({place}) "
+                           f"m, which may not touch and would go through it (accepted: a file whose "
+                           f"label {mesh.FREE}, or physical group 'contact', is there, too)")
 
 
 def _parts(vector: np.ndarray, normal: np.ndarray) -> tuple[float, float]:

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from ..mesh import mesh, revolution, solid_mesh, solids
-from .approach import Meeting, meetings, refuse_nothing, turned
+from .approach import Meeting, meetings, refuse_nothing, refuse_sinking, turned
 from .bodies import DAMPING, MATERIAL, Body
 from .front import Front, fronts
 from ..freefem.describe import describe
@@ -77,9 +77,10 @@ def prepare(scene: Scene, where: Path, foreign: bytes | None = None,
         scene = turned(scene)
         met = meetings(scene)
         refuse_nothing(scene, met)
+        refuse_sinking(scene, met)
         built = assemble(scene, met=met)
         built.write(where)
-        text = to_toml(built.used)
+        text = to_toml(scene.with_files_in(where, built.used))
         return built.values | {"mesh": file, "bodies": where / "scene.dat"}, tomllib.loads(text), text
     said = (like or scene).description(foreign)
     if not scene.meshed:
@@ -122,7 +123,8 @@ def _sections(scene: Scene, sizes: list[Sizes | None]) -> tuple[mesh.Mesh, np.nd
 def _solids(scene: Scene, sizes: list[Sizes | None]) -> tuple[solid_mesh.SolidMesh, np.ndarray, np.ndarray, list[tuple]]:
     """The same in three dimensions: bodies turned as they are at the start, one above the other; half or a quarter where that is enough."""
     folded = FOLDED[copies(scene)]
-    meshes = [solids.mesh_of(body, one, folded) for body, one in zip(scene.bodies, sizes)]
+    accuracy = float(scene.values["accuracy"])
+    meshes = [solids.mesh_of(body, one, folded, accuracy) for body, one in zip(scene.bodies, sizes)]
     count = sum(solid_mesh.unknowns(one.cells, scene.values["degree"]) for one in meshes)
     if count > solid_mesh.MOST_UNKNOWNS:
         raise BadInput(f"mesh_size: the bodies have {count} unknowns (accepted: up to {solid_mesh.MOST_UNKNOWNS}; larger mesh_size, "
@@ -278,7 +280,7 @@ def _hit(body: Body, k: int, one: Meeting, ask: Asker) -> tuple[float, np.ndarra
     points, spacing = body.outline.samples(size)
     near = _near(body, k, one, depth, points)
     # than the contact of a disc: flat faces; or less wide: corners, pegs
-    wider = body.outline.width(max(2, len(near)), spacing) / (2 * arc * one.radius)
+    wider = body.outline.width(near, spacing) / (2 * arc * one.radius)
     if small > 0:                              # a sharp corner no elements resolve
         wider = min(max(1.0, wider), wider / NARROW, POINTED * small / (2 / math.pi * arc * one.radius))
     if small > 0 and wider < 1:
@@ -360,7 +362,9 @@ def data_file(scene: Scene, disc: dict[str, Value], centres: np.ndarray, rounds:
     lines += [(body.name, body.law + (f":{body.law_parameters}" if body.law_parameters != "none" else ""), body.young, body.nu,
                body.density, *centre, *start) for body, centre, start in zip(scene.bodies, centres, starts)]
     lines += rounds
-    lines += [("files", len(files := [k for k, given in enumerate(scene.given["body"]) if "file" in given])), *((k,) for k in files)]
+    files = [(k, 1 if body.mesh else 2) for k, (given, body)
+             in enumerate(zip(scene.given["body"], scene.bodies)) if "file" in given]
+    lines += [("files", len(files)), *files]
     lines += [("obstacles", len(scene.obstacles))]
     lines += [(one.name, "circle" if one.kind == "sphere" and scene.dimension is not SOLID else one.kind, len(one.numbers), *one.numbers,
                *one.velocity) for one in scene.obstacles]

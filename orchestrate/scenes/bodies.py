@@ -13,6 +13,7 @@ from ..mesh import flat, mesh, revolution, solids
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
 from ..failure import BadInput, brief, unknown
 from ..geometry.outlines import Outline
+from ..mesh.solid_file import GEOMETRIES
 from ..mesh.solid_mesh import SolidMesh
 from ..mesh.solids import Solid
 from ..input.parameters import Value
@@ -31,7 +32,7 @@ NAME = re.compile(r"[A-Za-z][A-Za-z0-9_.-]*")
 @dataclass(frozen=True)
 class Body:
     """`outline` and `mesh` (of a mesh file, else None) are about the centre of area (or volume), not turned; angle [rad], in three
-    dimensions a vector as spin is; a mesh size of 0 is open."""
+    dimensions a vector as spin is; a mesh size of 0 is open, or that of the file."""
 
     name: str
     outline: Outline | Solid
@@ -56,6 +57,18 @@ class Body:
     @property
     def damped(self) -> bool:
         return any(getattr(self, name) for name in DAMPED)
+
+    @property
+    def sides(self) -> tuple[np.ndarray, np.ndarray] | None:
+        """The boundary edges or faces of a body from a file: corners (f, axes, axes), about its centre
+        and not turned, and whether each may touch (f,)."""
+        geometry = isinstance(self.outline, Solid) and self.outline.geometry
+        found = geometry.coarse if geometry else self.mesh
+        if not found:
+            return None
+        outer = found.labels != mesh.AXIS
+        corners = found.faces if isinstance(found, SolidMesh) else found.edges
+        return found.points[corners[outer]], found.labels[outer] == mesh.FREE
 
     @property
     def placed(self) -> Outline | Solid:
@@ -87,7 +100,11 @@ def _body(path: str, given: dict, top: dict, folder: Path, geometry: ModuleType)
     outline, body_mesh = geometry.shape(table, folder)
     if not outline.half_thickness >= SHORTEST:
         raise BadInput(f"{path}: is {2 * outline.half_thickness:.3g} m thick (accepted: from {2 * SHORTEST:g} m)")
-    bulk, contact = _sizes(table, top)
+    bulk, contact = _sizes(table, {} if body_mesh else top)
+    if body_mesh and (sizes := [key for key in SIZES if table.given.get(key)]):
+        raise BadInput(f"{table.at(sizes[0])}: '{brief(table.given[sizes[0]])}' for a mesh from a file, "
+                       f"which has its own element sizes (accepted: {', '.join(SIZES)} where gmsh makes "
+                       f"the mesh: of a shape, or of a geometry, {', '.join(GEOMETRIES)})")
     return Body(checked_name(path, given.get("name", path.replace(".", ""))), outline, body_mesh, **geometry.motion(table),
                 **_material(table, top), mesh_size=bulk, contact_mesh_size=contact)
 

@@ -112,9 +112,9 @@ def _lands_flat(one: Meeting, k: int, body: Body, size: float) -> bool:
     points, spacing = body.outline.samples(min(size, body.outline.half_thickness / 2))
     moved = body.outline.carried(_shape(one, k), points)
     gaps = one.gaps(k, moved)
-    landing = int((gaps <= gaps.min() + one.closing * size / wave_speed(body)).sum())
+    landing = moved[gaps <= gaps.min() + one.closing * size / wave_speed(body)]
     width = min(np.ptp(moved @ axis) for axis in _tangents(one.normal))
-    return landing > 1 and bool(body.outline.width(landing, spacing) >= FLAT * width)
+    return len(landing) > 1 and bool(body.outline.width(landing, spacing) >= FLAT * width)
 
 
 def _tangents(normal: np.ndarray) -> list[np.ndarray]:

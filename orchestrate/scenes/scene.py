@@ -3,6 +3,8 @@ names; or one of the paper's, whose script makes the bodies of its parameters, a
 
 import hashlib
 import itertools
+import os
+import shutil
 import tempfile
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -16,6 +18,7 @@ from ..input import dimension, parameters
 from ..input.dimension import AXISYMMETRIC, SOLID, Dimension
 from ..input.parameters import Parameter, Value
 from ..input.tables import Table, listed
+from ..mesh.solid_file import takes_in_others
 from ..output import estimate
 from . import bodies, mirror, obstacles
 from .bodies import MATERIAL, SIZES, Body
@@ -29,6 +32,7 @@ CONTACT = (*OWN, "exponent", "slip_velocity", "regularization", "friction_transi
 SELF_CONTACT = Parameter("self_contact", "word", "auto", "-", "", words=("auto", "on", "off"))
 # of Outline.folding: that of a ring as thick as its inner radius; what closes only at more does not touch itself
 FOLDING = 0.2
+WIDE = 100.0                 # m: a body of a file that is wider may be in other units
 TOUCHING = 1e-9              # of a body's thickness: an overlap up to it is round-off
 
 
@@ -91,6 +95,24 @@ class Scene:
         meshes = {name: hashlib.sha256((self.folder / name).read_bytes()).hexdigest() for name in files}
         harmless = ("title", "script", *parameters.NOT_DECISIVE)
         return {name: value for name, value in self.given.items() if name not in harmless} | {"files": meshes}
+
+    def with_files_in(self, where: Path, tables: dict) -> dict:
+        """The tables of the scene with copies of the bodies' files, made in `where`/body-files: a
+        scene.toml there finds them wherever the folder is moved. A .geo that takes in other files stays
+        beside them: its path is relative to `where`."""
+        listed = []
+        for body, table in zip(self.bodies, tables.get("body", [])):
+            if "file" in table:
+                path = self.folder / table["file"]
+                copy = Path("body-files", f"{body.name}{path.suffix}")
+                if takes_in_others(path):
+                    copy = Path(os.path.relpath(path, where))
+                else:
+                    (where / copy).parent.mkdir(exist_ok=True)
+                    shutil.copyfile(path, where / copy)
+                table = table | {"file": copy.as_posix()}
+            listed.append(table)
+        return tables | ({"body": listed} if listed else {})
 
     @property
     def numbers(self) -> list[str]:
@@ -190,6 +212,7 @@ class Scene:
 
 def read(given: dict, folder: Path, name: str) -> Scene:
     """The scene in a file's tables; mesh files are sought from `folder` on. BadInput for whatever is wrong in it."""
+    folder = folder.absolute()                        # so that files are found from any working folder
     if {"body", "obstacle", "contact", "dimension"} & set(given):
         return _of_tables(given, folder, name)
     if not given:
@@ -214,6 +237,10 @@ def _of_tables(given: dict, folder: Path, name: str) -> Scene:
     all_bodies = bodies.read(listed(given, "body"), given, folder, of)
     if not all_bodies:
         raise BadInput("body: is missing (accepted: one table [[body]] or more)")
+    for key in SIZES:
+        if table.given.get(key) and all(body.mesh for body in all_bodies):
+            raise BadInput(f"{key}: '{brief(given[key])}' changes nothing, as the mesh of every body is "
+                           f"that of its file, with its own element sizes (accepted: 0)")
     rigid = listed(given, "obstacle")
     for k, one in enumerate(rigid, 1):
         _of_the_scene(f"obstacle.{k}", one)
@@ -323,15 +350,25 @@ def _partners(path: str, given, index: dict[str, int]) -> tuple[int, int]:
 def _apart(found: Scene) -> None:
     """BadInput where a body overlaps another one or an obstacle at the start."""
     for (i, body), (j, other) in itertools.combinations(enumerate(found.bodies, 1), 2):
-        _refuse_overlap(f"body.{i}", body, f"body.{j}", other.name, gap_between(body.placed, other.placed))
+        _refuse_overlap(f"body.{i}", body, f"body.{j}", other.name, gap_between(body.placed, other.placed),
+                        _units(found, i, body) or _units(found, j, other))
     for (i, body), (j, other) in itertools.product(enumerate(found.bodies, 1), enumerate(found.obstacles, 1)):
-        _refuse_overlap(f"body.{i}", body, f"obstacle.{j}", other.name, gap_to_obstacle(body.placed, other))
+        _refuse_overlap(f"body.{i}", body, f"obstacle.{j}", other.name, gap_to_obstacle(body.placed, other),
+                        _units(found, i, body))
 
 
-def _refuse_overlap(path: str, body: Body, other_path: str, other: str, gap: float) -> None:
+def _units(found: Scene, i: int, body: Body) -> str:
+    """A hint where body i comes from a file and is very large in m."""
+    width = 2 * body.outline.reach
+    return (f"; its file is {width:.3g} m wide: other units? body.{i}.scale = 0.001 takes them as mm"
+            if width > WIDE and "file" in found.given["body"][i - 1] else "")
+
+
+def _refuse_overlap(path: str, body: Body, other_path: str, other: str, gap: float, hint: str = "") -> None:
     if gap < -TOUCHING * body.outline.half_thickness:
         raise BadInput(f"{path}.position: '{body.name}' overlaps '{other}' ({other_path}) by {-gap:.3g} m at the start "
-                       f"(accepted: apart or touching{'' if other_path.startswith('body') else ', on the side that its normal points to'})")
+                       f"(accepted: apart or touching{'' if other_path.startswith('body') else ', on the side that its normal points to'})"
+                       f"{hint}")
 
 
 def gap_between(first: Shape, second: Shape) -> float:
