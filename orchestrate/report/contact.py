@@ -1,6 +1,6 @@
 """The contact of a run along the outlines of its bodies: pressure at instants and over time, with friction where it sticks and slides.
 
-The pressure of every panel is the projected one (projected_pressure of fields/contact.csv): that of single points alternates.
+The pressure of every panel is the projected one (projected_pressure of fields/contact.csv).
 """
 
 from pathlib import Path
