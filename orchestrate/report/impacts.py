@@ -39,9 +39,9 @@ def several(table: np.recarray) -> list[np.recarray]:
 
 def draw(table: np.recarray, names: list[str], rigid: list[str]) -> plt.Figure | None:
     """Restitution, across and along the partner, over the impacts of each meeting, and below them the speeds before each; None where there
-    are not several. `names`: of the bodies; `rigid`: of the obstacles."""
+    are not several, or none has a restitution. `names`: of the bodies; `rigid`: of the obstacles."""
     impacts = several(table)
-    if not impacts:
+    if not any(np.isfinite(rows[name]).any() for rows in impacts for name in ("restitution", "restitution_tangential")):
         return None
     figure, (top, below) = plt.subplots(2, 1, figsize=(6.4, 5), sharex=True)
     for colour, rows in zip(COLOURS, impacts):
