@@ -73,6 +73,48 @@ def test_no_contact_has_no_pressure(tmp_path):
     assert result.summary["max_pressure"] == 0 and result.summary["max_pressure_time"] is None and result.summary["max_pressure_x"] is None
 
 
+@pytest.mark.parametrize("which, bodies", [("disc", 1), ("block", 2)])
+def test_cells_have_the_number_of_their_body(ran, which, bodies):
+    """The cells of a snapshot have the body's number from 1 as integers: those of body 2, the block, are below the disc's."""
+    _, path = vtu.series(ran(which).folder / "fields.pvd")[0]
+    piece = xml.parse(path).getroot().find("UnstructuredGrid/Piece")
+    array = piece.find("CellData/DataArray[@Name='body']")
+    numbers, points = np.array(array.text.split()), vtu._parts(path)[0]
+    cells = vtu._parts(path)[2]
+    assert array.get("type") == "Int32" and len(numbers) == len(cells) and set(numbers) == {str(k + 1) for k in range(bodies)}
+    heights = [points[cells[numbers == str(k + 1)], 1] for k in range(bodies)]
+    assert bodies == 1 or heights[1].max() < heights[0].min() + 1e-6
+
+
+@pytest.mark.parametrize("which", SCENES)
+def test_every_row_bears_load(ran, which):
+    """contact.csv has a row for every point under load, and no other."""
+    table = pd.read_csv(ran(which).folder / "fields/contact.csv")
+    assert len(table) > 10 and (table.pressure > 0).all()
+
+
+@pytest.mark.parametrize("which", ["disc", "whole disc", "revolution", "ball", "oblique ball", "block"])
+def test_panels_show_the_same_pressure(ran, which):
+    """The largest pressure of an instant is the same in the profiles, in the picture over time, and in the last panel."""
+    result = ran(which)
+    half = figures.is_half(result.scene)
+    ball = result.scene if half and result.scene["script"] in figures.BODY else None
+    figure = contact.draw(contact.read(result.folder), body_names(result.scene) if bodies.are_several(result.scene) else ["body"],
+                          half, np.array([]), ball, result.scene.get("symmetry", "full"), result.history)
+    profiles = next(axes for axes in figure.axes if axes.get_ylabel() == contact.PRESSURE)
+    picture = next(axes for axes in figure.axes if axes.collections and "time" in axes.get_xlabel()).collections[0]
+    edges = picture.get_coordinates()[0, :, 0]
+    largest = next(axes for axes in figure.axes if "largest pressure" in axes.get_ylabel()).lines[0]
+    assert len(profiles.lines) > 4
+    for line in profiles.lines:
+        t = float(line.get_label().removesuffix(" ms"))
+        row = int(np.argmin(np.abs(largest.get_xdata() - t)))
+        assert edges[row] < largest.get_xdata()[row] < edges[row + 1]
+        shown = np.nanmax(line.get_ydata()), np.ma.max(picture.get_array()[:, row]), largest.get_ydata()[row]
+        assert shown == pytest.approx([shown[0]] * 3, rel=1e-9), (t, shown)
+    plt.close(figure)
+
+
 @pytest.mark.parametrize("which", ["disc", "whole disc", "ball", "block"])
 def test_points_for_paraview(ran, which):
     """fields/contact.pvd lists a file for every snapshot of fields.pvd at the same time; it has the points and numbers of contact.csv there, displaced to
@@ -119,7 +161,7 @@ def cloud(bodies: int, turn: float) -> np.recarray:
     across, up = 1e-3 * radius * np.cos(angle), 1e-3 * radius * np.sin(angle)
     x, y = across * np.cos(turn), across * np.sin(turn)
     one = pd.DataFrame({"s": 1e-3 * radius, "X": x, "Y": y, "Z": up, "x": x, "y": y, "z": up, "weight": np.pi * 1e-6 / 400, "pressure": 1e6 * np.sqrt(1 - radius**2),
-                        "projected_pressure": 0.0, "shear": 1.0, "shear_z": 0.0, "slip_velocity": 0.1, "slip_velocity_z": 0.0, "slides": (radius > 0.7).astype(int), "partner": -1})
+                        "projected_pressure": 1e6 * np.sqrt(1 - radius**2), "shear": 1.0, "shear_z": 0.0, "slip_velocity": 0.1, "slip_velocity_z": 0.0, "slides": (radius > 0.7).astype(int), "partner": -1})
     return pd.concat([one.assign(t=t, body=body) for t in (1e-3, 2e-3) for body in range(1, bodies + 1)]).to_records(index=False)
 
 

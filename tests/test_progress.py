@@ -5,6 +5,7 @@ import subprocess
 import sys
 import types
 
+import numpy as np
 import pytest
 
 from orchestrate import __main__ as program
@@ -79,16 +80,21 @@ def test_a_study_says_which_of_how_many(fake, shown, tmp_path):
     assert any(0 < share < 0.5 and words.endswith("1 of 3 done") for share, words in bar.seen)
 
 
-def told_of(name: str, monkeypatch, seconds: float, at: freefem.At, given: dict | None = None, mesh_file=None) -> list[str]:
-    """What is said of a run that has come `at` there in so many seconds, one step before them."""
-    said, clock = [], iter((0.0, seconds, 2 * seconds))
+def told_of(name: str, monkeypatch, seen: list[tuple[float, freefem.At]], given: dict | None = None, mesh_file=None) -> list[str]:
+    """What is said of a run that reports these, each so many seconds after it began."""
+    said, clock = [], iter(seconds for seconds, _ in seen)
     monkeypatch.setattr(told.time, "monotonic", lambda: next(clock))
     line = progress.Line(name, {"main run": 1.0})
     line.say = said.append
     run = told.Told(line, scene.load(name).override(given or {}), mesh_file, "main run", 1)
-    for each in (at._replace(share=at.share / 1000, steps=1), at, at._replace(share=2 * at.share)):
-        run.show(each)
+    for _, at in seen:
+        run.show(at)
     return said
+
+
+def steadily(seconds: float, at: freefem.At) -> list[tuple[float, freefem.At]]:
+    """Reports of a run that has come `at` there in so many seconds, one step before them, and goes on at that pace."""
+    return [(0.0, at._replace(share=at.share / at.steps, steps=1)), (seconds, at), (2 * seconds, at._replace(share=2 * at.share, steps=2 * at.steps))]
 
 
 @pytest.mark.parametrize("name, given, at, words", [
@@ -101,9 +107,41 @@ def told_of(name: str, monkeypatch, seconds: float, at: freefem.At, given: dict 
 ])
 def test_a_long_run_says_so_and_why(monkeypatch, name, given, at, words):
     """A run that will take longer than a minute says so once, after its first seconds, with the entry that makes it long."""
-    said = told_of(name, monkeypatch, 6.0, at, given)
-    assert len(said) == 1 and said[0].startswith(f"{name}: about 2 min, for some {at.steps / at.share:.0f} steps of {at.unknowns} unknowns: {words}")
-    assert not told_of(name, monkeypatch, 2.5, at, given)
+    sentence, = told_of(name, monkeypatch, steadily(6.0, at), given)
+    assert sentence.startswith(f"{name}: about 2 min, for about {at.steps / at.share:.0f} steps of {at.unknowns} unknowns: {words}")
+    assert not told_of(name, monkeypatch, steadily(2.5, at), given)
+
+
+def reports(shares: list[float], steps: list[int]) -> list[tuple[float, freefem.At]]:
+    """Reports every second: the share that seemed done, and the steps so far."""
+    return [(float(k), freefem.At(share, 1e-4, count, 5000)) for k, (share, count) in enumerate(zip(shares, steps))]
+
+
+def ranges(sentence: str) -> list[tuple[float, float]]:
+    """The minutes and the steps of a forecast, at least and at most."""
+    words = re.search(r": (.*) min, for (.*) steps of 5000 unknowns", sentence).groups()
+    numbers = [[float(number) for number in re.findall(r"[0-9.]+", each)] for each in words]
+    return [(each[0], np.inf if "at least" in text else each[-1]) for each, text in zip(numbers, words)]
+
+
+@pytest.mark.parametrize("pace", ["steady", "slower", "recedes"])
+def test_a_forecast_is_renewed_by_the_pace_of_the_run(monkeypatch, pace):
+    """A run of 5 min that seems to take 2 at first: the sentences are few, each of a range beyond the one before, and the last contains, to a fifth, what
+    it takes in the end; one that goes on as it began has one sentence. Where the end recedes no upper bound is claimed."""
+    seconds = np.arange(300)
+    first = 0.4 / 48 * seconds[:48]
+    later = {"steady": 0.4 / 48 * seconds[48:120], "slower": 0.4 + 0.6 * (seconds[48:] - 47) / 253, "recedes": np.full(252, 0.4)}[pace]
+    shares = np.minimum(0.99, np.concatenate([first, later]))
+    said = told_of("disc-normal", monkeypatch, reports(shares.tolist(), (10 * seconds[:len(shares)] + 1).tolist()))
+    found = [ranges(sentence) for sentence in said]
+    assert len(said) == 1 if pace == "steady" else 2 <= len(said) <= 4
+    assert all(later[0][0] > 0.9 * before[0][0] for before, later in zip(found, found[1:]))
+    assert not told_of("disc-normal", monkeypatch, reports((1 - shares).tolist(), range(1, len(shares) + 1)))    # the end only recedes
+    minutes, steps = len(shares) / 60, 10 * len(shares)
+    if pace == "recedes":
+        assert any(high == np.inf for (_, high), _ in found)
+    else:
+        assert all(0.8 * low <= total <= 1.25 * high for (low, high), total in zip(found[-1], (minutes, steps)))
 
 
 @pytest.mark.parametrize("script, flags, apart", [("disc-plane", {"accuracy": 0.003}, 1), ("disc-block", {"accuracy": 0.01, "end_time": 3e-3}, 2)])

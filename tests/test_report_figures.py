@@ -1,6 +1,7 @@
 """What figures must say: where time begins, when the contact ends, the paper's number, a scale; and the cut of a body in three dimensions."""
 
 import itertools
+import re
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -9,8 +10,10 @@ import pandas as pd
 import pytest
 from matplotlib.transforms import Bbox
 
+from orchestrate.input.parameters import ROOT
 from orchestrate.output import results, vtu
 from orchestrate.report import bodies, compare, figures, impacts
+from orchestrate.report.figures import plt
 from orchestrate.sweeps import sweep, sweep_figures
 from triangles import areas
 
@@ -219,3 +222,28 @@ def test_cut_of_a_whole_body(low, high, count):
 def test_a_body_beside_the_plane_has_no_cut():
     solid = block(0.5, 1, 1)
     assert len(vtu._cut(solid, np.zeros(len(solid.points), bool)).triangles) == 0
+
+
+@pytest.mark.parametrize("restitution, drawn", [(np.nan, False), (0.8, True)])
+def test_no_legend_without_names(recwarn, restitution, drawn):
+    """Bounces of which none has a restitution, as between a table and a plate that presses, have no picture; nothing warns."""
+    columns = {"body": 1, "partner": -1, "start": [0.0, 1e-3], "end": [5e-4, 2e-3], "impulse": [1.0, 0.8], "approach": [1.2, 1.0],
+               "separation": [0.1, 0.1], "slip_before": [0.0, 0.0], "restitution": restitution, "restitution_tangential": np.nan}
+    figure = impacts.draw(pd.DataFrame(columns).to_records(index=False), ["block"], ["table"])
+    assert (figure is not None) == drawn and not recwarn.list
+    plt.close("all")
+
+
+def test_a_legend_takes_what_has_a_name():
+    """Pictures call no legend of a panel but by figures.legend(), which leaves it out where nothing has a name, or with its own artists."""
+    calls = [line.strip() for path in (ROOT / "orchestrate").rglob("*.py") for line in path.read_text().splitlines()
+             if re.search(r"\.legend\(", line)]
+    assert len(calls) > 3 and all(re.search(r"legend\((\*|handles=|shown\()", call) for call in calls), calls
+    figure, axes = plt.subplots()
+    axes.plot([0, 1])
+    figures.legend(axes)
+    assert axes.get_legend() is None
+    axes.plot([1, 0], label="a line")
+    figures.legend(axes)
+    assert labels(axes) == ["a line"]
+    plt.close(figure)

@@ -341,15 +341,67 @@ def test_trend_counts_rises_beyond_the_error_bar():
     """A rise counts as one where it exceeds the error bars of both its ends, added in squares."""
     said = sweep_figures.trend(rows_over_speed([5.0, 4.8, 4.81, 4.7, 4.9, 4.6]), "speed", "contact_time", "")
     assert "falls from 5 to 4.6 ms; of 5 steps 2 rise, 1 of them by more than their error bar" in said and "largest by 0.2 ms" in said
-    assert "0 of them by more" in sweep_figures.trend(rows_over_speed([5, 4.8, 4.9, 4.7, 4.6], 0.2), "speed", "contact_time", "")
+    assert "0 of them by more" in sweep_figures.trend(rows_over_speed([5, 4.8, 4.9, 4.7, 4.6], 0.1), "speed", "contact_time", "")
     assert "0 rise" in sweep_figures.trend(rows_over_speed([5, 4.9, 4.8]), "speed", "contact_time", "")
     failed = rows_over_speed([5, 4.9, 4.8]).assign(exit=[0, 0, 12])
     assert "too few points" in sweep_figures.trend(failed, "speed", "contact_time", "")
 
 
+@pytest.mark.parametrize("values, error, course", [
+    ([5, 4.8, 4.81, 4.7, 4.9, 4.6], 0.01, sweep_figures.FALLS), ([4.6, 4.9, 4.7, 5], 0.01, sweep_figures.RISES),
+    ([5, 4.4, 4.3, 4.5, 4.9], 0.01, sweep_figures.MINIMUM), ([4.3, 4.9, 5, 4.8, 4.4], 0.01, sweep_figures.MAXIMUM),
+    ([5, 4.4, 4.3, 4.5, 4.9], np.nan, sweep_figures.MINIMUM), ([5, 4.6, 4.4, 4.3, 4.35], 0.02, sweep_figures.FALLS),
+    ([4.5, 5, 4.2, 4.6], 0.01, sweep_figures.UNEVEN), ([5, 4.8, 4.9, 4.7, 4.6], 0.2, sweep_figures.LEVEL)])
+def test_a_trend_is_the_course_of_the_curve(values, error, course):
+    """A curve falls where it ends at its lowest and begins at its highest value, beyond twice the error
+    bars; a minimum is named, with its place. Turned upside down, the curve does the opposite."""
+    there, opposite = rows_over_speed(values, error), {sweep_figures.FALLS: sweep_figures.RISES,
+                                                       sweep_figures.MINIMUM: sweep_figures.MAXIMUM}
+    found = sweep_figures.steps_against(there, "speed", "contact_time")
+    assert found.course == course and found.falls == (course == sweep_figures.FALLS)
+    said = sweep_figures.trend(there, "speed", "contact_time", "")
+    assert f"contact time over speed: {course}" in said
+    assert ("4.3 at speed = 3 m/s" in said) == (course == sweep_figures.MINIMUM)
+    turned = sweep_figures.steps_against(rows_over_speed([10 - value for value in values], error), "speed", "contact_time")
+    assert turned.course == (opposite | {other: one for one, other in opposite.items()}).get(course, course)
+
+
+def test_table_and_figure_have_the_same_error_bars(fake, tmp_path, monkeypatch):
+    """The error bars that are printed in the table are those that the figure draws, curve by curve."""
+    text = DRAWN.replace("[figure]", "[refine]\naccuracy = 1e-3\n[figure]").replace("[product]", "accuracy = 5e-3\n[product]")
+    wanted = sweep.load(str(write(tmp_path, text)))
+    rows = sweep.table(wanted, tmp_path / "out").assign(contact_time_error=[1e-6, 4e-5, 6e-5, 2e-6, 3e-6, 5e-5])
+    said = sweep.report(wanted, rows, tmp_path / "out").splitlines()
+    column = [name.strip() for name in next(line for line in said if line.startswith("|")).split("|")].index("contact_time")
+    printed = [float(line.split("|")[column].split("±")[1]) for line in said if line.startswith("|") and "±" in line]
+    drawn, bar = {}, plt.Axes.errorbar
+    monkeypatch.setattr(plt.Axes, "errorbar", lambda axes, x, y, error, **more: drawn.update({more["label"]: 1e-3 * error})
+                        or bar(axes, x, y, error, **more))
+    sweep_figures.draw(wanted, rows, tmp_path / "out")
+    for nu, words in ((0.3, "ν = 0.3"), (0.4, "ν = 0.4")):
+        assert np.array(printed)[rows.nu == nu] == pytest.approx(drawn[words], rel=0.03)
+    assert min(printed) > 2e-5                     # of no point what two runs have alike by chance
+
+
+@pytest.mark.parametrize("given, stars", [
+    ("law = 'svk'\n[product]\nspeed = [4, 8]", 1), ("law = 'neohookean'\n[product]\nspeed = [4, 8]", 0),
+    ("law = 'svk'\n[product]\nspeed = [4, 8]\nlaw = ['neohookean', 'svk']", 1), ("young = 5e6\n[product]\nspeed = [4, 8]", 0),
+    ("viscosity = 10\n[product]\nspeed = [4, 8]", 0)])
+def test_the_papers_star_stands_in_studies_of_its_scene(fake, tmp_path, given, stars):
+    """The paper's number is drawn where one of the curves is of its law and scene, and nowhere else."""
+    by = "by = 'law'\n" if "'neohookean', 'svk'" in given else ""
+    given = given.replace("law = 'svk'\n", "") if by else given
+    text = f"[set]\n{given}\n[figure]\nx = 'speed'\ny = 'contact_time'\n{by}"
+    wanted = sweep.load(str(write(tmp_path, text)))
+    rows = pd.DataFrame(wanted.points).assign(exit=0, contact_time=4.7e-3)
+    figure = sweep_figures._lines(wanted, rows, tmp_path)
+    assert sum(line.get_marker() == "*" for line in figure.axes[0].lines) == stars
+    plt.close(figure)
+
+
 def test_trend_does_not_trust_one_small_difference():
     """A point whose two runs agree by chance has the error bar of its curve."""
-    rows = rows_over_speed([5.0, 4.8, 4.9, 4.7, 4.6]).assign(contact_time_error=[2e-4, 0, 0, 2e-4, 2e-4])
+    rows = rows_over_speed([5.0, 4.8, 4.9, 4.7, 4.6]).assign(contact_time_error=[1e-4, 0, 0, 1e-4, 1e-4])
     assert "1 rise, 0 of them by more" in sweep_figures.trend(rows, "speed", "contact_time", "")
 
 

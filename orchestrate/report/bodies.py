@@ -14,7 +14,7 @@ from ..scenes.obstacles import Obstacle
 from ..input.parameters import Value
 from ..output.results import body_names, mechanical_energy, suffixes
 from .figures import (BAND, BLACK, BLUE, COLOURED, GREEN, GREY, ORANGE, ORIGIN, PURPLE, SHAPES, VISCOUS, Body, amid, as_written,
-                      balance_error, deformed, end_of_contact, evenly, flight, friction_force, goes_along, is_half, least, material,
+                      balance_error, deformed, end_of_contact, evenly, flight, friction_force, goes_along, is_half, least, legend, material,
                       over_time, per_metre, plt, rolling, side_by_side)
 
 ALONE = ("disc-plane", "ball-axisymmetric", "ball-plane")     # scripts of one body on the plane
@@ -46,13 +46,6 @@ def title(scene: dict[str, Value]) -> str:
 def ends(items: list, between=None) -> list:
     """The first and the last of many, `between` in the place of the others where it is given."""
     return items if len(items) <= 2 * NAMED else [*items[:NAMED], *[between] * (between is not None), *items[-NAMED:]]
-
-
-def legend(axes: plt.Axes, ncols: int = 3) -> None:
-    """What the lines are, above the panel, where they have names."""
-    lines, words = axes.get_legend_handles_labels()
-    if words:
-        axes.legend(ends(lines), ends(words), **ABOVE, ncols=ncols)
 
 
 def draw(history: dict[str, np.ndarray], contact: dict[str, np.ndarray], scene: dict[str, Value],
@@ -130,7 +123,7 @@ def energies(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fig
         axes.set_ylabel(unit)
     over_time([together, balance, *own], history, scene)
     for axes in (*own, together):
-        legend(axes, ncols=2 if axes is together and 1 < len(bodies) < 4 else 3)
+        legend(axes, ends, **ABOVE, ncols=2 if axes is together and 1 < len(bodies) < 4 else 3)
     balance_error(balance, history, largest or 1.0)              # not of the total alone: bodies at rest under gravity have none
     balance.set_ylabel("|balance| /\nlargest energy")
     return figure
@@ -150,7 +143,7 @@ def velocities(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.F
                       label=called if len(bodies) > 1 else None)
         axes.set_ylabel(components[name])
     over_time(grid, history, scene)
-    legend(grid[0])
+    legend(grid[0], ends, **ABOVE, ncols=3)
     return figure
 
 
@@ -174,7 +167,7 @@ def forces(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figur
         axes.set_ylabel(words)
     end_of_contact(grid, history, scene)
     if len(columns) > 1:               # no forces on bodies where nothing touched
-        legend(grid[-1])
+        legend(grid[-1], ends, **ABOVE, ncols=3)
     return figure
 
 

@@ -81,7 +81,7 @@ def draw(results: dict[str, RunResult], path: Path) -> None:
         drag.set_ylabel(("acceleration by friction [10³ m/s²]" if mixed else f"friction force [kN{per}]") if rubs
                         else "largest penetration [mm]")
         energy.set(ylabel="energy over that at the start" if mixed else f"energy [J{per}]", ylim=(0, None), xlabel="time [ms]")
-        stated = any(each.scene.get("law") == "svk" and numbers_of_the_paper(each.scene, "contact_time") for each in results.values())
+        stated = any(numbers_of_the_paper(each.scene, "contact_time") for each in results.values())
         _key(force, {"end of the contact": ":", "by the paper": "-."} if stated else {"end of the contact": ":"})
         _key(energy, {"total": "--", "elastic": "-"})
         velocity.set(ylabel="velocity [m/s]", xlabel="time [ms]")
@@ -96,8 +96,7 @@ def _contact(axes: plt.Axes, result: RunResult, colour: str) -> None:
     if not (when := touched(result.summary)):
         return
     axes.axvline(1e3 * when[1], color=colour, linestyle=":", linewidth=0.9)
-    # the law of all of the paper's
-    for _, seconds, _ in numbers_of_the_paper(result.scene, "contact_time") if result.scene.get("law") == "svk" else []:
+    for _, seconds, _ in numbers_of_the_paper(result.scene, "contact_time"):
         axes.axvline(1e3 * (when[0] + seconds), color=colour, linestyle="-.", linewidth=0.9)
 
 

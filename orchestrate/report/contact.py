@@ -1,4 +1,7 @@
-"""The contact of a run along the outlines of its bodies: pressure at instants and over time, with friction where it sticks and slides."""
+"""The contact of a run along the outlines of its bodies: pressure at instants and over time, with friction where it sticks and slides.
+
+The pressure of every panel is the projected one (projected_pressure of fields/contact.csv).
+"""
 
 from pathlib import Path
 
@@ -8,7 +11,7 @@ from matplotlib.colors import ListedColormap
 
 from ..input.parameters import Value
 from ..output.results import read_table
-from .figures import BLACK, BLUE, ORANGE, STICKS, evenly, plt
+from .figures import BLACK, BLUE, ORANGE, STICKS, evenly, legend, plt
 
 INSTANTS = 6                     # profiles at most
 SLOW = 0.03                      # speed over sqrt(E/rho) up to which the pressure of a ball is shown beside Hertz'
@@ -24,27 +27,24 @@ ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 1), "ncols": 3, "fontsiz
 COLUMNS = ["t", "body", "partner", "s", "X", "Y", "x", "y", "weight", "pressure", "shear", "slip_velocity", "slides", "projected_pressure"]
 
 
-def read(folder: Path, beside: bool = False) -> np.recarray:
-    """fields/contact.csv of the run in `folder`: a row for every point of an outline that bears load, at the instants of the snapshots;
-    also for those `beside`, where only the projected pressure is not 0.
+def read(folder: Path) -> np.recarray:
+    """fields/contact.csv of the run in `folder`: a row for every point of an outline that bears load, at the instants of the snapshots.
 
     Columns and units: docs/results.md; in three dimensions weight is in m2. Unreadable where it is not such a table.
     """
-    table = read_table(folder / "fields/contact.csv", COLUMNS)
-    return table if beside else table[table.pressure > 0]
+    return read_table(folder / "fields/contact.csv", COLUMNS)
 
 
 def draw(table: np.recarray, names: list[str], half: bool, free: np.ndarray, ball: dict[str, Value] | None = None, symmetry: str = "full",
          history: dict[str, np.ndarray] | None = None) -> plt.Figure | None:
     """A row of panels a body: pressure over the outline at some instants, over outline and time, with friction where it sticks and slides,
     and with the `history` half-width and largest pressure; None without contact. Of two bodies that touch nothing but each other the first
-    shows all. `table`: also of the points beside. `free`: times [s] at which nothing is touched.
+    shows all. `free`: times [s] at which nothing is touched.
 
     Half a body is drawn with its mirror image. `ball`: the scene where the body is a ball that nothing turns: all is drawn over the
     distance from its axis. Of other bodies in three dimensions: of one the points nearest to the plane z = 0, of several all over the
     distance from the first touch; below them the patch at some instants. `symmetry` (quarter, half, full): what of a body in three
     dimensions was computed."""
-    around, table = table, table[table.pressure > 0]
     if not len(table):
         return None
     bodies = [int(body) for body in np.unique(table.body)]
@@ -63,10 +63,9 @@ def draw(table: np.recarray, names: list[str], half: bool, free: np.ndarray, bal
     for k, body in enumerate(bodies):
         points, panels = table[table.body == body], dict(zip(shown, rows[k]))
         own, words, states = _radial(points, ball) if ball or solid and len(names) > 1 else _section(points, half)
+        _profiles(panels["profiles"], own, words, "" if solid and words == ALONG else "-")
         if ball:
-            _over_radius(panels["profiles"], points, ball)
-        else:
-            _profiles(panels["profiles"], own if solid else _section(around[around.body == body], half)[0], words, "" if solid else "-")
+            _beside_hertz(panels["profiles"], points, ball)
         picture = _over_time(panels["pressure"], own, instants, 1e-6 * own.pressure, cmap="viridis", vmin=0)
         figure.colorbar(picture, cax=panels["pressure"].inset_axes((1.04, 0, 0.06, 1)), label=PRESSURE)
         if rubs:
@@ -75,7 +74,8 @@ def draw(table: np.recarray, names: list[str], half: bool, free: np.ndarray, bal
         for axes in [panels[name] for name in ("pressure", "slip") if name in panels]:
             axes.set(ylabel=f"{words} [mm]", xlabel="time [ms]", ylim=(0, None) if words != ALONG else (None, None))
         if "history" in shown:
-            _history(panels["history"], history, f"_{body}" if len(names) > 1 else "", "contact radius" if ball else "half-width")
+            of, width = f"_{body}" if len(names) > 1 else "", "contact radius" if ball else "half-width"
+            _history(panels["history"], history, own, instants, of, width)
         if len(names) > 1:
             panels["pressure"].set_title(f"{names[0]} on {names[1]}" if alone else names[body - 1])
         if maps:
@@ -88,13 +88,12 @@ def _columns(**columns: np.ndarray) -> np.recarray:
 
 
 def _section(points: np.recarray, half: bool) -> tuple[np.recarray, str, dict[str, str]]:
-    """Along the outline: t, s [m], pressure, projected_pressure, state (SLIP: -1, 0, 1); in three dimensions near the plane z = 0."""
+    """Along the outline: t, s [m], pressure, state (SLIP: -1, 0, 1); in three dimensions near the plane z = 0."""
     if "Z" in points.dtype.names:
         away = np.abs(points.Z)
         points = points[away <= max(0.15 * away.max(), away.min())]
     state, sides = np.where(points.slides > 0, np.sign(points.slip_velocity), 0.0), (1, -1) if half else (1,)
-    own = np.concatenate([_columns(t=points.t, s=side * points.s, pressure=points.pressure, projected_pressure=points.projected_pressure,
-                                   state=side * state)
+    own = np.concatenate([_columns(t=points.t, s=side * points.s, pressure=points.projected_pressure, state=side * state)
                           for side in sides]).view(np.recarray)
     # twice only on the axis, and where an outline meets itself
     once = np.unique(np.stack([own.t, own.s]), axis=1, return_index=True)[1]
@@ -112,14 +111,14 @@ def _radial(points: np.recarray, ball: dict[str, Value] | None) -> tuple[np.reca
         away, words, states, slip = np.abs(points.s), "distance from the first touch", SLIDES, np.ones(len(points))
     state = np.where(points.slides > 0, np.sign(slip), 0.0)
     if not solid:
-        return _columns(t=points.t, s=away, pressure=points.pressure, state=state), words, states
+        return _columns(t=points.t, s=away, pressure=points.projected_pressure, state=state), words, states
     _, every = np.unique(np.stack([points.X, points.Y, points.Z]), axis=1, return_index=True)
     count = int(np.clip(np.sqrt(len(every)), 4, 40))
     width = 1.0001 * away.max() / count
     ring = (away / width).astype(int)
     area = np.bincount(ring[every], points.weight[every], count)
     times, instant = np.unique(points.t, return_inverse=True)
-    at, load = instant * count + ring, points.pressure * points.weight
+    at, load = instant * count + ring, points.projected_pressure * points.weight
     total, turned, slid = (np.bincount(at, weights) for weights in (load, load * state, load * (points.slides > 0)))
     found = np.unique(at)
     own = _columns(t=times[found // count], s=(found % count + 0.5) * width, pressure=total[found] / area[found % count],
@@ -127,13 +126,15 @@ def _radial(points: np.recarray, ball: dict[str, Value] | None) -> tuple[np.reca
     return own, words, states
 
 
-def _history(axes: plt.Axes, history: dict[str, np.ndarray], of: str, width: str) -> None:
-    """Half-width, in these words, [mm] and, on the right, largest pressure [MPa] of the contact over time; in the flight neither."""
-    touches = history[f"contact_half_width{of}"] > 0
-    other = axes.twinx()
-    for where, name, scale, colour, label in ((axes, "contact_half_width", 1e3, BLUE, f"{width} [mm]"),
-                                              (other, "max_pressure", 1e-6, ORANGE, "largest pressure [MPa]")):
-        where.plot(1e3 * history["t"], np.where(touches, scale * history[name + of], np.nan), color=colour, linewidth=1)
+def _history(axes: plt.Axes, history: dict[str, np.ndarray], own: np.recarray, instants: np.ndarray, of: str, width: str) -> None:
+    """Half-width of the contact, in these words, [mm] over time, and on the right its largest pressure [MPa] at the instants [s], as the
+    other panels show it; in the flight neither."""
+    half_width, other = history[f"contact_half_width{of}"], axes.twinx()
+    largest = np.full(len(instants), np.nan)
+    np.fmax.at(largest, np.searchsorted(instants, own.t), 1e-6 * own.pressure)
+    for where, t, values, colour, label in ((axes, history["t"], np.where(half_width > 0, 1e3 * half_width, np.nan), BLUE, f"{width} [mm]"),
+                                            (other, instants, largest, ORANGE, "largest pressure [MPa]")):
+        where.plot(1e3 * t, values, color=colour, linewidth=1)
         where.set_ylim(0, None)
         where.set_ylabel(label, color=colour)
         where.tick_params(axis="y", colors=colour)
@@ -145,7 +146,8 @@ def _maps(figure: plt.Figure, points: np.recarray, rubs: bool, symmetry: str, se
     """The points under load at some instants, each a square of its area: coloured by pressure and, below, where they stick and slide. Of
     one body on the plane y = 0 at their places x, z, else in the reference along the two main directions of all of them."""
     mirrored = {"quarter": ("X", "Z"), "half": ("Z",)}.get(symmetry, ())
-    columns = {name: points[name] for name in ("t", "X", "Y", "Z", "x", "y", "z", "pressure")}
+    columns = {name: points[name] for name in ("t", "X", "Y", "Z", "x", "y", "z")}
+    columns["pressure"] = points.projected_pressure
     columns["area"] = points.weight / 2 ** len(mirrored)
     columns["state"] = np.where(points.slides > 0, 1.0 if several else np.sign(points.slip_velocity), 0.0)
     for axis in mirrored:
@@ -199,35 +201,27 @@ def _instants(table: np.recarray, most: int = INSTANTS) -> list[tuple[float, np.
 
 
 def _profiles(axes: plt.Axes, own: np.recarray, words: str, line: str) -> None:
-    """Pressure [MPa] over s [mm], which is the distance in these words, at up to INSTANTS times: along a line its projection on the
-    outline's own functions, where it is more than nothing; without a line the points."""
+    """Pressure [MPa] over s [mm], which is the distance in these words, at up to INSTANTS times: along a line, broken between contacts that
+    are far from each other; without a line the points."""
     for t, now, colour in _instants(own):
         now = now[np.argsort(now.s, kind="stable")]
-        values = now.projected_pressure if line else now.pressure
-        if line:
-            seen = np.abs(values) > 0.01 * values.max()
-            gap = _between(now.s[seen])[0]                              # where a line is broken
-            s, values = np.append(now.s[seen], gap), np.append(values[seen], np.full(len(gap), np.nan))
-            order = np.argsort(s, kind="stable")
-            axes.plot(1e3 * s[order], 1e-6 * values[order], color=colour, linestyle=line, marker="", linewidth=1.1,
-                      label=f"{1e3 * t:.3g} ms")
-        else:
-            axes.plot(1e3 * now.s, 1e-6 * values, color=colour, linestyle="", marker=".", markersize=2.5, label=f"{1e3 * t:.3g} ms")
+        gap = _between(now.s)[0] if line else []                        # where a line is broken
+        s, values = np.append(now.s, gap), np.append(now.pressure, np.full(len(gap), np.nan))
+        order = np.argsort(s, kind="stable")
+        axes.plot(1e3 * s[order], 1e-6 * values[order], color=colour, linestyle=line, marker="" if line else ".", markersize=2.5,
+                  linewidth=1.1, label=f"{1e3 * t:.3g} ms")
     axes.set(xlabel=f"{words} [mm]", ylabel=PRESSURE, ylim=(0, None))
-    axes.legend(**ABOVE)
+    legend(axes, **ABOVE)
 
 
-def _over_radius(axes: plt.Axes, table: np.recarray, ball: dict[str, Value]) -> None:
-    """Pressure [MPa] at the points over their present distance [mm] from the axis, at up to INSTANTS times; in a slow impact Hertz' of the
-    same force."""
-    away = np.hypot(table.x, table.z) if "z" in table.dtype.names else table.x
-    _profiles(axes, _columns(t=table.t, s=away, pressure=table.pressure), "distance from the axis", "")
+def _beside_hertz(axes: plt.Axes, points: np.recarray, ball: dict[str, Value]) -> None:
+    """In a slow impact of a ball Hertz' pressure of the same force at each instant of the profiles."""
     if ball["speed"] <= SLOW * np.sqrt(ball["young"] / ball["density"]):
-        for _, now, colour in _instants(table):
+        for _, now, colour in _instants(points):
             r, pressure = hertz((now.pressure * now.weight).sum(), ball)
             axes.plot(1e3 * r, 1e-6 * pressure, color=colour, linewidth=0.9)
         axes.plot([], [], color=BLACK, linewidth=0.9, label="Hertz, same force")
-        axes.legend(**ABOVE)
+        legend(axes, **ABOVE)
     axes.set_xlim(0, None)
 
 

@@ -37,11 +37,11 @@ def draw(folder: Path) -> list[Path]:
     with plt.rc_context(STYLE):
         drawn = bodies.draw(history, contact, scene, snapshots)
         if (folder / "fields/contact.csv").exists():
-            table = contacts.read(folder, beside=True)
+            table = contacts.read(folder)
             ball, free = scene if scene.get("script") in BODY and is_half(scene) else None, history["t"][~touches]
             drawn["contact"] = contacts.draw(table, names, is_half(scene), free, ball, scene.get("symmetry", "full"), history)
             if snapshots and "Z" in table.dtype.names:
-                drawn["solid"] = solid.draw(snapshots, table[table.pressure > 0], scene)
+                drawn["solid"] = solid.draw(snapshots, table, scene)
         if (folder / "contacts.csv").exists():
             bounces, rigid = impacts.read(folder), [as_written(one["name"]) for one in scene.get("obstacle", [])] or ["plane"]
             drawn["bounces"] = impacts.draw(bounces, names, rigid)

@@ -169,21 +169,32 @@ def over_time(panels: list[plt.Axes], history: dict[str, np.ndarray], scene: dic
 def published(axes: plt.Axes, scene: dict[str, Value]) -> None:
     """The paper's contact time of the same impact, from the first touch on, where it states one, as a line with a name."""
     begin, _ = scene.get("touched") or (None, None)
-    for _, seconds, words in numbers_of_the_paper(scene, "contact_time") if begin is not None else []:
+    for _, seconds, words in numbers_of_the_paper(scene, "contact_time", any_law=True) if begin is not None else []:
         axes.axvline(1e3 * (begin + seconds), color=BLACK, linestyle="-.", linewidth=0.9, label=f"{words}: {1e3 * seconds:.3g} ms")
         axes.set_xlim(right=max(axes.get_xlim()[1], 1.02e3 * (begin + seconds)))
 
 
-def numbers_of_the_paper(scene: dict[str, Value], key: str, over: str = "") -> list[tuple[Value | None, float, str]]:
-    """(value of the parameter `over` there, number, words) of every number `key` (summary.json, SI) that the paper prints of this scene, or
-    of it with another value of `over`, or with another law, which the words then say. None of a body of the user's own mesh."""
+def numbers_of_the_paper(scene: dict[str, Value], key: str, over: str = "",
+                         any_law: bool = False) -> list[tuple[Value | None, float, str]]:
+    """(value of the parameter `over` there, number, words) of every number `key` (summary.json, SI)
+    that the paper prints of this scene, or of the scene with another value of `over`. With
+    `any_law` also those of another law, which the words then name. None of a body of the user's
+    own mesh."""
     found = []
-    for run in literature.published(scene.get("script"), scene, ("law", over)) if not scene.get("mesh") else []:
+    free = ("law", over) if any_law else (over,)
+    for run in literature.published(scene.get("script"), scene, free) if not scene.get("mesh") else []:
         when = run["when"]
         if run["source"].startswith("paper") and key in run["numbers"]:
             law = "" if over == "law" or when["law"] == scene.get("law") else f", {LAWS[when['law']]}"
             found.append((when.get(over), run["numbers"][key]["value"], run["source"] + law))
     return found
+
+
+def legend(axes: plt.Axes, shown: Callable[[list], list] = list, **how) -> None:
+    """The names of the lines and areas of a panel, or those `shown` of them; no legend where none has a name."""
+    artists, names = axes.get_legend_handles_labels()
+    if names:
+        axes.legend(shown(artists), shown(names), **how)
 
 
 def balance_error(axes: plt.Axes, history: dict[str, np.ndarray], energy: float) -> None:
@@ -204,8 +215,7 @@ def end_of_contact(panels: list[plt.Axes], history: dict[str, np.ndarray], scene
     """The time of panels over the same time, with the end of the contact and the paper's contact time named above the first."""
     over_time(panels, history, scene)
     published(panels[0], scene)
-    if panels[0].get_legend_handles_labels()[0]:
-        panels[0].legend(**ABOVE, ncols=2)
+    legend(panels[0], **ABOVE, ncols=2)
 
 
 def friction_force(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
@@ -231,7 +241,7 @@ def friction_force(history: dict[str, np.ndarray], scene: dict[str, Value]) -> p
         axes.set_xlabel("time [ms]")
     drag.plot(t, friction, color=ORANGE, linewidth=1.2)
     drag.set_ylabel(f"friction force [kN{per}]")
-    drag.legend(**ABOVE, ncols=2)
+    legend(drag, **ABOVE, ncols=2)
     end_of_contact([force, drag], history, scene)
     if window:
         _enlarge(grid, history, scene, window)
@@ -299,9 +309,9 @@ def rolling(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figu
         floor = floor + values
     bottom.fill_between(t, 0, np.where(touches, 0, 100), step="pre", color="#f2f2f2", linewidth=0, label="no contact")
     bottom.set(xlabel="time [ms]", ylabel="share of the load [%]", ylim=(0, 100))
-    bottom.legend(**ABOVE | {"handlelength": 1.0}, ncols=4, handleheight=1.0)
+    legend(bottom, **ABOVE | {"handlelength": 1.0}, ncols=4, handleheight=1.0)
     over_time([top, bottom], history, scene)
-    top.legend(**ABOVE, ncols=4)
+    legend(top, **ABOVE, ncols=4)
     return figure
 
 
@@ -373,7 +383,7 @@ def flight(history: dict[str, np.ndarray], scene: dict[str, Value], series: list
     axes.axhline(0, color=BLACK, linewidth=0.8)
     axes.axhspan(-0.3 * scene["radius"], 0, color="#d0d0d0", linewidth=0)
     axes.set(xlim=(left - room, right + room), ylim=(-0.3 * scene["radius"], high), aspect="equal", xlabel="x [m]", ylabel="y [m]")
-    axes.legend(**BELOW, ncols=2, handlelength=1.8)
+    legend(axes, **BELOW, ncols=2, handlelength=1.8)
     return figure
 
 

@@ -11,7 +11,7 @@ from ..input import parameters
 from ..failure import Failure, Unreadable
 from ..output.folder import result_folder
 from ..places import COMMAND, RESULTS, shown
-from .figures import BELOW, BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE, save
+from .figures import BELOW, BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE, legend, save
 
 VALUES = {"friction_static": 0.7, "friction_dynamic": 0.5, "slip_velocity": 0.1}   # of section 3.1 and figure 3
 LABELS = {"linear": (r"linear, $\phi^3$ with $v_T/\varepsilon$", BLUE, "-"), "sqrt": (r"sqrt, $\phi^1$", GREEN, "-"),
@@ -64,7 +64,7 @@ def draw(laws: pd.DataFrame, values: dict[str, float], path: Path) -> None:
             _curve(b, laws[(laws.panel == "b") & (laws.law == law)], colour, line, label, 1.2)
         b.set(title="b) regularised (13), $\\mu_e = \\mu_d$", ylabel=r"$\phi_\varepsilon(v_T)$", xlim=(-4, 4), ylim=(-1.2, 1.2),
               yticks=[-1, -0.5, 0, 0.5, 1])
-        b.legend(**BELOW, handlelength=1.6, ncols=2)
+        legend(b, **BELOW, handlelength=1.6, ncols=2)
         both = laws[laws.panel == "c"]
         _curve(c, both[both.transition == "jump"], BLUE, "-", "jump at $|v_T| = \\varepsilon$, as in the paper", 1.6)
         _curve(c, both[both.transition == "smooth"], ORANGE, "--", "smooth (friction_transition)", 1.4)
@@ -73,7 +73,7 @@ def draw(laws: pd.DataFrame, values: dict[str, float], path: Path) -> None:
         c.set(title="c) static and dynamic coefficient, linear", ylabel=r"$-t_T/t_N = \mu_f\,\phi_\varepsilon$", xlim=(-4, 4),
               ylim=(-1.2 * values["friction_static"], 1.2 * values["friction_static"]))
         c.set_yticks([0, *ticks.values()], ["0", *(f"${name} = {value:+g}$".replace("+", "") for name, value in ticks.items())])
-        c.legend(**BELOW, handlelength=1.6, ncols=1)
+        legend(c, **BELOW, handlelength=1.6, ncols=1)
         save(figure, path)
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from ..output.results import Contents, read_table
-from .figures import BLUE, GREEN, GREY, ORANGE, plt
+from .figures import BLUE, GREEN, GREY, ORANGE, legend, plt
 
 LIGHTEST = 0.01                  # of the largest impulse of a meeting: what is less is the grazing end of an impact
 # of the approach, and of the largest slip of a meeting: of less the restitution along the partner is that of vibrations
@@ -39,9 +39,9 @@ def several(table: np.recarray) -> list[np.recarray]:
 
 def draw(table: np.recarray, names: list[str], rigid: list[str]) -> plt.Figure | None:
     """Restitution, across and along the partner, over the impacts of each meeting, and below them the speeds before each; None where there
-    are not several. `names`: of the bodies; `rigid`: of the obstacles."""
+    are not several, or none has a restitution. `names`: of the bodies; `rigid`: of the obstacles."""
     impacts = several(table)
-    if not impacts:
+    if not any(np.isfinite(rows[name]).any() for rows in impacts for name in ("restitution", "restitution_tangential")):
         return None
     figure, (top, below) = plt.subplots(2, 1, figsize=(6.4, 5), sharex=True)
     for colour, rows in zip(COLOURS, impacts):
@@ -62,7 +62,7 @@ def draw(table: np.recarray, names: list[str], rigid: list[str]) -> plt.Figure |
             below.plot(t, rows.slip_before, "s--", color=colour, markersize=4, linewidth=0.8, fillstyle="none")
     top.set(ylabel="restitution", ylim=(min(0.0, top.get_ylim()[0]), max(1.05, top.get_ylim()[1])))
     top.axhline(1, color=GREY, linewidth=0.6)
-    top.legend(ncols=2, loc="lower center", bbox_to_anchor=(0.5, 1))
+    legend(top, ncols=2, loc="lower center", bbox_to_anchor=(0.5, 1))
     low, high = below.get_ylim()
     below.set(xlabel="start of the contact [ms]", ylabel="speed before [m/s]", ylim=(min(0.0, low), 1.1 * high))
     return figure
@@ -112,7 +112,7 @@ def heights(history: dict[str, np.ndarray], table: np.recarray, names: list[str]
                           ha="center", va="top", fontsize=7.5)
     axes.set(xlabel="time [s]", ylabel="centre above its place at rest [mm]", xlim=(t[0], t[-1]))
     axes.margins(y=0.12)
-    axes.legend(ncols=2, loc="lower center", bbox_to_anchor=(0.5, 1), title="dots: impacts, with their restitutions", title_fontsize=7.5)
+    legend(axes, ncols=2, loc="lower center", bbox_to_anchor=(0.5, 1), title="dots: impacts, with their restitutions", title_fontsize=7.5)
     return figure
 
 
@@ -148,5 +148,5 @@ def vibration(table: np.recarray, history: dict[str, np.ndarray], per: str) -> p
         below.plot(1e-3 * shown.frequency, shown[name], style, color=colour, markersize=3.5, label=name.replace("_", " "))
     below.vlines(1e-3 * table.frequency, 1e-6 * most, table.energy, color="#bbbbbb", linewidth=0.6, zorder=0)
     below.set(ylabel=f"energy of a mode [J{per}]", xlabel="frequency [kHz]", yscale="log")
-    below.legend()
+    legend(below)
     return figure

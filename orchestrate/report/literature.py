@@ -7,6 +7,8 @@ from pathlib import Path
 from ..input.parameters import Value
 
 REFERENCE = Path(__file__).resolve().parent / "reference"
+# No source has damping: what `when` does not name of these is 0 there.
+UNDAMPED = dict.fromkeys(("viscosity", "bulk_viscosity", "relaxation_modulus", "loss"), 0)
 
 
 def references(script: str, scene: dict[str, Value]) -> dict[str, list[dict]]:
@@ -23,4 +25,5 @@ def published(script: str, scene: dict[str, Value], whatever: Container[str] = (
     numbers by key of summary.json, source, [note]."""
     every = (run for path in sorted(REFERENCE.glob("*.toml")) for run in tomllib.loads(path.read_text()).get("run", []))
     return [run for run in every if run["script"] == script
-            and all(scene.get(name) == value for name, value in run["when"].items() if name not in whatever)]
+            and all(scene.get(name, UNDAMPED.get(name)) == value for name, value in (UNDAMPED | run["when"]).items()
+                    if name not in whatever)]

@@ -24,7 +24,7 @@ from ..output.results import RunResult, suffixes
 from ..run import run
 from . import bodies, contact, solid
 from .drawing import title
-from .figures import BLACK, BLUE, GREY, ORANGE, STRESS, STYLE, Body, deformed, diameter, draw_body, is_half, per_metre
+from .figures import BLACK, BLUE, GREY, ORANGE, STRESS, STYLE, Body, deformed, diameter, draw_body, is_half, legend, per_metre
 
 SECONDS = 8.0     # of the film
 MOST = 400        # frames, 50 a second: players show a faster GIF slower
@@ -157,7 +157,7 @@ class Stage:
         self.now = axes.axvline(self.t[0], color=BLACK, linewidth=0.8)
         self.dots = {name: axes.plot([], [], "o", color=colour, markersize=5, clip_on=False)[0] for name, colour in forces.items()}
         if len(forces) > 1:
-            axes.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=2, borderaxespad=0)
+            legend(axes, loc="lower right", bbox_to_anchor=(1, 1), ncols=2, borderaxespad=0)
 
     def show(self, t: float) -> None:
         """Everything that moves, at time t [s]."""

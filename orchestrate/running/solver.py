@@ -1,6 +1,8 @@
 """FreeFem++ runs of one scene in the folder of a run: the main one, those that estimate its error, and what each has left. While they go on
-it is told which of them is at what; in the first seconds of one that will take long about how long, and which entry makes it so."""
+it is told which of them is at what; of one that will take long about how long, and which entry makes it so."""
 
+import bisect
+import math
 import multiprocessing
 import os
 import shutil
@@ -24,7 +26,8 @@ from ..scenes.assembly import prepare
 FAILURES = {10: "bad input", 11: "step failed", 12: "material broke down", 13: "not installed", 14: "unreadable"}
 COST = estimate.COARSER**-3       # of a run with larger elements and steps, over that of the one beside it
 LONG = 60.0                      # s
-FIRST, LAST = 2.0, 15.0          # s of steps after which it is judged
+FIRST = 2.0                      # s of steps from which on its end is foretold
+AGAIN = 1.5                      # a forecast is renewed where the run takes at least so many times what was said at most
 USUAL = freefem.At(1.0, 0.0, 200, 2000)   # steps and unknowns of a usual run: what is further above them makes a run long
 USED = "scene.used"              # scene.toml as Python writes it, there from the start: whoever finds the run finished puts it in its place
 APART = 10.0                     # times that the slow body waits for the quick one's steps: more than mesh or accuracy cost
@@ -156,8 +159,8 @@ class Told:
         self.line, self.scene, self.mesh_file, self.number = line, scene, mesh_file, number
         self.words = f"{kind} {number} of {max(number, len(line.costs))}"
         self.part = kind if kind in line.costs else self.words
-        self.first: tuple[float, freefem.At] | None = None
-        self.judged = kind == "coarser run"
+        self.seen: list[tuple[float, freefem.At]] = []
+        self.foretold = math.inf if kind == "coarser run" else LONG      # s of all runs, at most
 
     def at(self, what: str, share: float = 0.0) -> None:
         """It is at this, and so far."""
@@ -166,16 +169,36 @@ class Told:
     def show(self, at: freefem.At) -> None:
         """What FreeFem++ says of it."""
         self.at(f"t = {at.t * 1e3:.3f} ms, {at.steps} steps", at.share)
-        now = time.monotonic()
-        self.first = self.first or (now, at)     # with what was before it, the set-up, behind it
-        seconds, share = now - self.first[0], at.share - self.first[1].share
-        if self.judged or seconds < FIRST or share <= 0:
+        self.seen.append((time.monotonic(), at))     # from the first steps on, with the set-up behind it
+        if self.seen[-1][0] - self.seen[0][0] < FIRST:
             return
-        whole = seconds / share * sum(self.line.costs.values()) / self.line.costs[self.part]
-        if whole > LONG:
-            self.line.say(f"{self.scene.name}: about {whole / 60:.0f} min, for some {at.steps / at.share:.0f} steps of {at.unknowns} "
-                          f"unknowns: {entry(self.scene, at, self.mesh_file)}")
-        self.judged = whole > LONG or seconds > LAST
+        seconds, steps = forecast(self.seen)
+        low, high = (each * sum(self.line.costs.values()) / self.line.costs[self.part] for each in seconds)
+        if self.foretold < low < math.inf:
+            self.foretold = AGAIN * (high if high < math.inf else low)
+            self.line.say(f"{self.scene.name}: {between(low / 60, high / 60)} min, for {between(*steps)} steps of {at.unknowns} unknowns: "
+                          f"{entry(self.scene, at, self.mesh_file)}")
+
+
+def forecast(seen: list[tuple[float, freefem.At]]) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Seconds and steps of a run from its first report on, each (at least, at most): by its pace since
+    then, and by its pace since half of that time. They differ where its steps become shorter, or where
+    the impact lasts longer than it seemed; a pace by which the end recedes makes it infinite."""
+    (start, first), (now, at) = seen[0], seen[-1]
+    middle = seen[max(0, bisect.bisect(seen, (start + now) / 2, key=lambda one: one[0]) - 1)]
+    seconds, steps = [], []
+    for when, since in ((start, first), middle):
+        left = (1 - at.share) / (at.share - since.share) if at.share > since.share else math.inf
+        seconds.append(now - start + left * (now - when))
+        steps.append(at.steps + left * (at.steps - since.steps))
+    return (min(seconds), max(seconds)), (min(steps), max(steps))
+
+
+def between(low: float, high: float) -> str:
+    """A range of numbers in words."""
+    if high == math.inf:
+        return f"at least {low:.0f}"
+    return f"about {high:.0f}" if high < 1.2 * low or f"{low:.0f}" == f"{high:.0f}" else f"{low:.0f} to {high:.0f}"
 
 
 def entry(scene: Scene, at: freefem.At, mesh_file: Path | None) -> str:

@@ -304,8 +304,8 @@ def table(wanted: Sweep, out: Path) -> pd.DataFrame:
     if wanted.refine:
         worse = (plain.exit != 0) & (fine.exit == 0)
         rows.loc[worse, ["exit", "message", "warnings"]] = plain.loc[worse, ["exit", "message", "warnings"]]
-        for name in wanted.collect:
-            rows[f"{name}_error"] = (fine[name] - plain[name]).abs()
+        errors = {f"{name}_error": (fine[name] - plain[name]).abs() for name in wanted.collect}
+        rows = pd.concat([rows, pd.DataFrame(errors)], axis=1)
     rows[wanted.collect] = rows[wanted.collect].where(rows.exit == 0)
     rows["seconds"] = plain.get("wall_seconds", np.nan) + (fine.get("wall_seconds", np.nan) if wanted.refine else 0)
     return rows
@@ -327,7 +327,8 @@ def report(wanted: Sweep, rows: pd.DataFrame, out: Path) -> str:
         for name in wanted.collect[:SHOWN]:
             text[name] = ["" if np.isnan(value) else f"{value:.5g}" for value in rows[name]]
             if wanted.refine:
-                text[name] += ["" if np.isnan(error) else f" ± {error:.0e}" for error in rows[f"{name}_error"]]
+                errors = sweep_figures.bars_of_all(wanted, rows, name)
+                text[name] += ["" if np.isnan(error) else f" ± {error:.2g}" for error in errors]
         lines += [study.table(text, {name: "g" if name in wanted.axes and pd.api.types.is_numeric_dtype(rows[name]) else ""
                                      for name in text}), _units(wanted, list(text)), ""]
     failed = rows[rows.exit != 0]

@@ -23,7 +23,7 @@ from matplotlib.ticker import LogLocator, NullLocator
 from ..input import parameters
 from ..failure import BadInput, brief, suggestion, unknown
 from ..report import report
-from ..report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, SMALL, STYLE, as_written, numbers_of_the_paper, save
+from ..report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, SMALL, STYLE, as_written, legend, numbers_of_the_paper, save
 from ..output.results import read_history
 from . import study
 
@@ -163,7 +163,7 @@ def unit_of(name: str) -> str:
 
 def _groups(sweep, rows: pd.DataFrame, key: str) -> Iterator[tuple[str, pd.DataFrame]]:
     """(words, rows) for each value of the parameter that [figure] names as `key`; all rows where it names none."""
-    name = sweep.figure[key]
+    name = sweep.figure.get(key)
     if name is None:
         yield "", rows
         return
@@ -208,14 +208,17 @@ def _lines(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
 
 
 def _published(axes: plt.Axes, sweep, x: str, y: str) -> None:
-    """The numbers of the paper for y, whose contact time is that while the force is not zero: a star at its x, or a line over all x where
-    it states none."""
-    for at, value, words in numbers_of_the_paper(sweep.sample.given, y.removeprefix("thresholded_"), over=x):
-        words = f"{words}: {_quantity(y).factor * value:.3g}{_unit(y, sweep.figure['per'])}"
+    """The numbers of the paper for y, whose contact time is that while the force is not zero: a star
+    at its x, or a line over all x where it states none. Only numbers of a scene that the sweep has,
+    law included, for some value of x."""
+    name, (factor, unit) = y.removeprefix("thresholded_"), (_quantity(y).factor, _unit(y, sweep.figure["per"]))
+    scenes = (sweep.sample.given | point for point in sweep.points)
+    for at, value, words in dict.fromkeys(found for scene in scenes for found in numbers_of_the_paper(scene, name, over=x)):
+        style = dict(color=BLACK, label=f"{words}: {factor * value:.3g}{unit}")
         if at is None:
-            axes.axhline(_quantity(y).factor * value, color=BLACK, linestyle="-.", linewidth=0.9, label=words)
+            axes.axhline(factor * value, linestyle="-.", linewidth=0.9, **style)
         else:
-            axes.plot(at, _quantity(y).factor * value, color=BLACK, marker="*", linestyle="", markersize=8, zorder=10, label=words)
+            axes.plot(at, factor * value, marker="*", linestyle="", markersize=8, zorder=10, **style)
 
 
 def _is_logarithmic(values: pd.Series) -> bool:
@@ -229,12 +232,17 @@ def _is_logarithmic(values: pd.Series) -> bool:
 
 @dataclass(frozen=True)
 class Trend:
-    """How y goes with x: first and last value, typical error of a point (nan without), how many of the steps between neighbours
-    go against the trend, how many of those by more than one and than two error bars of the step, the largest of them, the
+    """How y goes with x: its course (see course()), the first, last, smallest and largest value with
+    the x of the latter two, and the typical error of a point (nan without). Of the steps between
+    neighbours: how many there are, how many go against the way from the first to the last value, how
+    many of those by more than one and than two error bars of the step, the largest of them, the
     typical error bar of a step, and the typical step."""
 
+    course: str
     first: float
     last: float
+    low: tuple[float, float]
+    high: tuple[float, float]
     typical: float
     steps: int
     against: int
@@ -246,7 +254,12 @@ class Trend:
 
     @property
     def falls(self) -> bool:
-        return self.last < self.first
+        return self.course == FALLS
+
+    @property
+    def ends_lower(self) -> bool:
+        """Whether the last value is below the first, whatever is between."""
+        return self.first - self.last > 2 * np.nan_to_num(self.bar)
 
 
 def bars(group: pd.DataFrame, y: str) -> np.ndarray:
@@ -259,6 +272,45 @@ def bars(group: pd.DataFrame, y: str) -> np.ndarray:
     return np.fmax(own, np.sqrt(np.mean(finite**2))) if len(finite) else own
 
 
+def bars_of_all(sweep, rows: pd.DataFrame, y: str) -> pd.Series:
+    """The same of every row of the table, each in its own curve or map of the figure; nan where a run
+    failed. Without a figure all points are one curve."""
+    found = pd.Series(np.nan, rows.index)
+    for _, panel in _groups(sweep, rows, "panel"):
+        for _, group in _groups(sweep, panel, "by"):
+            there = group[group.exit == 0]
+            found[there.index] = bars(there, y)
+    return found
+
+
+FALLS, RISES, LEVEL = "falls", "rises", "does not change beyond its error bars"
+MINIMUM, MAXIMUM, UNEVEN = "has a minimum", "has a maximum", "goes up and down"
+
+
+def course(values: np.ndarray, errors: np.ndarray) -> str:
+    """What a curve does from its first to its last point. A value is above another one where it is by
+    more than twice their error bars, added in squares; nan counts as 0.
+
+    The curve does not change where its largest value is not above its smallest. It falls where no value
+    is above the first or below the last, and the first is above the last, whatever rises are between;
+    it rises likewise. It has a minimum where both ends are above the smallest value and nothing is
+    above both ends; a maximum likewise. Else it goes up and down."""
+    errors, ends = np.nan_to_num(errors), (0, len(values) - 1)
+    low, high = int(np.argmin(values)), int(np.argmax(values))
+    above = lambda i, j: values[i] - values[j] > 2 * np.hypot(errors[i], errors[j])   # noqa: E731
+    first_low, last_low = (not above(end, low) for end in ends)
+    first_high, last_high = (not above(high, end) for end in ends)
+    if not above(high, low):
+        return LEVEL
+    if first_high and last_low and above(*ends):
+        return FALLS
+    if first_low and last_high and above(*ends[::-1]):
+        return RISES
+    if not (first_low or last_low) and (first_high or last_high):
+        return MINIMUM
+    return MAXIMUM if not (first_high or last_high) and (first_low or last_low) else UNEVEN
+
+
 def steps_against(group: pd.DataFrame, x: str, y: str) -> Trend | None:
     """The trend of the finished points of `group`, SI units; None for fewer than three. The error bar of a step is the sum of its
     ends' in squares."""
@@ -268,8 +320,10 @@ def steps_against(group: pd.DataFrame, x: str, y: str) -> Trend | None:
     values, errors = there[y].to_numpy(), bars(there, y)
     steps = np.hypot(errors[1:], errors[:-1])
     against = np.diff(values) * (1 if values[-1] < values[0] else -1)
-    return Trend(values[0], values[-1], float(np.min(errors)), len(against), int((against > 0).sum()), int((against > steps).sum()),
-                 int((against > 2 * steps).sum()), float(against.max()), float(np.median(steps)), float(np.median(np.abs(against))))
+    low, high = ((there[x].iloc[k], values[k]) for k in (np.argmin(values), np.argmax(values)))
+    return Trend(course(values, errors), values[0], values[-1], low, high, float(np.min(errors)), len(against),
+                 int((against > 0).sum()), int((against > steps).sum()), int((against > 2 * steps).sum()), float(against.max()),
+                 float(np.median(steps)), float(np.median(np.abs(against))))
 
 
 def trend(group: pd.DataFrame, x: str, y: str, words: str, per: str = "/m") -> str:
@@ -279,14 +333,22 @@ def trend(group: pd.DataFrame, x: str, y: str, words: str, per: str = "/m") -> s
     if not found:
         return f"{name}: too few points for a trend"
     size = abs(group[group.exit == 0][y]).mean()
-    text = (f"{name}: {'falls' if found.falls else 'rises'} from {factor * found.first:.5g} to {factor * found.last:.5g}{unit}; of "
-            f"{found.steps} steps {found.against} {'rise' if found.falls else 'fall'}")
+    text = f"{name}: {found.course}{_extremes(found, x, factor)} from {factor * found.first:.5g} to {factor * found.last:.5g}{unit}"
+    if found.course in (FALLS, RISES):
+        text += f"; of {found.steps} steps {found.against} {'rise' if found.falls else 'fall'}"
     if np.isnan(found.typical):
         return text + " (no error bars: no [refine], or no finished refined run)"
-    text += f", {found.beyond} of them by more than their error bar, {found.established} by more than twice that"
-    if found.largest > 0:
-        text += f"; the largest by {factor * found.largest:.2g}{unit} ({100 * found.largest / size:.2f} %)"
+    if found.course in (FALLS, RISES):
+        text += f", {found.beyond} of them by more than their error bar, {found.established} by more than twice that"
+        if found.largest > 0:
+            text += f"; the largest by {factor * found.largest:.2g}{unit} ({100 * found.largest / size:.2f} %)"
     return text + f"; error of a point {factor * found.typical:.2g}{unit} ({100 * found.typical / size:.2f} %, rms)"
+
+
+def _extremes(found: Trend, x: str, factor: float) -> str:
+    """The extreme values of a curve that neither falls nor rises throughout, with their x, in words."""
+    low, high = (f"{factor * value:.5g} at {_value(x, at)}" for at, value in (found.low, found.high))
+    return {MINIMUM: f", {low},", MAXIMUM: f", {high},", UNEVEN: f" between {low} and {high},"}.get(found.course, "")
 
 
 # ---- maps
@@ -400,8 +462,7 @@ def _histories(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
             axes.grid(alpha=0.3)
             if k == 0:
                 axes.set_ylabel(f"{y.replace('_', ' ')}" + f" [kN{sweep.figure['per']}]" * ("force" in y))
-    if grid[0, 0].get_legend_handles_labels()[0]:
-        grid[0, 0].legend()
+    legend(grid[0, 0])
     return figure
 
 
