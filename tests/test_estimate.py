@@ -168,12 +168,15 @@ def told(folder: Path) -> Answers:
     return Answers(summary | {"largest_energy": 5.0}, used | {"radius": 0.5}, speed, on_its_way().history)
 
 
+REQUESTS = {"fields": 5, "modes": 4, "checkpoint_every": 7}      # what a user asks for beside the answer
+
+
 class Disc:
     """A disc whose impulse is off by `error` at the sizes START, quadratic in them, with no course. It fails with `code` at the factors `fails` of them."""
 
     def __init__(self, stage: Path, error: float, fails=(), code: int = 11, lost: float | None = None, **given):
         self.error, self.fails, self.code, self.lost, self.asked = error, fails, code, lost, []
-        self.values = parameters.defaults() | {"fields": 5, "accuracy": 0.01} | given
+        self.values = parameters.defaults() | REQUESTS | {"accuracy": 0.01} | given
         self.stage = stage
         self.solve(self.values, stage)
         (stage / "checkpoint.json").write_text("what the run was asked for")
@@ -207,15 +210,27 @@ def test_an_estimate_below_the_accuracy_is_one_coarser_run(tmp_path):
 
 
 def test_finer_runs_follow_until_it_is(tmp_path):
-    """3.6 % halves twice; the finest run takes the folder, with its fields, each former one is the coarser of the next pair."""
+    """3.6 % halves twice; the finest run takes the folder, each former one is the coarser of the next pair."""
     disc = Disc(tmp_path, 0.036)
     found = disc.settle()
     assert disc.factors() == pytest.approx([1, ROOT2, 1 / ROOT2, 1 / 2])
-    assert [values["fields"] for values in disc.asked] == [5, 0, 5, 5]
     assert found["estimated_error"]["impulse"] == pytest.approx(0.009, rel=0.02) and found["refinements"] == 2 and found["warnings"] == []
     assert found["estimate_cpu_seconds"] == 3
     assert {path.name for path in tmp_path.iterdir()} == {"result.json", "of 0.50", "checkpoint.json"}
     assert (tmp_path / "checkpoint.json").read_text() == "what the run was asked for"
+
+
+@pytest.mark.parametrize("name, asked", [("fields", [5, 0, 5, 5]), ("modes", [4, 0, 4, 4]), ("checkpoint_every", [7] * 4)])
+def test_what_was_asked_for_is_asked_of_every_run_that_may_stay(tmp_path, name, asked):
+    """A finer run takes the place of the first one and has all its requests. The coarser run writes no output."""
+    disc = Disc(tmp_path, 0.036)
+    disc.settle()
+    assert [values[name] for values in disc.asked] == asked
+
+
+def test_what_asks_for_output_is_off_by_default():
+    """The values that ask for no output are the defaults of the table, of every script."""
+    assert {name: parameters.table()[name].default for name in parameters.OUTPUT} == parameters.OUTPUT
 
 
 @pytest.mark.parametrize("off, runs", [(0.009, 2), (0.0149, 2), (0.0151, 3), (0.03, 3)])

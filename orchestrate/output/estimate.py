@@ -27,7 +27,7 @@ from pathlib import Path
 import numpy as np
 
 from ..failure import Failure
-from ..input.parameters import Value
+from ..input.parameters import OUTPUT, Value
 from .results import Answers, suffixes
 
 COARSER = math.sqrt(2)
@@ -98,7 +98,7 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
         fixed = not own_mesh or any(values[name] for name in SIZES)
         if not above or scatters or fixed or refinements == MOST or summary.get("ellipticity_lost_time") is not None:
             break
-        if failure := _ended(solve, sizes(values, used, 1 / COARSER, own_mesh) | {"fields": values["fields"]}, finer):
+        if failure := _ended(solve, sizes(values, used, 1 / COARSER, own_mesh), finer):
             sentences.append(f"a run with {COARSER:.1f} times smaller elements and steps ended with: {failure}")
             break
         _swap(stage, coarser, finer)
@@ -145,7 +145,13 @@ def other(values: Mapping[str, Value], used: Mapping[str, Value], factor: float,
     if own_mesh:
         sizes["mesh_size"] = min(sizes["mesh_size"], used["radius"])
     kept = {name: used[name] for name in ("penalty", "slip_velocity", "friction_dynamic")}
-    return dict(values) | kept | sizes | {"accuracy": loosened(used["accuracy"], factor), "fields": 0, "modes": 0}
+    return dict(values) | kept | sizes | {"accuracy": loosened(used["accuracy"], factor)} | output(factor)
+
+
+def output(factor: float) -> dict[str, Value]:
+    """What a run with `factor` times the elements and steps has instead of the requests for output. A coarser run
+    is only compared and writes none. A finer run takes the place of the first one and keeps all its requests."""
+    return OUTPUT if factor > 1 else {}
 
 
 def loosened(accuracy: float, factor: float) -> float:
