@@ -238,3 +238,18 @@ def test_the_bottom_of_a_bowl_may_lie_where_its_expression_has_no_slope(tmp_path
     disc = {"name": "disc", "shape": "disc", "radius": 0.05, "position": [0, 0.051], "velocity": [0, -4]}
     runs = [go(tmp_path / kind["kind"], disc, kind) for kind in ({"kind": "implicit", "distance": "0.1-sqrt(x^2+(y-0.1)^2)"}, {"kind": "bowl", "centre": [0, 0.1], "radius": 0.1})]
     assert runs[0].summary["impulse"] == pytest.approx(runs[1].summary["impulse"], rel=2e-3)
+
+
+@pytest.mark.parametrize("tilt, turns", [(0.0, False), (1e-5, False), (0.02, True)])
+def test_a_face_that_comes_down_flat_on_a_slope_meets_it_at_its_middle(tilt, turns):
+    """Parallel to the plane to five digits, as one writes a normal, a face does not turn its body: no hits of its
+    corners follow, and its elements are those of a face. Tilted by a degree it does."""
+    angle = math.radians(20)
+    up = [-math.sin(angle + tilt), math.cos(angle + tilt)]
+    block = {"name": "block", "shape": "rectangle", "width": 0.1, "height": 0.05, "angle": 20,
+             "position": [-0.0251 * math.sin(angle), 0.0251 * math.cos(angle) + 0.06 * tilt]}
+    given = scene(block, FLOOR | {"normal": up}, accuracy=0.02, gravity=9.81, until="rest", viscosity=500)
+    assert (len(approach.meetings(given)) > 1) == turns
+    if not turns:
+        made = assembly.assemble(given)
+        assert made.used["body"][0]["contact_mesh_size"] > 0.005 and len(made.mesh.triangles) < 500
