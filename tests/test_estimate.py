@@ -235,7 +235,7 @@ def test_what_asks_for_output_is_off_by_default():
 
 @pytest.mark.parametrize("off, runs", [(0.009, 2), (0.0149, 2), (0.0151, 3), (0.03, 3)])
 def test_scatter_is_a_reason_for_no_more_than_one_finer_run(tmp_path, off, runs):
-    """The contact time above 1 % of the peak scatters: where a finer run does not halve its error no other follows; up to WORTH times the accuracy (1 %)
+    """The contact time above 1 % of the peak scatters: where a finer run does not lower its error no other follows; up to WORTH times the accuracy (1 %)
     none follows at all, and what is above the accuracy is said."""
     disc = Disc(tmp_path, 1e-9)
     def read(folder):
@@ -244,6 +244,19 @@ def test_scatter_is_a_reason_for_no_more_than_one_finer_run(tmp_path, off, runs)
     found = estimate.settle(tmp_path, disc.values, True, disc.solve, read)
     assert found["estimated_error"]["thresholded_contact_time"] == pytest.approx(off) and len(disc.asked) == runs
     assert any("thresholded contact time" in sentence for sentence in found["warnings"]) == (off > 0.01)
+
+
+@pytest.mark.parametrize("offs, runs", [((0.035, 0.021, 0.0126), 4), ((0.03, 0.025, 0.02), 3),
+                                        ((0.029, 0.0207, 0.014), 4), ((0.029, 0.0211, 0.014), 3)])
+def test_a_second_finer_run_follows_where_it_brings_the_contact_time_there(tmp_path, offs, runs):
+    """Off by offs[k] after k finer runs, of 1 % asked for: a second one follows where offs[1]^2/offs[0] is at most
+    WORTH times that."""
+    disc = Disc(tmp_path, 1e-9)
+    def read(folder):
+        longer = 1 + offs[len(disc.asked) - 2] if folder == tmp_path / "coarser" else 1
+        return told(folder)._replace(summary=told(folder).summary | {"thresholded_contact_time": 4e-3 * longer})
+    estimate.settle(tmp_path, disc.values, True, disc.solve, read)
+    assert len(disc.asked) == runs
 
 
 @pytest.mark.parametrize("given", [{"mesh_size": 0.016}, {"contact_mesh_size": 0.003}, {"dt": 1e-5}, {"mesh": "own"}, {"lost": 1e-3}, {"error": 3.0}])

@@ -13,9 +13,9 @@ two steps, so that times converge more slowly: the fourth root. BOUND is what 97
 docs/promise.md, some three times the usual error. It is that of mesh and steps: penalty and slip velocity are the same in all runs.
 Steps grow no more above 0.3 of a transit of waves (sizes.idp), those of a pair asked for an accuracy of 0.06 or more are the same, of 0.05
 7 % apart: its differences are those of elements alone. The share (alike()) of what steps make of them, ALIKE A, joins D and d. Where
-that of a promised answer is more than WORTH times what is asked finer runs follow. Where the contact time alone is off and a finer run has
-not halved its estimate it scatters with the vibration at the last touch (by 0.8 % rms in hard impacts, on any mesh and at any step that
-was tried): no finer run follows, and the estimate says by how much.
+that of a promised answer is more than WORTH times what is asked finer runs follow. The contact time
+scatters with the vibration at the last touch (by 0.8 % rms in hard impacts, on any mesh and at any step that was tried): where it alone
+is off, a second finer run follows only if what the first one gained, gained again, brings its estimate there.
 """
 
 import math
@@ -92,7 +92,8 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
                            alike(answers, before_it))
         estimated["energy"] = max(estimated["energy"], summary.get("energy_drift", 0.0))   # of which the pair may have the same
         above = [name for name in wanted(values["accuracy_of"]) if estimated[name] > WORTH * asked]
-        scatters, before = above == [SCATTERS] and estimated[SCATTERS] > before / 2, estimated[SCATTERS]
+        scatters = above == [SCATTERS] and estimated[SCATTERS] ** 2 / before > WORTH * asked
+        before = estimated[SCATTERS]
         sentences = excess(estimated, asked, values["accuracy_of"])
         sentences = sentences and (touches(summary, coarse) or sentences)
         fixed = not own_mesh or any(values[name] for name in SIZES)
