@@ -212,6 +212,15 @@ def test_a_contact_that_begins_at_a_corner_is_named(tmp_path, angle, share):
     assert found.summary["corner_share"] == pytest.approx(share, abs=0.05) and len(said(found, "corner")) == share
 
 
+def test_a_flat_end_whose_rim_touches_first_is_no_corner(tmp_path):
+    """A cylinder that a plate presses on the floor: its end comes down as a face, whose rim may touch first, and its side
+    touches nothing. No corner is pressed flat."""
+    cylinder = {"name": "cylinder", "shape": "cylinder", "radius": 0.025, "height": 0.05, "position": [0, 0.0251]}
+    plate = {"name": "plate", "kind": "plane", "point": [0, 0.0502], "normal": [0, -1], "velocity": [0, -0.3]}
+    found = go(tmp_path, cylinder, [FLOOR, plate], young=2e6, nu=0.45, density=1000, dimension="axisymmetric", end_time=0.03)
+    assert found.summary["impulse"] > 0 and found.summary["corner_share"] == 0 and not said(found, "corner")
+
+
 @pytest.mark.parametrize("thickness, obstacle, through", [
     (1e-3, lambda t: {"kind": "polyline", "vertices": [[-0.3, 0], [0.3, 0], [0.3, -t], [-0.3, -t]], "closed": True}, True),
     (1e-3, lambda t: {"kind": "implicit", "distance": f"abs(y+{t / 2})-{t / 2}"}, True),
