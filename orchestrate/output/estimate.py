@@ -90,10 +90,7 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
             sentences = ["the error is not estimated: steps 1.4 times larger are too large for this scene, a second run took the same "
                          "ones: ask for a smaller accuracy"]
             break
-        estimated = errors(difference(summary, coarse, answers.speed, used.get("radius")), course(answers, before_it), resolved(answers),
-                           alike(answers, before_it))
-        estimated["energy"] = max(estimated["energy"], summary.get("energy_drift", 0.0))   # of which the pair may have the same
-        estimated |= highest(answers, before_it)
+        estimated = _stated(answers, before_it)
         above = [name for name in wanted(values["accuracy_of"]) if estimated[name] > WORTH * asked]
         scatters = above == [SCATTERS] and estimated[SCATTERS] ** 2 / before > WORTH * asked
         before = estimated[SCATTERS]
@@ -117,6 +114,14 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
         shutil.rmtree(folder, ignore_errors=True)
     return {"estimated_error": estimated, "estimated_error_excludes": [*REGULARISED, *([] if own_mesh else ["mesh"])],
             "estimate_cpu_seconds": seconds, "refinements": refinements, "warnings": sentences, "skipped": why if refinements else []}
+
+
+def _stated(fine: Answers, coarse: Answers) -> dict[str, float]:
+    """The error that is stated of every answer of the finer run of a pair."""
+    apart = difference(fine.summary, coarse.summary, fine.speed, fine.used.get("radius"))
+    found = errors(apart, course(fine, coarse), resolved(fine), alike(fine, coarse))
+    found["energy"] = max(found["energy"], fine.summary.get("energy_drift", 0.0))   # of which the pair may have the same
+    return found | highest(fine, coarse)
 
 
 def _ended(solve: Solve, values: dict[str, Value], where: Path) -> Failure | None:
