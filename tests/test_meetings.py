@@ -212,6 +212,15 @@ def test_a_contact_that_begins_at_a_corner_is_named(tmp_path, angle, share):
     assert found.summary["corner_share"] == pytest.approx(share, abs=0.05) and len(said(found, "corner")) == share
 
 
+def test_a_flat_end_whose_rim_touches_first_is_no_corner(tmp_path):
+    """A cylinder that a plate presses on the floor: its end comes down as a face, whose rim may touch first, and its side
+    touches nothing. No corner is pressed flat."""
+    cylinder = {"name": "cylinder", "shape": "cylinder", "radius": 0.025, "height": 0.05, "position": [0, 0.0251]}
+    plate = {"name": "plate", "kind": "plane", "point": [0, 0.0502], "normal": [0, -1], "velocity": [0, -0.3]}
+    found = go(tmp_path, cylinder, [FLOOR, plate], young=2e6, nu=0.45, density=1000, dimension="axisymmetric", end_time=0.03)
+    assert found.summary["impulse"] > 0 and found.summary["corner_share"] == 0 and not said(found, "corner")
+
+
 @pytest.mark.parametrize("thickness, obstacle, through", [
     (1e-3, lambda t: {"kind": "polyline", "vertices": [[-0.3, 0], [0.3, 0], [0.3, -t], [-0.3, -t]], "closed": True}, True),
     (1e-3, lambda t: {"kind": "implicit", "distance": f"abs(y+{t / 2})-{t / 2}"}, True),
@@ -245,3 +254,18 @@ def test_a_hard_flat_strike_is_warned_of_and_a_hard_round_one_has_a_note(tmp_pat
     """At a tenth of the wave speed: the peak of a face that lands as a whole is one of a stiff penalty, not of the bodies, whatever the speed."""
     found = go(tmp_path, shape | {"name": "body", "position": [0, 0.0501], "velocity": [0, -8]}, FLOOR, accuracy=0.02, density=1000, contact={"penalty": 1e13})
     assert {each: any(one.startswith("peak force: ") for one in found.summary[each]) for each in ("warnings", "notes")} == {"warnings": kind == "warnings", "notes": kind == "notes"}
+
+
+@pytest.mark.parametrize("tilt, turns", [(0.0, False), (1e-5, False), (0.02, True)])
+def test_a_face_that_comes_down_flat_on_a_slope_meets_it_at_its_middle(tilt, turns):
+    """Parallel to the plane to five digits, as one writes a normal, a face does not turn its body: no hits of its
+    corners follow, and its elements are those of a face. Tilted by a degree it does."""
+    angle = math.radians(20)
+    up = [-math.sin(angle + tilt), math.cos(angle + tilt)]
+    block = {"name": "block", "shape": "rectangle", "width": 0.1, "height": 0.05, "angle": 20,
+             "position": [-0.0251 * math.sin(angle), 0.0251 * math.cos(angle) + 0.06 * tilt]}
+    given = scene(block, FLOOR | {"normal": up}, accuracy=0.02, gravity=9.81, until="rest", viscosity=500)
+    assert (len(approach.meetings(given)) > 1) == turns
+    if not turns:
+        made = assembly.assemble(given)
+        assert made.used["body"][0]["contact_mesh_size"] > 0.005 and len(made.mesh.triangles) < 500

@@ -22,6 +22,7 @@ RELAXING = COARSE | dict(relaxation_modulus=1e6)
 DAMPED = COARSE | dict(integrator="backward-euler", accuracy=0.02)
 SPINS = COARSE | dict(speed=1, spin=60, angle=90, height=0.01, law="neohookean", accuracy=0.002, dt=1e-4, without="flight")
 STEEL = dict(young=2.1e11, nu=0.3, density=7850, speed=1)
+HELD = dict(accuracy=0.1, law="incompressible", nu=0.5)
 CASES = [   # name, flags with which it appears, flags with which it does not, a number it tells and what that is about
     ("density", COARSE | dict(density=1.7), COARSE | dict(density=30, young=1e7), r"density: (\S+) kg/m3 beside young = 7e\+06 Pa, is it in g/cm3", (1.7, 1.7)),
     ("density", COARSE | STEEL | dict(density=7.85), COARSE | STEEL, r"sqrt\(E/rho\) is (\S+) m/s", (1.6e5, 1.7e5)),
@@ -40,6 +41,7 @@ CASES = [   # name, flags with which it appears, flags with which it does not, a
     ("locking", COARSE | dict(nu=0.495, speed=2, volume="plain"), COARSE | dict(nu=0.495, speed=2), r"quadratic elements stiffen at nu = ([0-9.]+)", (0.495, 0.495)),
     ("locking", COARSE | dict(degree=1, speed=2), COARSE | dict(degree=1, nu=0.4, speed=2), r"linear elements are too stiff at nu = ([0-9.]+)", (0.45, 0.45)),
     ("relaxation", RELAXING | dict(relaxation_time=2e-5), RELAXING | dict(relaxation_time=1e-2), r"more viscous by (\S+) %", (47, 48)),
+    ("volume", HELD | dict(speed=25), HELD | dict(speed=8), r"det F at a point differs by (\S+) %", (10, 60)),
     ("ellipticity", COARSE | dict(speed=9), COARSE | dict(speed=9, law="neohookean"), r"eigenvalue of the acoustic tensor (\S+) mu", (-1, 0)),
     ("breakdown", COARSE | dict(speed=14, breakdown="continue"), COARSE | dict(speed=9, breakdown="continue"), r"from t = (\S+) s", (1e-4, 3e-3)),
     ("friction", OBLIQUE | dict(friction_dynamic=0.5, slip_velocity=1, regularization="linear-printed"),

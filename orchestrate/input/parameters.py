@@ -18,6 +18,7 @@ FOLLOWS = {"friction_dynamic": ("friction_static",), "viscosity": ("loss",),
            **dict.fromkeys(("mesh_size", "contact_mesh_size", "block_width", "block_height"), ("radius",))}
 
 NOT_DECISIVE = ("checkpoint_every",)   # parameters that do not change the answer
+OUTPUT = {"fields": 0, "modes": 0}     # parameters that only ask for output, with the value that asks for none
 
 _NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]+)?|\.[0-9]+)([eE][+-]?[0-9]+)?")
 # A number with a unit behind it: factors of units, of which a prefix and a name make one.

@@ -114,7 +114,7 @@ def _middle(one: Meeting) -> np.ndarray:
     points = np.vstack([shape.points for shape in one.outlines if isinstance(shape, Outline)])
     off = np.max([abs(shape.gap(points)) for shape in one.outlines], axis=0)
     along = (points - points[off.argmin()]) @ one.normal
-    on = points[(off <= off.min() + CLOSED * one.radius) & (abs(along) <= CLOSED * one.radius)]
+    on = points[(off <= off.min() + MET * one.radius) & (abs(along) <= MET * one.radius)]
     return (on.min(axis=0) + on.max(axis=0)) / 2
 
 

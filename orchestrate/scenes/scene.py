@@ -193,7 +193,7 @@ class Scene:
                 found |= {f"body.{k}.mesh_size": bulk, f"body.{k}.contact_mesh_size": min(bulk, factor * given["contact_mesh_size"])}
         if used["dt"] > 0:
             found["dt"] = factor * used["dt"]
-        return found | {"accuracy": estimate.loosened(used["accuracy"], factor), "fields": 0, "modes": 0}
+        return found | {"accuracy": estimate.loosened(used["accuracy"], factor)} | estimate.output(factor)
 
     def _scaled_pairs(self, used: list[dict], factor: float) -> list[dict]:
         """The tables [[contact.pair]] as used, with the penalty of flat strikes, where it is open, that of elements `factor` times as
