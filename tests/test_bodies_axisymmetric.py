@@ -232,3 +232,15 @@ def test_a_ball_falls_through_a_rigid_funnel_with_friction(tmp_path):
                  law="neohookean", accuracy=0.1, gravity=9.81, contact={"friction_static": 0.3}, end_time=4e-3)
     summary = run.run(scene, {}, tmp_path / "funnel", estimate=False).summary
     assert summary["peak_force"] > 0 and summary["friction_work"] > 0 and summary["energy_drift"] < 1e-6
+
+
+@pytest.mark.parametrize("wall", [
+    {"kind": "implicit", "distance": "y - sqrt(x^2 + 1e-10)"}, {"kind": "polyline", "vertices": [[0, 0], [1, 1]]}])
+def test_a_ball_in_a_funnel_touches_its_wall(tmp_path, wall):
+    """A ball comes down a funnel of 45 degrees: its centre, on the axis, is nearer to the wall than to
+    the tip. It touches the wall when its centre is sqrt(2) radii above the tip, and energy is kept."""
+    ball = {"shape": "ball", "radius": 0.03, "position": 0.05, "velocity": -2}
+    given = read(ball, obstacles=(wall,), young=7e6, nu=0.3, density=1000, law="neohookean", accuracy=0.1)
+    s = run.run(given, {}, tmp_path / "out", estimate=False).summary
+    assert s["contact_start"] == pytest.approx((0.05 - 0.03 * math.sqrt(2)) / 2, rel=5e-3)
+    assert s["energy_drift"] < 1e-9 and 0.9 < s["restitution"] < 1

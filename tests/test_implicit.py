@@ -56,6 +56,18 @@ def test_the_gap_is_the_distance(text):
     assert implicit.radius_at(np.array([0.0, 0.09]), settled("0.01 - x*x - y*y", (0.0, 0.0), 0.05)) == np.inf
 
 
+@pytest.mark.parametrize("text, centre", [("y - sqrt(x^2 + 1e-10)", (0.0, 0.05)),
+                                          ("y - sqrt(x^2 + z^2 + 1e-10)", (0.0, 0.05, 0.0)),
+                                          ("y - sqrt(x^2 + 1e-10)", (0.0, 0.05, 0.0))])
+def test_the_closest_point_is_not_the_bottom_of_a_groove(text, centre):
+    """Above the narrow bottom of a funnel or groove the walls are nearer than the bottom is, also exactly
+    above it, where the bottom is a stationary point of the distance."""
+    numbers, points = settled(text, centre), np.zeros((3, len(centre)))
+    points[:, 1] = numbers[1] * np.array([0.1, 0.5, 0.9])             # the walls are within `limit`
+    distance = points[:, 1] / np.sqrt(2)
+    assert numbers[1] > 1e-3 and implicit.gap(points, numbers) == pytest.approx(distance, abs=1e-6)
+
+
 def test_an_expression_that_is_no_distance_far_away():
     """exp(y/c) - 1 looks c away from everywhere above, and overflows: gaps are no more than the distance, and outside."""
     numbers = settled("exp(y/0.02) - 1")

@@ -16,6 +16,7 @@ ONE = {ast.USub: 11, "sin": 12, "cos": 13, "sqrt": 14, "exp": 15, "abs": 16}
 TINY = 1e-300                   # so that the slope of a root of 0 is that of what is in it, where this has none
 TURNS = 60                   # towards the closest point, at most
 CLOSE = 1e-9                 # of `limit`: how near it is at last
+BESIDE = 1e-6                # of `limit`: how far beside a point its iteration begins
 SAMPLES = 4000               # points at which steepness and curvature are looked for
 STEEPEST = 1e150                # beyond, squares overflow: of the expression the sign alone is known
 FARTHEST = 1e4               # how far, over the size of all bodies, the surface is looked for
@@ -115,8 +116,11 @@ def gap(points: np.ndarray, numbers: tuple[float, ...], bounds: bool = True) -> 
 
 def closest(points: np.ndarray, code: list[float], limit: float) -> tuple[np.ndarray, np.ndarray]:
     """Distances (n,) of points near the surface, and the closest points of it (n, axes): projected on the tangent plane of D there, again
-    and again, unless they turn out to be farther than twice `limit`."""
-    at, sides, distance = points, {}, np.zeros(len(points))
+    and again, unless they turn out to be farther than twice `limit`. The iteration begins beside each
+    point: the bottom of a hollow is a fixed point of it as well, but repels if it is not the closest
+    point."""
+    at = points + BESIDE * limit * _along_surface(run(code, points)[1])
+    sides, distance = {}, np.zeros(len(points))
     for _ in range(TURNS):
         value, slope = run(code, at, sides)
         size = np.linalg.norm(slope, axis=1)
@@ -126,6 +130,14 @@ def closest(points: np.ndarray, code: list[float], limit: float) -> tuple[np.nda
         if not abs(at - before).max() > CLOSE * limit:
             break
     return distance, at
+
+
+def _along_surface(slope: np.ndarray) -> np.ndarray:
+    """Directions (n, axes) across the normals, along no axis in general."""
+    normal = slope / np.linalg.norm(slope, axis=1)[:, None]
+    if slope.shape[1] == 2:
+        return normal[:, ::-1] * [1.0, -1.0]
+    return np.cross(normal, [0.36, 0.48, 0.8])
 
 
 def nearest(point: np.ndarray, gap: float, code: list[float], limit: float, disc: tuple[np.ndarray, float]
