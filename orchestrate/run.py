@@ -48,7 +48,7 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | str
     scene = scene.override(_sizes_left_to(mesh_file, scene) | (overrides or {}))
     folder = result_folder(Path(out or RESULTS / scene.name))
     mesh_file = mesh_file and _mesh_path(Path(mesh_file))
-    foreign = gmsh_file.load(mesh_file) if mesh_file else None
+    foreign = gmsh_file.load(mesh_file, alone=True) if mesh_file else None
     scene.description(foreign, mesh_file)   # BadInput before anything is made
     finished = finished_in(folder, force)
     if not force and (there := reusable(scene, folder, mesh_file, estimate)):

@@ -1,4 +1,6 @@
-"""A mesh in gmsh's format as one of ours: its triangles in the plane, its boundary from them, labels from its physical curves."""
+"""A mesh in gmsh's format as one of ours: its triangles in the plane, its boundary from them, labels from its physical curves.
+
+Without physical curves all of the boundary may touch, the outlines of holes, too."""
 
 import tempfile
 from pathlib import Path
@@ -10,13 +12,14 @@ from ..failure import BadInput
 
 TRIANGLES = {2: 3, 9: 6}        # gmsh's types of element that are read: their nodes, of which the first three are the corners
 LINES = {1: 2, 8: 3}            # likewise, the first two are the ends
-OTHER = 3                       # the label of what is neither contact nor axis
+OTHER = mesh.Mesh.NEVER         # the label of what is neither contact nor axis
 LABELS = {"contact": mesh.FREE, "symmetry": mesh.AXIS}
 
 
-def load(path: Path) -> bytes:
+def load(path: Path, alone: bool = False) -> bytes:
     """The mesh in a file as FreeFEM's .msh: one of gmsh is converted, one of FreeFEM is taken as it is (what is in it is checked
-    by edp/core/input/mesh-file.idp). BadInput where it cannot be read, or is one of gmsh that gmsh or we cannot use."""
+    by edp/core/input/mesh-file.idp). A body `alone` on a plane touches nothing in its holes. BadInput where it cannot be read, or is
+    one of gmsh that gmsh or we cannot use."""
     try:
         text = path.read_bytes()
     except OSError as error:
@@ -27,7 +30,8 @@ def load(path: Path) -> bytes:
         copy, made = Path(folder) / "mesh.msh", Path(folder) / "freefem.msh"   # gmsh goes by the ending of the name
         copy.write_bytes(text)
         try:
-            mesh.write(mesh.in_own_process(read, copy), made)
+            found = mesh.in_own_process(read, copy)
+            mesh.write(mesh.without_inner(found) if alone else found, made)
         except BadInput as error:
             raise BadInput(f"mesh: {path}: {str(error).replace(copy.name, path.name)}") from None
         return made.read_bytes()
@@ -52,7 +56,7 @@ def taken(model) -> mesh.Mesh:
     points, triangles = points[:, :2], mesh.counter_clockwise(points[:, :2], triangles)
     edges = mesh.boundary(triangles)
     if curves is None:
-        labels = np.where(mesh.is_outer(points, edges), mesh.FREE, OTHER)
+        labels = np.full(len(edges), mesh.FREE)
     else:
         number = {int(tag): k for k, tag in enumerate(used)}
         labelled = {}

@@ -19,6 +19,7 @@ from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from types import ModuleType
+from typing import ClassVar
 
 import numpy as np
 
@@ -50,6 +51,11 @@ class Mesh:
     labels: np.ndarray
     hubs: np.ndarray | None = None
     region: int = 0
+    NEVER: ClassVar[int] = 3       # the label of edges that may not touch
+
+    @property
+    def sides(self) -> np.ndarray:
+        return self.edges
 
     def moved(self, by: np.ndarray) -> "Mesh":
         """The same mesh, `by` [m] elsewhere."""
@@ -323,11 +329,22 @@ def pieces(points: int, elements: np.ndarray) -> np.ndarray:
             return piece
 
 
-def is_outer(points: np.ndarray, sides: np.ndarray) -> np.ndarray:
-    """Which of the sides (f, axes) of a boundary are around a body rather than around a hole: pieces that hang together, with an area or
-    volume above 0."""
+def inner_outlines(points: np.ndarray, sides: np.ndarray) -> list[np.ndarray]:
+    """Of each hole of a body the numbers of its sides among those of the boundary (f, axes). The
+    outline that has the leftmost point is the outer one."""
     piece = pieces(len(points), sides)[sides[:, 0]]
-    return np.bincount(piece, weights=np.linalg.det(points[sides] - points.mean(axis=0)), minlength=len(points))[piece] > 0
+    outer = piece[points[sides][:, :, 0].min(axis=1).argmin()]
+    return [np.flatnonzero(piece == inner) for inner in np.unique(piece) if inner != outer]
+
+
+def without_inner(made, keeps: Callable[[np.ndarray], bool] = lambda corners: False):
+    """The Mesh or SolidMesh with inner outlines that may not touch, except those that are kept, for
+    which `keeps` is asked with their corners (n, axes)."""
+    labels = made.labels.copy()
+    for own in inner_outlines(made.points, made.sides):
+        if not keeps(made.points[np.unique(made.sides[own])]):
+            labels[own] = made.NEVER
+    return replace(made, labels=labels)
 
 
 def write(mesh: Mesh, path: Path, regions: np.ndarray | None = None) -> None:

@@ -1,6 +1,6 @@
 """A solid in a file: a mesh of tetrahedra (gmsh's .msh, Medit's .mesh) or a geometry that gmsh meshes (.geo, .step, .stp), lengths in m.
 
-Faces of a physical surface named `contact` may touch, others never; without physical surfaces the outer surface may, cavities never.
+Faces of a physical surface named `contact` may touch, others never; without physical surfaces all may, those of cavities, too.
 """
 
 import re
@@ -12,8 +12,8 @@ import numpy as np
 
 from . import mesh
 from ..failure import BadInput
-from .mesh import FREE, Sizes, boundary, in_own_process, is_outer, pieces
-from .solid_mesh import NEVER, SolidMesh, cell_volumes, cells_of, generate
+from .mesh import FREE, Sizes, boundary, in_own_process, pieces
+from .solid_mesh import SolidMesh, cell_volumes, cells_of, generate
 
 MESHES, GEOMETRIES = (".msh", ".mesh"), (".geo", ".step", ".stp")
 OTHERS = re.compile(r"\b(Merge|Include|ShapeFromFile)\b")       # in a .geo: takes in another file
@@ -125,13 +125,13 @@ def _labelled(model) -> SolidMesh:
     _check_surface(points, faces)
     named = _contact_triangles(model)
     if named is None:
-        return SolidMesh(points, cells, faces, np.where(is_outer(points, faces), FREE, NEVER))
+        return SolidMesh(points, cells, faces, np.full(len(faces), FREE))
     scale = np.ptp(points, axis=0).max()
     def keys(corners: np.ndarray) -> list[tuple]:
         """Triangles by their corners, to a billionth of the size."""
         return [tuple(sorted(map(tuple, one))) for one in np.round(corners / scale, 9).tolist()]
     wanted = set(keys(named))
-    labels = np.array([FREE if key in wanted else NEVER for key in keys(points[faces])])
+    labels = np.array([FREE if key in wanted else SolidMesh.NEVER for key in keys(points[faces])])
     if not (labels == FREE).any():
         raise BadInput(f"its physical surface '{CONTACT}' is not on its boundary")
     return SolidMesh(points, cells, faces, labels)

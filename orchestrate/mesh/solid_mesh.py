@@ -7,13 +7,14 @@ Labels of boundary faces: 1 may touch, 2 on the plane x = 0 of what is computed 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 
 from . import mesh, rounding
 from .mesh import AXIS, FREE, GROWTH, Sizes
 
-DEPTH, NEVER = 3, 4
+DEPTH = 3
 PLANES = {0: AXIS, 2: DEPTH}       # of symmetry: the axis across it, and its label
 LARGEST = 0.52                     # element of a ball over its radius: twelve on a full turn
 MOST_SOURCES = 2000                # points that sizes are measured from
@@ -51,6 +52,11 @@ class SolidMesh:
     faces: np.ndarray
     labels: np.ndarray
     curved: tuple[Curved, ...] = ()
+    NEVER: ClassVar[int] = 4       # the label of faces that may not touch
+
+    @property
+    def sides(self) -> np.ndarray:
+        return self.faces
 
     def moved(self, by: np.ndarray) -> "SolidMesh":
         """The same mesh, `by` [m] elsewhere."""

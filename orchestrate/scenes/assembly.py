@@ -1,6 +1,7 @@
 """What FreeFEM computes a scene of bodies on: one mesh of all of them, apart from each other, and a data file of words and numbers.
 
-Region k of the mesh is body k, from 0; its edges have the label 1 where the body may touch, another one where nothing reaches. The
+Region k of the mesh is body k, from 0; its edges have the label 1 where the body may touch, another one where its file excludes that or
+nothing reaches them. The
 bodies stand side by side along x, not turned, each about its own centre of area; scene.dat says where they are at the start. Of bodies of
 revolution it is the half x >= 0 of their sections, the axis with the label 2, one above the other.
 """
@@ -24,11 +25,10 @@ from ..failure import BadInput
 from ..mesh.mesh import AXIS, FREE, Curve, Sizes, mesh_body, nearest
 from .mirror import COPIES, FOLDED, copies
 from .scene import OWN, SELF_CONTACT, Pair, Scene
-from ..geometry.outlines import Loop
+from ..geometry.outlines import Loop, rotation
 from ..input.parameters import Value
 from ..input.tables import to_toml
 
-NEVER = 3                    # the label of what nothing reaches
 ROUND = 0.5                  # largest element size on a circle or ellipse, over its smaller semi-axis
 LIKE = ("radius", "young", "nu", "density", "speed", "angle", "spin")
 # of the contact of a disc on a plane: where less of an outline is near, elements are smaller; of two equal discs it is 0.71
@@ -114,6 +114,7 @@ def _sections(scene: Scene, sizes: list[Sizes | None]) -> tuple[mesh.Mesh, np.nd
     """The mesh of bodies in the plane, the body of each triangle, the centres in it, the lines of circles in scene.dat (of sections those
     that are not another's mirror image)."""
     meshes = [body.mesh or mesh_body(_boundary(scene, k), sizes[k], body.outline.half_thickness) for k, body in enumerate(scene.bodies)]
+    meshes = [_reached(scene, k, made) for k, made in enumerate(meshes)]
     centres = side_by_side(meshes, 1 if scene.dimension is AXISYMMETRIC else 0)
     circles = [(k, *(centre + at), radius) for k, (body, centre) in enumerate(zip(scene.bodies, centres)) for loop in body.outline.loops
                for at, radius in loop.circles if scene.dimension is not AXISYMMETRIC or at[0] >= 0]
@@ -125,6 +126,7 @@ def _solids(scene: Scene, sizes: list[Sizes | None]) -> tuple[solid_mesh.SolidMe
     folded = FOLDED[copies(scene)]
     accuracy = float(scene.values["accuracy"])
     meshes = [solids.mesh_of(body, one, folded, accuracy) for body, one in zip(scene.bodies, sizes)]
+    meshes = [_reached(scene, k, made) for k, made in enumerate(meshes)]
     count = sum(solid_mesh.unknowns(one.cells, scene.values["degree"]) for one in meshes)
     if count > solid_mesh.MOST_UNKNOWNS:
         raise BadInput(f"mesh_size: the bodies have {count} unknowns (accepted: up to {solid_mesh.MOST_UNKNOWNS}; larger mesh_size, "
@@ -302,26 +304,36 @@ def _near(body: Body, k: int, one: Meeting, depth: float, points: np.ndarray) ->
 
 def _boundary(scene: Scene, k: int) -> list[list[tuple[Curve, float, int]]]:
     """The closed curves that bound the mesh of body k, the outer first, counter-clockwise: each piece with the largest element size on it
-    and its label. Nothing reaches a hole that holds no other body and no obstacle, unless the body touches itself."""
-    outer, *holes = scene.bodies[k].outline.loops
+    and its label."""
+    loops = scene.bodies[k].outline.loops
     if scene.dimension is AXISYMMETRIC:
-        *surface, axis = revolution.boundary(outer)
-        return [[*((piece, _largest(outer), FREE) for piece in surface), (axis, np.inf, AXIS)]]
-    itself = any(pair.first == pair.second == k for pair in scene.pairs)
-    reached = [True, *(itself or _holds(scene, k, hole) for hole in scene.bodies[k].placed.loops[1:])]
-    return [[(partial(loop.at, piece), _largest(loop), FREE if touched else NEVER) for piece in range(len(loop.corners))]
-            for loop, touched in zip((outer, *holes), reached)]
+        *surface, axis = revolution.boundary(loops[0])
+        return [[*((piece, _largest(loops[0]), FREE) for piece in surface), (axis, np.inf, AXIS)]]
+    return [[(partial(loop.at, piece), _largest(loop), FREE) for piece in range(len(loop.corners))]
+            for loop in loops]
 
 
 def _largest(loop: Loop) -> float:
     return np.inf if loop.semi_axes is None else ROUND * loop.semi_axes.min()
 
 
-def _holds(scene: Scene, k: int, hole: Loop) -> bool:
-    centre = hole.area_centre
-    farthest = np.linalg.norm(hole.polygon - centre, axis=1).max()
-    bodies = any(hole.gap(other.placed.points[:1])[0] < 0 for j, other in enumerate(scene.bodies) if j != k)
-    return bodies or any(obstacle.gap(centre[None])[0] < farthest for obstacle in scene.obstacles)
+def _reached(scene: Scene, k: int, made: mesh.Mesh | solid_mesh.SolidMesh) -> mesh.Mesh | solid_mesh.SolidMesh:
+    """The mesh of body k. Its inner outlines may touch like the outer one where the body touches itself
+    or something is in their circle. Nothing reaches the others, so they need no contact points."""
+    if any(pair.first == pair.second == k for pair in scene.pairs):
+        return made
+    return mesh.without_inner(made, partial(_holds, scene, k))
+
+
+def _holds(scene: Scene, k: int, inner: np.ndarray) -> bool:
+    """Whether another body or an obstacle is in the circle (sphere) around an inner outline of body k,
+    points (n, axes) of its mesh."""
+    body = scene.bodies[k]
+    turned = inner if scene.dimension is SOLID else inner @ rotation(body.angle).T
+    centre = (turned.min(axis=0) + turned.max(axis=0)) / 2
+    around = np.linalg.norm(turned - centre, axis=1).max()
+    others = [*(other.placed for j, other in enumerate(scene.bodies) if j != k), *scene.obstacles]
+    return any(other.gap((centre + body.position)[None])[0] < around for other in others)
 
 
 # ---- meshes
