@@ -87,7 +87,7 @@ def test_long_flights_end_at_the_touch(tmp_path, case):
 def test_what_leaves_an_expression_that_is_no_distance(tmp_path, distance, told):
     """Above a surface that falls away, or one whose expression says little of how far it is: no touch is made up, and none is denied that is not known."""
     _, found = go(tmp_path, read(DISC | {"position": [0, 0.0501], "velocity": [0, -5]}, obstacles=({"kind": "implicit", "distance": distance},)))
-    assert [one[:len(told[0]) if told else 0] for one in found.summary["warnings"] if one.startswith("touches again")] == told
+    assert [one[:len(told[0]) if told else 0] for one in found.summary["notes"] if one.startswith("touches again")] == told
 
 
 def test_a_steel_bead_bounces(tmp_path):
@@ -98,7 +98,7 @@ def test_a_steel_bead_bounces(tmp_path):
         _, found = go(tmp_path / str(len(more)), scene.load("ball-axisymmetric"), bead | more)
         assert found.summary["contact_time"] == pytest.approx(2.868 * (mass**2 / (5e-4 * stiff**2 * speed))**0.2, rel=0.025)      # a finite ball's is 2 % less
         assert found.summary["rebound_vy"] == pytest.approx(speed, rel=0.01)
-    assert any(one.startswith("touches again") and "t = 1.35" in one for one in found.summary["warnings"])
+    assert any(one.startswith("touches again") and "t = 1.35" in one for one in found.summary["notes"])
 
 
 def test_a_body_tumbles_for_long(tmp_path):
@@ -148,7 +148,7 @@ def test_what_falls_back_is_told(tmp_path):
     """Under gravity a run without end_time ends after the first impact, and says when the body is back: by the parabola."""
     _, found = go(tmp_path, scene.load("disc-normal"), {"law": "neohookean", "accuracy": 0.1, "speed": 2, "gravity": 9.81})
     s = found.summary
-    told, = [one for one in s["warnings"] if one.startswith("touches again")]
+    told, = [one for one in s["notes"] if one.startswith("touches again")]
     assert float(told.split("t = ")[1].split(" s")[0]) == pytest.approx(s["contact_start"] + s["contact_time"] + 2 * s["rebound_vy"] / 9.81, rel=0.03)
 
 
@@ -177,7 +177,7 @@ def test_what_would_touch_for_ever_is_told(tmp_path):
     rows, found = go(tmp_path / "open", read(given, obstacles=walls, accuracy=0.2))
     _, alone = go(tmp_path / "alone", read(given, obstacles=walls, accuracy=0.2, end_time=float(found.history["t"][-1])))
     s = found.summary
-    told, = [one for one in s["warnings"] if one.startswith("touches again")]
+    told, = [one for one in s["notes"] if one.startswith("touches again")]
     arrives = s["contact_start"] + s["contact_time"] + 0.04 / s["rebound_vy"]
     assert float(told.split("t = ")[1].split(" s")[0]) == pytest.approx(arrives, rel=0.1) and "end_time > 0" in told
     assert len(rows) == s["contact_intervals"] == 1 and len(found.history["t"]) == s["steps"] + 1
@@ -191,7 +191,7 @@ def test_under_gravity_an_impact_ends_with_the_first_flight_that_gravity_bends(t
     contacts, found = go(tmp_path, read(DISC | {"position": [0, 0.06], "velocity": [0.5, -4]}, obstacles=(bowl,), gravity=9.81))
     log = (found.folder / "log.txt").read_text()
     assert len(contacts) == 1 and max(map(float, re.findall(r"progress \S+ t=(\S+)", log)), default=0) < 0.05
-    assert any(words.startswith("touches again: ") for words in found.summary["warnings"]) and found.summary["cpu_seconds"] < 2
+    assert any(words.startswith("touches again: ") for words in found.summary["notes"]) and found.summary["cpu_seconds"] < 2
 
 
 SOFT = {"young": 5e6, "nu": 0.4, "density": 1200}
@@ -214,7 +214,7 @@ def test_a_contact_long_after_the_first_is_named_and_not_computed(tmp_path, case
     no part of the impact. The run marches no step beyond its end, and says who touches when."""
     bodies, obstacles, who, (earliest, latest) = FAR_AWAY[case]
     rows, found = go(tmp_path, read(*bodies, obstacles=obstacles, **SOFT))
-    s, told = found.summary, [one for one in found.summary["warnings"] if one.startswith("touches again")]
+    s, told = found.summary, [one for one in found.summary["notes"] if one.startswith("touches again")]
     marched = [float(t) for t in re.findall(r"progress \S+ t=(\S+)", (found.folder / "log.txt").read_text())]
     assert s["ended"] == "impact" and s["contact_time"] < 6e-3 and rows.end.max() < 0.02
     assert max(marched) <= found.history["t"][-1] * (1 + 1e-5) < 0.1      # 6 digits are printed
@@ -229,7 +229,7 @@ def test_a_corner_that_follows_at_once_belongs_to_the_impact(tmp_path):
     square = {"shape": "rectangle", "width": 0.1, "height": 0.1, "position": [0, 0.08], "angle": 20}
     rows, found = go(tmp_path, read(square | {"velocity": [0, -2]}, obstacles=(FLOOR,)))
     assert len(rows) == 2 and rows.start[1] - rows.start[0] < 3 * rows.time[0]
-    assert not [one for one in found.summary["warnings"] if one.startswith("touches again")]
+    assert not [one for one in found.summary["notes"] if one.startswith("touches again")]
 
 
 def test_steps_grow_in_a_flight_before_an_end_time(tmp_path):
