@@ -33,7 +33,7 @@ from .input.tables import to_toml
 ENTRANCE = "scenes/assembly"           # the module that makes flags, mesh and scene.dat, with all that it imports
 # of these: what asks, starts, says and reads, and does not decide a result
 HARMLESS = {"failure", "places", "freefem/describe", "freefem/freefem", "output/estimate", "output/results"}
-ESTIMATING = ("output/estimate", "output/notes", "output/results")   # what decides the stated errors besides
+ESTIMATING = ("output/estimate", "output/notes", "output/results", "scenes/finer")   # what decides the stated errors besides
 
 
 def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | str | None = None, *,
@@ -71,7 +71,7 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | str
         try:
             with Solver(program, scene, mesh_file, foreign, stage, lock, line, pair=estimate) as solve:
                 solve({}, stage)
-                settled = stage, scene.values | scene.sizes, solve.own_mesh, solve, read_answers, scene.scaled
+                settled = stage, scene.values | scene.sizes, solve.own_mesh, solve, read_answers, solve.scaled
                 found = estimates.settle(*settled) if estimate else {}
         except Failure as failure:
             if checkpoints(stage):   # a script that comes to its end, good or bad, removes it

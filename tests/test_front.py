@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from orchestrate import scene
-from orchestrate.scenes import assembly, front
+from orchestrate.scenes import assembly, finer, front
 from orchestrate.scenes.approach import meetings
 
 BLOCK = """
@@ -115,7 +115,7 @@ def test_what_is_used_makes_the_same_scene_again(tmp_path):
     assert assembly.assemble(scene.read(used, tmp_path, "again")).data == built.data
     pair, = used["contact"]["pair"]
     assert used["body"][0]["mesh_size"] == pytest.approx(0.01) and pair["penalty"] == pytest.approx(1e6 / (0.04 * 0.1))
-    coarse = assembly.assemble(wanted.override(wanted.scaled(wanted.values, used, 1.25))).used
+    coarse = assembly.assemble(wanted.override(finer.scaled(wanted, wanted.values, used, 1.25))).used
     assert coarse["body"][0]["mesh_size"] == pytest.approx(1.25 * 0.01)
     assert coarse["contact"]["pair"][0]["penalty"] == pytest.approx(pair["penalty"] / 1.25)
 
@@ -125,7 +125,7 @@ def test_what_the_user_gives_stays(tmp_path):
     wanted = given(BLOCK, tmp_path, contact__penalty=1e9, body__1__mesh_size=0.02)
     used = tomllib.loads(assembly.to_toml(assembly.assemble(wanted).used))
     assert used["contact"]["penalty"] == 1e9 and used["contact"].get("pair", []) == [] and used["body"][0]["mesh_size"] == 0.02
-    assert wanted.scaled(wanted.values, used, 2.0)["contact.penalty"] == 1e9
+    assert finer.scaled(wanted, wanted.values, used, 2.0)["contact.penalty"] == 1e9
 
 
 def test_the_unknowns_of_a_front_are_limited(tmp_path):

@@ -15,7 +15,7 @@ from orchestrate.input import parameters
 from orchestrate.input.tables import to_toml
 from orchestrate.mesh import mesh
 from orchestrate.output import estimate, vtu
-from orchestrate.scenes import assembly
+from orchestrate.scenes import assembly, finer
 from orchestrate.freefem.describe import describe
 from orchestrate.failure import BadInput, Failure
 from orchestrate.report import bodies, drawing, figures, impacts, report
@@ -147,7 +147,7 @@ def test_coarser_and_finer_elements(mine):
     wanted = scene.load(str(mine[1]))
     used = run.read_scene(mine[0].folder)
     finer = run.read_scene(mine[0].folder) | {}
-    built = assembly.assemble(wanted.override(wanted.scaled(wanted.values, used, 0.5)))
+    built = assembly.assemble(wanted.override(finer.scaled(wanted, wanted.values, used, 0.5)))
     assert [body["mesh_size"] for body in built.used["body"]] == [0.5 * body["mesh_size"] for body in finer["body"]]
     assert built.used["contact"] == used["contact"] and built.values["accuracy"] == 0.25 * used["accuracy"]
     assert len(built.mesh.triangles) > 2 * len(assembly.assemble(wanted).mesh.triangles)
@@ -158,7 +158,7 @@ def test_a_finer_run_keeps_what_a_scene_asks_for(mine, factor, kept):
     """Of a scene of bodies as of the paper's: only the coarser run, which is compared, writes no output."""
     asked = {"fields": 5, "modes": 4, "checkpoint_every": 7}
     wanted = scene.load(str(mine[1])).override(asked)
-    other = wanted.override(wanted.scaled(wanted.values, run.read_scene(mine[0].folder), factor))
+    other = wanted.override(finer.scaled(wanted, wanted.values, run.read_scene(mine[0].folder), factor))
     assert {name: other.values[name] for name in asked} == asked | ({} if kept else parameters.OUTPUT)
 
 

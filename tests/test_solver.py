@@ -8,6 +8,7 @@ import pytest
 from orchestrate import run, scene
 from orchestrate.freefem import freefem
 from orchestrate.output import estimate, results
+from orchestrate.running import solver
 from orchestrate.failure import Failure
 from test_checkpoint import EFFORT
 from test_kills import at_work
@@ -70,7 +71,7 @@ def test_sizes_that_are_used_otherwise_are_run_again(order, monkeypatch, tmp_pat
     def other(values, used, factor, own_mesh=True):
         guesses.append(estimate.other(values, used, factor, own_mesh))
         return guesses[-1] | ({"mesh_size": 0.02} if len(guesses) == 1 else {})
-    monkeypatch.setattr(type(wanted), "scaled", property(lambda self: other))
+    monkeypatch.setattr(solver, "scaled", lambda scene, *given: other(*given))
     found = run.run(wanted, SCENES["disc-normal"], tmp_path / "out", progress=False)
     assert order.count("coarser starts") == 2 and found.summary["estimated_error"] and not list(tmp_path.glob("out.*"))
 
@@ -88,7 +89,7 @@ def test_a_run_beside_that_fails_is_said_where_it_was(monkeypatch, tmp_path):
     """A coarser run without an answer leaves the main one as it is, with a sentence why its error is not known."""
     monkeypatch.setattr(freefem, "CORES", 2)
     wanted = scene.load("disc-normal")
-    monkeypatch.setattr(type(wanted), "scaled", property(lambda self: lambda *given: estimate.other(*given) | {"speed": 60, "law": "svk"}))
+    monkeypatch.setattr(solver, "scaled", lambda scene, *given: estimate.other(*given) | {"speed": 60, "law": "svk"})
     found = run.run(wanted, SCENES["disc-normal"] | {"law": "neohookean"}, tmp_path / "out", progress=False)
     assert found.summary["estimated_error"] is None and "the error is not estimated: the run with 1.4 times larger" in " ".join(found.summary["warnings"])
 

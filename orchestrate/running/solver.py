@@ -10,6 +10,7 @@ import signal
 import time
 from collections.abc import Mapping
 from contextlib import AbstractContextManager, ExitStack, suppress
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +23,7 @@ from ..progress import Line
 from ..output.results import read_history, read_json, read_summary, write_json
 from ..scene import Scene
 from ..scenes.assembly import prepare
+from ..scenes.finer import scaled
 
 FAILURES = {10: "bad input", 11: "step failed", 12: "material broke down", 13: "not installed", 14: "unreadable"}
 COST = estimate.COARSER**-3       # of a run with larger elements and steps, over that of the one beside it
@@ -40,6 +42,7 @@ class Solver(AbstractContextManager):
     def __init__(self, program: freefem.FreeFem, scene: Scene, mesh_file: Path | None, foreign: bytes | None, stage: Path, lock: int,
                  line: Line, pair: bool):
         self.program, self.scene, self.mesh_file, self.foreign = program, scene, mesh_file, foreign
+        self.scaled = partial(scaled, scene)
         self.stage, self.lock, self.line = stage, lock, line
         self.pair = pair and freefem.CORES > 1 and not multiprocessing.parent_process()
         self.own_mesh = foreign is None and not scene.of_files
@@ -92,7 +95,7 @@ class Solver(AbstractContextManager):
     def _start_beside(self, used: Mapping) -> None:
         """The coarser run, as settle() will ask for it. What hinders it is said then."""
         where = self.stage / estimate.COARSE
-        given = self.scene.scaled(self.scene.values | self.scene.sizes, used, estimate.COARSER, self.own_mesh)
+        given = self.scaled(self.scene.values | self.scene.sizes, used, estimate.COARSER, self.own_mesh)
         if not (where / "summary.json").exists():
             with suppress(Failure):
                 self.beside = where, given, self._started(given, where, self.leaving)

@@ -1,10 +1,11 @@
 """Flat strikes: a face that lands as a whole on a face or a plane sends a plane wave front through its body.
 
-The patch of a disc shrinks with the speed; a front does not, so elements, steps and penalty follow the front. With tau the time that
-the front takes through one element, a bar of length L (wave speed c, modulus M = rho c^2) on a penalty k has the rise time
-M/(k c), loses 0.051 M/(k L) of its rebound and stays 1.68 M/(k L) L/c too long (exact solution: docs/method.md). The penalty makes the
-front STEEPNESS times as steep as one element, and rise in LONGEST of its transit across the body at most: then the elements resolve the front, and all errors are of
-first order in the element size.
+The contact patch of a disc shrinks with the speed. A front does not, so elements, steps and penalty
+follow the front. A bar of length L (wave speed c, modulus M = rho c^2) on a penalty k has a front with
+the rise time M/(k c). It loses 0.051 M/(k L) of its rebound and leaves 1.68 M/(k c) late (exact solution:
+docs/method.md). Let tau be the time that the front takes through one element. The penalty lets the front
+rise in tau / STEEPNESS, and in LONGEST of its transit across the body at most. Then the elements resolve
+the front, and all errors are of first order in the element size.
 """
 
 import math

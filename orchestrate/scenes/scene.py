@@ -179,36 +179,6 @@ class Scene:
             except BadInput as error:
                 raise BadInput(str(error).replace(file.name, str(path))) from None
 
-    def scaled(self, values: dict, used: dict, factor: float, own_mesh: bool = True) -> dict[str, Value | list]:
-        """What the scene, run as the tables `used`, is overridden by for `factor` times the elements and steps; the contact's own
-        parameters stay as they were. Meshes of files stay too."""
-        if not self.bodies:
-            return estimate.other(values, used, factor, own_mesh)
-        found = {f"contact.{name}": used["contact"][name] for name in ("penalty", "slip_velocity", "friction_dynamic")}
-        if used["contact"].get("pair"):
-            found["contact.pair"] = self._scaled_pairs(used["contact"]["pair"], factor)
-        for k, (body, given) in enumerate(zip(self.bodies, used["body"]), 1):
-            if not body.mesh:
-                bulk = min(factor * given["mesh_size"], body.outline.half_thickness)
-                found |= {f"body.{k}.mesh_size": bulk, f"body.{k}.contact_mesh_size": min(bulk, factor * given["contact_mesh_size"])}
-        if used["dt"] > 0:
-            found["dt"] = factor * used["dt"]
-        return found | {"accuracy": estimate.loosened(used["accuracy"], factor)} | estimate.output(factor)
-
-    def _scaled_pairs(self, used: list[dict], factor: float) -> list[dict]:
-        """The tables [[contact.pair]] as used, with the penalty of flat strikes, where it is open, that of elements `factor` times as
-        large: their error is that of element and penalty together (front.py)."""
-        from .approach import meetings
-        from .front import fronts
-        said = {(pair.first, pair.second) for pair in self.pairs if "penalty" in pair.values}
-        if self.contact["penalty"] != "auto" or len(used) == len(said):
-            return used
-        name = [one.name for one in self.bodies], [one.name for one in self.obstacles]
-        flat = [[name[0][front.meeting.first], name[0][k] if k >= 0 else name[1][-1 - k]] for front in fronts(self, meetings(self))
-                if (front.meeting.first, k := front.meeting.second) not in said]
-        weaker = factor**self.contact["exponent"]
-        return [one | {"penalty": one["penalty"] / weaker} if one["bodies"] in flat else one for one in used]
-
 
 def read(given: dict, folder: Path, name: str) -> Scene:
     """The scene in a file's tables; mesh files are sought from `folder` on. BadInput for whatever is wrong in it."""

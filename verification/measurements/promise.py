@@ -14,6 +14,7 @@ from orchestrate.failure import Failure, TooLong
 from orchestrate.input.parameters import Value, whole
 from orchestrate.output import estimate, notes
 from orchestrate.output.results import read_answers
+from orchestrate.scenes.finer import scaled
 from orchestrate.sweeps import study
 
 from .. import commands
@@ -50,7 +51,8 @@ def main(argv: list[str]) -> int:
     seed, count = (wanted if given is None else given for wanted, given in zip(usual, (options.seed, options.scenes)))
     table = compare(_drawn(options, seed, max(1, count)), options.out)
     if options.coarse:
-        return _finish_parts(options, table, table.accuracy.map("accuracy {:g}".format), argv, "Whether stated errors hold at coarse accuracies")
+        return _finish_parts(options, table, table.accuracy.map("accuracy {:g}".format), argv,
+                             "Whether stated errors hold at coarse accuracies")
     if options.flat:
         return _finish_parts(options, table, table.scene.str.partition(":")[0], argv, "Whether stated errors hold where faces strike flat")
     good = silent(table) == 0 if options.hard else kept(table) and covered(table)
@@ -126,8 +128,8 @@ def _compared(wanted: scene.Scene, folder: Path) -> dict:
         solve({}, stage)
         factor = 1 / FINER.get(wanted.name, 3)
         used = read_answers(stage).used
-        reference = wanted.scaled(wanted.values, used | {"accuracy": min(STEPS_GROW, used["accuracy"])}, factor)
-        found = estimate.settle(stage, wanted.values | wanted.sizes, True, solve, read_answers, wanted.scaled)
+        reference = scaled(wanted, wanted.values, used | {"accuracy": min(STEPS_GROW, used["accuracy"])}, factor)
+        found = estimate.settle(stage, wanted.values | wanted.sizes, True, solve, read_answers, partial(scaled, wanted))
         seconds, answers = paid[0], read_answers(stage)
         solve(reference, finer)
         best = read_answers(finer).summary | {"largest_energy": answers.summary["largest_energy"]}
