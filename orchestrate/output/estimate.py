@@ -101,7 +101,7 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
             break
         estimated = _stated(answers, before_it)
         above = [name for name in wanted(values["accuracy_of"]) if estimated[name] > WORTH * asked]
-        flat = summary.get("front_rise") is not None       # its contact time is not of a scatter, but no finer run is worth it
+        flat = summary.get("front_transit") is not None    # its contact time is not of a scatter, but no finer run is worth it
         scatters = above == [SCATTERS] and (flat or estimated[SCATTERS]**2 / before > WORTH * asked)
         before = estimated[SCATTERS]
         told = excess(estimated, asked, values["accuracy_of"])
@@ -120,17 +120,24 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
         sentences = []
     for folder in (coarser, finer):
         shutil.rmtree(folder, ignore_errors=True)
-    return {"estimated_error": estimated, "estimated_error_excludes": [*REGULARISED, *([] if own_mesh else ["mesh"])],
+    return {"estimated_error": estimated, "estimated_error_excludes": _excludes(summary, own_mesh),
             "estimate_cpu_seconds": seconds, "refinements": refinements, "warnings": sentences,
             "notes": [*notes, *([FILE_MESH] if estimated and not own_mesh else [])], "skipped": why if refinements else []}
+
+
+def _excludes(summary: Mapping, own_mesh: bool) -> list[str]:
+    """What all runs have alike. The open penalty of a flat strike follows the elements."""
+    alike = [name for name in REGULARISED if name != "penalty" or summary.get("front_rise") is None]
+    return alike if own_mesh else [*alike, "mesh"]
 
 
 def _stated(fine: Answers, coarse: Answers) -> dict[str, float]:
     """The error that is stated of every answer of the finer run of a pair."""
     summary = fine.summary
     apart, way = difference(summary, coarse.summary, fine.speed, fine.used.get("radius")), course(fine, coarse)
-    if rise := summary.get("front_rise"):
-        found = front_errors(apart, way, rise / summary["contact_time"] if summary["contact_time"] else 0.0)
+    if summary.get("front_transit"):
+        rise, lasts = summary["front_rise"] or 0.0, summary["contact_time"]
+        found = front_errors(apart, way, rise / lasts if lasts else 0.0)
     else:
         found = errors(apart, way, resolved(fine), alike(fine, coarse))
     found["energy"] = max(found["energy"], summary.get("energy_drift", 0.0))   # of which the pair may have the same

@@ -105,7 +105,8 @@ def assemble(scene: Scene, rule: Rule | None = None, met: list[Meeting] | None =
     sizes = [None if body.mesh else _sizes(k, ask) for k, body in enumerate(scene.bodies)]
     together, regions, centres, rounds = (_solids if scene.dimension is SOLID else _sections)(scene, sizes)
     disc = ask.disc(scene.bodies, min(body.outline.half_thickness for body in scene.bodies), slides=True)
-    front = [(min(one.tau for one in ask.fronts.values()), max(one.rise for one in ask.fronts.values()))] if ask.fronts else []
+    rise = max((front.rise for pair in scene.pairs if (front := ask.open_front(pair))), default=0.0)
+    front = [(min(one.tau for one in ask.fronts.values()), rise)] if ask.fronts else []
     return Assembly(together, regions, centres, data_file(scene, disc, centres, rounds, pairs, front), values,
                     used_tables(scene, sizes, values, pairs))
 
@@ -154,6 +155,11 @@ class Asker:
         """The flat strikes, by the pair that meets; of several of a pair the one with the smallest elements."""
         found = sorted(fronts(self.scene, self.met), key=lambda front: -front.tau)
         return {(front.meeting.first, front.meeting.second): front for front in found}
+
+    def open_front(self, pair: Pair) -> Front | None:
+        """The front of a pair that strikes flat and whose penalty is open."""
+        is_open = pair.values.get("penalty", self.scene.contact["penalty"]) == "auto"
+        return self.fronts.get((pair.first, pair.second)) if is_open else None
 
     def answer(self, bodies: list[Body], radius: float, slides: bool = False, **more: Value) -> dict:
         """Of the rule, for such a disc."""
@@ -211,10 +217,10 @@ def pair_values(pair: Pair, ask: Asker, values: dict[str, Value]) -> dict[str, V
     small = ask.small(pair.first, pair.second)
     if 0 < small < math.inf:
         inherited["penalty"] = ask.scene.contact["penalty"]
-    front = ask.fronts.get((pair.first, pair.second))
-    if front and ask.scene.contact["penalty"] == "auto":
-        inherited["penalty"] = front.penalty(ask.scene.bodies, ask.scene.contact["exponent"])
-    own = contact_values(bodies, inherited | pair.values, ask, pair.path, small or math.inf)
+    own = inherited | pair.values
+    if front := ask.open_front(pair):
+        own["penalty"] = front.penalty(ask.scene.bodies, ask.scene.contact["exponent"])
+    own = contact_values(bodies, own, ask, pair.path, small or math.inf)
     return {name: own[name] for name in OWN}
 
 
@@ -363,7 +369,7 @@ def data_file(scene: Scene, disc: dict[str, Value], centres: np.ndarray, rounds:
               front: Sequence[tuple[float, float]] = ()) -> str:
     """The text of scene.dat, words and numbers (SI, radians), as edp/core/input/scene-file.idp says; the disc, or ball, is what the rules
     stand for, `rounds` are the lines of circles, or of spheres and cylinders, `front` the transit through an element and
-    the rise [s] of the front of a flat strike, where there is one."""
+    the rise [s] on an open penalty (else 0) of the front of a flat strike, where there is one."""
     if scene.dimension is SOLID:
         head = [("ffimpact-bodies-3d", 1), ("copies", copies(scene))]
         starts = [(*(body.position - centre), *body.velocity, *body.spin) for body, centre in zip(scene.bodies, centres)]

@@ -18,7 +18,7 @@ def scaled(scene: Scene, values: Mapping, used: Mapping, factor: float, own_mesh
         return estimate.other(values, used, factor, own_mesh)
     found = {f"contact.{name}": used["contact"][name] for name in ("penalty", "slip_velocity", "friction_dynamic")}
     if used["contact"].get("pair"):
-        found["contact.pair"] = _pairs(scene, used["contact"]["pair"], factor)
+        found["contact.pair"] = _pairs(scene, used["contact"]["pair"])
     for k, (body, given) in enumerate(zip(scene.bodies, used["body"]), 1):
         if not body.mesh:
             bulk = min(factor * given["mesh_size"], body.outline.half_thickness)
@@ -28,14 +28,13 @@ def scaled(scene: Scene, values: Mapping, used: Mapping, factor: float, own_mesh
     return found | {"accuracy": estimate.loosened(used["accuracy"], factor)} | estimate.output(factor)
 
 
-def _pairs(scene: Scene, used: list[dict], factor: float) -> list[dict]:
-    """The tables [[contact.pair]] as used. An open penalty of a flat strike is that of elements `factor` times as large: its error is
-    that of elements and penalty together (front.py)."""
+def _pairs(scene: Scene, used: list[dict]) -> list[dict]:
+    """The tables [[contact.pair]] as used. The open penalty of a flat strike stays open and follows the elements: its error
+    is that of elements and penalty together (front.py)."""
     given = {(pair.first, pair.second) for pair in scene.pairs if "penalty" in pair.values}
     if scene.contact["penalty"] != "auto" or len(used) == len(given):
         return used
     flat = {(front.meeting.first, front.meeting.second) for front in fronts(scene, meetings(scene))} - given
     names = [[scene.bodies[first].name, scene.bodies[second].name if second >= 0 else scene.obstacles[-1 - second].name]
              for first, second in flat]
-    weaker = factor**scene.contact["exponent"]
-    return [pair | {"penalty": pair["penalty"] / weaker} if pair["bodies"] in names else pair for pair in used]
+    return [pair | {"penalty": "auto"} if pair["bodies"] in names else pair for pair in used]

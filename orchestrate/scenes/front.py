@@ -25,7 +25,7 @@ __all__ = ["Front", "fronts"]
 FLAT = 0.3             # share of the body's width that lands while the front passes an element
 PER_ACCURACY = 5.0     # element size over the length along the normal, over the accuracy
 STEEPNESS = 1.5        # elements over the rise length of the front
-LONGEST = 0.04         # rise of the front over its transit across the body
+LONGEST = 0.02         # rise of the front over its transit across the body
 BRIEF = 30.0           # transits of the front: a run that is asked to go on for longer is not about the front
 MOST_UNKNOWNS = {2: 40000, 3: 60000}   # in the plane, in space: no front asks for more
 # unknowns of a body of area (volume) V on quadratic elements of size h, over V/h^2 (V/h^3)
