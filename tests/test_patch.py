@@ -31,10 +31,10 @@ def ran(tmp_path_factory):
     return at
 
 
-def at_the_same_times(result: RunResult, beside: bool = False) -> list[tuple[pd.DataFrame, pd.Series]]:
+def at_the_same_times(result: RunResult) -> list[tuple[pd.DataFrame, pd.Series]]:
     """The points under load at an instant and the row of the history there."""
     history = pd.DataFrame(result.history)
-    return [(points, history.iloc[(history.t - t).abs().argmin()]) for t, points in pd.DataFrame(contact.read(result.folder, beside=beside)).groupby("t")]
+    return [(points, history.iloc[(history.t - t).abs().argmin()]) for t, points in pd.DataFrame(contact.read(result.folder)).groupby("t")]
 
 
 @pytest.mark.parametrize("which", SCENES)
@@ -43,7 +43,7 @@ def test_largest_pressure(ran, which):
     is at that point of the outline where contact.csv has it."""
     result = ran(which)
     h, s = result.history, result.summary
-    for points, row in at_the_same_times(result, beside=True):
+    for points, row in at_the_same_times(result):
         assert row.max_pressure == pytest.approx(points.projected_pressure.max(), rel=1e-7)
         for body in range(1, 3 if "max_pressure_2" in row else 1):
             assert row[f"max_pressure_{body}"] == pytest.approx(points[points.body == body].projected_pressure.max(), rel=1e-7)
@@ -196,9 +196,8 @@ def test_a_uniform_pressure_on_a_face_stays_uniform(tmp_path):
               "body": [block | {"name": name, "position": [x, 0.025]} for name, x in (("left", 0.0), ("right", 0.3))],
               "obstacle": [{"kind": "plane", "point": [0.0, 0.0], "normal": [0.0, 1.0]}]}
     result = run.run(scene.read(tables, tmp_path, "block"), {}, tmp_path / "out", estimate=False)
-    table = pd.DataFrame(contact.read(result.folder, beside=True))
+    table = pd.DataFrame(contact.read(result.folder))
     last = table[table.t == table.t.max()]
     face = last[last.pressure > 0]
     assert len(face) > 30 and face.projected_pressure.to_numpy() == pytest.approx(face.pressure.to_numpy(), rel=0.01)
     assert result.history["max_pressure"][-1] == pytest.approx(1000 * 9.81 * 0.05, rel=0.1)
-    assert not last.projected_pressure[last.pressure == 0].any()

@@ -10,7 +10,7 @@ import pytest
 from orchestrate import run, scene
 from orchestrate.freefem import freefem
 from orchestrate.output import notes, results
-from orchestrate.report import drawing, report
+from orchestrate.report import drawing, pages, report
 from orchestrate.sweeps import study
 from orchestrate.sweeps import sweep
 from verification import measure
@@ -121,6 +121,14 @@ def test_what_stands_behind_a_warning_is_a_note():
     assert notes.settled(["touches: a", "penalty: b"], []) == {"warnings": ["touches: a"], "notes": ["penalty: b"]}
     assert notes.settled(["estimated errors: a", "steps: b", "penalty: c"], []) == {"warnings": ["estimated errors: a", "penalty: c"], "notes": ["steps: b"]}
     assert notes.settled(["penalty: a", "contact points: b"], ["peak force: c"]) == {"warnings": ["penalty: a", "contact points: b"], "notes": ["peak force: c"]}
+
+
+def test_every_note_is_about_a_number_of_the_report():
+    """Its mark stands at a row: of each sentence that is a note, or becomes one behind a warning."""
+    always = {row.split(" | ")[0].strip("| ") for row in pages.warnings().splitlines()[2:] if "note" in row.split(" | ")[1]}
+    behind = {name for names in notes.BEHIND.values() for name in names}
+    rows = {row.key for row in report.rows("/m")} | {"estimated_error"}
+    assert {"touches again", "peak force"} <= always and not [name for name in always | behind if notes.number(name) not in rows]
 
 
 def test_a_line_is_no_wider_than_the_screen():

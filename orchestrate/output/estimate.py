@@ -59,7 +59,6 @@ STILL = 1.6                 # friction work where nothing turns: small slip unde
 LEVER = 0.7                 # of the rim's speed by friction's impulse, what it gives the centre: 1/2 of a disc, 2/5 of a ball, and a margin
 THROUGH = 2                 # friction that goes another way changes speed, spin and energy, too: its share in them
 SHARES = np.linspace(0, 1, 201)   # of the impulse
-SAME = 4.0                  # of several impacts: what does not show in runs with the same steps, over what does
 NONE = 1e-12                # a difference that is round-off
 STEPS = ("explicit steps (", "implicit steps (")        # as `skipped` says of those not chosen by integrator = auto
 SCATTERS = "thresholded_contact_time"
@@ -100,7 +99,7 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
         if all(coarse.get(name) == summary.get(name) is not None for name in ("dofs", "steps")):
             sentences = [SAME_STEPS]
             break
-        estimated = _stated(answers, before_it)
+        estimated = _stated(answers, before_it, estimated)
         above = [name for name in wanted(values["accuracy_of"]) if estimated[name] > WORTH * asked]
         flat = summary.get("front_transit") is not None    # its contact time is not of a scatter, but no finer run is worth it
         scatters = above == [SCATTERS] and (flat or estimated[SCATTERS]**2 / before > WORTH * asked)
@@ -132,8 +131,8 @@ def _excludes(summary: Mapping, own_mesh: bool) -> list[str]:
     return alike if own_mesh else [*alike, "mesh"]
 
 
-def _stated(fine: Answers, coarse: Answers) -> dict[str, float]:
-    """The error that is stated of every answer of the finer run of a pair."""
+def _stated(fine: Answers, coarse: Answers, before: Mapping[str, float] | None = None) -> dict[str, float]:
+    """The error that is stated of every answer of the finer run of a pair; `before`: what was stated of the coarser one."""
     summary = fine.summary
     apart, way = difference(summary, coarse.summary, fine.speed, fine.used.get("radius")), course(fine, coarse)
     if summary.get("front_transit"):
@@ -142,7 +141,7 @@ def _stated(fine: Answers, coarse: Answers) -> dict[str, float]:
     else:
         found = errors(apart, way, resolved(fine), alike(fine, coarse))
     if summary.get("bounces", 1) > 1:
-        found = strikes_again(found, way, alike(fine, coarse))
+        found = strikes_again(found, way, before)
     found["energy"] = max(found["energy"], summary.get("energy_drift", 0.0))   # of which the pair may have the same
     return found | highest(fine, coarse)
 
@@ -304,11 +303,12 @@ def errors(apart: Mapping[str, float], way: dict[str, float], steps: float, hidd
     return found | {OF_ITSELF: found["friction_work"] * way[OF_ITSELF] / way["friction_work"] if way["friction_work"] else 0.0}
 
 
-def strikes_again(stated: Mapping[str, float], way: Mapping[str, float], hidden: float) -> dict[str, float]:
+def strikes_again(stated: Mapping[str, float], way: Mapping[str, float], before: Mapping[str, float] | None) -> dict[str, float]:
     """The estimated errors of a run with several impacts. A later impact hangs on the vibration that an earlier one left, whose phase
     the steps change: two runs can then agree by chance in all answers at once. So an error is no less than the largest difference of
-    the time histories; runs with the same steps (`hidden`, alike()) differ by a fifth of it."""
-    return dict(stated) | {name: max(stated[name], way[name] * (1 + SAME * hidden)) for name in BOUND if name not in COURSE}
+    the time histories, and no less than second order makes of the error that was stated of the coarser run."""
+    least = {name: before[name] / COARSER**2 if before else 0.0 for name in BOUND}
+    return dict(stated) | {name: max(stated[name], way[name], least[name]) for name in BOUND if name not in COURSE}
 
 
 def front_errors(apart: Mapping[str, float], way: Mapping[str, float], rise: float) -> dict[str, float]:

@@ -23,7 +23,7 @@ BEHIND = {"overlap": OF_ACCURACY, "ellipticity": OF_ACCURACY,
 NUMBERS = {"penalty": "max_penetration", "locking": "peak_force", "corner": "min_stretch",
            "contact points": "peak_force", "steps": "contact_time", "touches": "contact_intervals",
            "estimated errors": "estimated_error", "mesh of the file": "estimated_error",
-           "ellipticity": "ellipticity_lost_time"}
+           "ellipticity": "ellipticity_lost_time", "touches again": "contact_intervals"}
 
 
 def name(sentence: str) -> str:
