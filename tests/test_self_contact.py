@@ -8,6 +8,7 @@ import pytest
 from orchestrate import run
 from orchestrate.output import vtu
 from orchestrate.failure import BadInput
+from orchestrate.mesh import mesh
 from orchestrate.scene import read as read_scene
 from orchestrate.scenes import assembly
 
@@ -17,10 +18,53 @@ PIN = {"name": "pin", "shape": "polygon", "vertices": [[0, 0], [0.1, 0], [0.1, 0
        "position": [0, 0.0151], "velocity": [0, -6], "mesh_size": 0.009, "contact_mesh_size": 0.009}
 RING = {"name": "ring", "shape": "ring", "radius": 0.05, "inner_radius": 0.044, "position": [0, 0.0501], "velocity": [0, -8], "mesh_size": 0.006, "contact_mesh_size": 0.006}
 DISC = {"name": "disc", "shape": "disc", "radius": 0.01, "mesh_size": 0.005, "contact_mesh_size": 0.005}
+# a box with a slot in it, which a peg closes
+WIDE, HIGH, SLOT_WIDE, SLOT_HIGH = 0.08, 0.02, 0.06, 0.004
+BOX = {"name": "box", "shape": "polygon", "position": [0, 0],
+       "vertices": [[-WIDE / 2, -HIGH / 2], [WIDE / 2, -HIGH / 2], [WIDE / 2, HIGH / 2], [-WIDE / 2, HIGH / 2]],
+       "holes": [[[-SLOT_WIDE / 2, -SLOT_HIGH / 2], [SLOT_WIDE / 2, -SLOT_HIGH / 2],
+                  [SLOT_WIDE / 2, SLOT_HIGH / 2], [-SLOT_WIDE / 2, SLOT_HIGH / 2]]],
+       "mesh_size": 0.005, "contact_mesh_size": 0.005}
+PEG = {"name": "peg", "kind": "circle", "centre": [0, HIGH / 2 + 0.0501], "radius": 0.05, "velocity": [0, -6]}
+PINCHED = SCENE | {"young": 2e6, "density": 1000, "fields": 40,
+                   "obstacle": [FLOOR | {"point": [0, -HIGH / 2 - 1e-4]}, PEG]}
 
 
-def read(given: dict):
-    return read_scene(given, Path(), "self")
+def read(given: dict, folder: Path = Path()):
+    return read_scene(given, folder, "self")
+
+
+def box_file(folder: Path, contact: str = "") -> dict:
+    """The box as a file of gmsh, with a physical curve `contact` of all curves, of the outer ones, or
+    without any."""
+    with mesh.gmsh_session() as gmsh:
+        occ = gmsh.model.occ
+        outer = occ.addRectangle(-WIDE / 2, -HIGH / 2, 0, WIDE, HIGH)
+        slot = occ.addRectangle(-SLOT_WIDE / 2, -SLOT_HIGH / 2, 0, SLOT_WIDE, SLOT_HIGH)
+        occ.cut([(2, outer)], [(2, slot)])
+        occ.synchronize()
+        def is_outer(curve: int) -> bool:
+            x, y, _ = gmsh.model.occ.getCenterOfMass(1, curve)
+            return max(abs(x) / WIDE, abs(y) / HIGH) > 0.49
+        curves = [curve for _, curve in gmsh.model.getEntities(1) if contact == "all" or is_outer(curve)]
+        if contact:
+            gmsh.model.addPhysicalGroup(1, curves, name="contact")
+            gmsh.model.addPhysicalGroup(2, [face for _, face in gmsh.model.getEntities(2)])
+        gmsh.option.setNumber("Mesh.MeshSizeMax", 0.005)
+        gmsh.model.mesh.generate(2)
+        gmsh.write(str(folder / "box.msh"))
+    return {"name": "box", "shape": "mesh", "file": "box.msh", "position": [0, 0]}
+
+
+def slot_of(found) -> np.ndarray:
+    """The least height of the slot in every snapshot, away from its ends."""
+    def wall(side: int):
+        return lambda x, y: (abs(y - side * SLOT_HIGH / 2) < 1e-9) & (abs(x) < 0.45 * SLOT_WIDE)
+    return distances(found, wall(1), wall(-1))
+
+
+def overlaps(found) -> list[str]:
+    return [one for one in found.summary["warnings"] if one.startswith("overlap: ")]
 
 
 def partners(given: dict) -> list[tuple[int, int]]:
@@ -149,3 +193,102 @@ def test_where_it_cannot_happen_it_changes_nothing(tmp_path):
     on, off = (ran(tmp_path, SCENE | {"body": [ring], "end_time": 1e-3, "contact": {"self_contact": word}}, word) for word in ("on", "auto"))
     assert "self-contact" not in on.summary["skipped"] and "self-contact" in off.summary["skipped"]
     assert on.history["momentum_y"] == pytest.approx(off.history["momentum_y"], rel=1e-7)
+
+
+# ---- inner outlines
+
+SHAPES = {"polygon": lambda folder: BOX, "file": box_file,
+          "file with a group": lambda folder: box_file(folder, "all")}
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_walls_of_a_hole_stop_each_other(tmp_path, shape):
+    """A peg closes the slot of 4 mm in a box. With self_contact = "auto" its walls stop each other and
+    keep energy. With "off" they pass through each other, and the warning says so before they are a
+    millimetre in, and not while they are apart."""
+    body = SHAPES[shape](tmp_path)
+    def pinched(word: str, end: float):
+        given = PINCHED | {"body": [body], "end_time": end, "contact": {"self_contact": word}}
+        return run.run(read(given, tmp_path), {}, tmp_path / f"{word}-{end}", estimate=False)
+    stopped, passed, before = pinched("auto", 1.3e-3), pinched("off", 1.3e-3), pinched("off", 5e-4)
+    assert stopped.summary["status"] == "ok" and stopped.summary["energy_drift"] < 1e-9
+    assert not overlaps(stopped) and stopped.summary["max_penetration"] < 5e-4
+    assert slot_of(stopped)[0] == pytest.approx(SLOT_HIGH) and abs(slot_of(stopped).min()) < 2e-4
+    assert slot_of(passed).min() < -1e-3 and not overlaps(before) and slot_of(before).min() > 0
+    sentence, = overlaps(passed)
+    start = float(sentence.split("t = ")[1].split()[0])
+    times = [t for t, _ in vtu.series(passed.folder / "fields.pvd")]
+    assert -1e-3 < np.interp(start, times, slot_of(passed)) < 0 and "self_contact" in sentence
+    x, y = map(float, sentence.split("X = (")[1].split(")")[0].split(", "))
+    assert abs(y) == pytest.approx(SLOT_HIGH / 2) and abs(x) < SLOT_WIDE / 2
+
+
+def test_walls_of_a_ring_are_watched(tmp_path):
+    """Without self-contact the inner sides of a ring that hits a plane pass through each other, and the
+    warning says so."""
+    found = ran(tmp_path, SCENE | {"body": [RING], "end_time": 12e-3, "contact": {"self_contact": "off"}})
+    assert len(overlaps(found)) == 1
+
+
+def test_what_a_file_excludes_is_watched(tmp_path):
+    """The curve `contact` of a file has the outer outline alone: the walls of its slot pass through each
+    other whatever self_contact says, and the warning says so; a disc falls through a side that may not
+    touch, and it names both."""
+    given = PINCHED | {"body": [box_file(tmp_path, "outer")], "end_time": 1e-3, "contact": {"self_contact": "on"}}
+    sentence, = overlaps(run.run(read(given, tmp_path), {}, tmp_path / "on", estimate=False))
+    assert "passes through itself" in sentence and "take a file" in sentence and "self_contact" not in sentence
+    disc = DISC | {"position": [0, 0.001], "velocity": [0, -3], "radius": 0.0005, "mesh_size": 2e-4, "contact_mesh_size": 2e-4}
+    given |= {"body": [given["body"][0], disc], "obstacle": [], "end_time": 9.5e-4, "contact": {}}
+    sentence, = overlaps(run.run(read(given, tmp_path), {}, tmp_path / "disc", estimate=False))
+    assert "box and disc pass through each other" in sentence or "disc and box pass" in sentence
+
+
+def test_which_inner_outlines_may_touch(tmp_path):
+    """Those of a body that touches itself, or with a body or an obstacle inside; others need no contact
+    points. What a file excludes stays out."""
+    def inner(body: dict, word: str, **more) -> set[int]:
+        given = PINCHED | {"body": [body, *more.get("bodies", [])], "contact": {"self_contact": word},
+                           "obstacle": [*PINCHED["obstacle"], *more.get("obstacles", [])]}
+        made = assembly.assemble(read(given, tmp_path)).mesh
+        own = made.points[made.edges].mean(axis=1)
+        in_slot = (abs(own[:, 0]) < 0.49 * WIDE) & (abs(own[:, 1]) < 0.49 * HIGH)
+        assert (made.labels[~in_slot] == mesh.FREE).all()
+        return set(made.labels[in_slot].tolist())
+    inside = DISC | {"radius": 0.001, "position": [0.01, 0], "mesh_size": 5e-4, "contact_mesh_size": 5e-4}
+    pin = {"name": "pin", "kind": "circle", "centre": [0.01, 0], "radius": 0.001}
+    for body in (BOX, box_file(tmp_path)):
+        assert inner(body, "off") == {mesh.Mesh.NEVER} and inner(body, "auto") == {mesh.FREE}
+        assert inner(body, "off", bodies=[inside]) == inner(body, "off", obstacles=[pin]) == {mesh.FREE}
+        assert inner(body, "off", bodies=[inside | {"position": [0.2, 0]}]) == {mesh.Mesh.NEVER}
+    assert inner(box_file(tmp_path, "outer"), "on") == {mesh.Mesh.NEVER}
+
+
+def test_a_disc_stays_in_the_hole_of_a_file(tmp_path):
+    """A disc flies against the wall of the slot from inside and pushes the box along."""
+    disc = DISC | {"radius": 0.001, "velocity": [5, 0], "position": [0.027, 0], "mesh_size": 5e-4, "contact_mesh_size": 5e-4}
+    given = PINCHED | {"obstacle": [], "body": [box_file(tmp_path), disc], "end_time": 1.5e-3}
+    found = run.run(read(given, tmp_path), {}, tmp_path / "run", estimate=False)
+    balanced(found)
+    assert found.summary["impulse"] > 0 and found.history["x_2"].max() < SLOT_WIDE / 2 < 0.027 + 5 * 1.5e-3
+    assert found.history["momentum_x_1"][-1] > 0 and found.summary["max_penetration"] < 1e-4
+
+
+def test_walls_of_a_cavity(tmp_path):
+    """Likewise in three dimensions: on, the walls of a cavity of a file stop each other; by itself none
+    is in contact, and the warning says that they pass through each other."""
+    wide, slot = 0.05, 0.036
+    (tmp_path / "box.geo").write_text(
+        f'SetFactory("OpenCASCADE"); Box(1) = {{{-wide / 2}, {-HIGH / 2}, {-wide / 2}, {wide}, {HIGH}, {wide}}};\n'
+        f'Box(2) = {{{-slot / 2}, {-SLOT_HIGH / 2}, {-slot / 2}, {slot}, {SLOT_HIGH}, {slot}}};\n'
+        'BooleanDifference(3) = { Volume{1}; Delete; }{ Volume{2}; Delete; };\n')
+    body = {"shape": "mesh", "file": "box.geo", "position": [0, 0, 0], "mesh_size": 0.008, "contact_mesh_size": 0.008}
+    obstacles = [FLOOR | {"point": [0, -HIGH / 2 - 1e-4, 0], "normal": [0, 1, 0]},
+                 {"kind": "sphere", "centre": [0, HIGH / 2 + 0.0201, 0], "radius": 0.02, "velocity": [0, -8, 0]}]
+    given = PINCHED | {"dimension": "3d", "degree": 1, "accuracy": 0.3, "body": [body], "obstacle": obstacles,
+                       "end_time": 9e-4, "fields": 10}
+    on, auto = (run.run(read(given | {"contact": {"self_contact": word}}, tmp_path), {}, tmp_path / word, estimate=False)
+                for word in ("on", "auto"))
+    assert on.summary["energy_drift"] < 1e-9 and not overlaps(on)
+    assert abs(slot_of(on).min()) < 5e-4
+    sentence, = overlaps(auto)
+    assert slot_of(auto).min() < -5e-4 and "self_contact" in sentence

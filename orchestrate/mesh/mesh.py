@@ -337,12 +337,13 @@ def inner_outlines(points: np.ndarray, sides: np.ndarray) -> list[np.ndarray]:
     return [np.flatnonzero(piece == inner) for inner in np.unique(piece) if inner != outer]
 
 
-def without_inner(made, keeps: Callable[[np.ndarray], bool] = lambda corners: False):
+def without_inner(made, keeps: Callable[[np.ndarray, np.ndarray], bool] = lambda own, rest: False):
     """The Mesh or SolidMesh with inner outlines that may not touch, except those that are kept, for
-    which `keeps` is asked with their corners (n, axes)."""
+    which `keeps` is asked with the vertices (n, axes) on it and on the rest of the boundary."""
     labels = made.labels.copy()
     for own in inner_outlines(made.points, made.sides):
-        if not keeps(made.points[np.unique(made.sides[own])]):
+        rest = np.delete(made.sides, own, axis=0)
+        if not keeps(*(made.points[np.unique(sides)] for sides in (made.sides[own], rest))):
             labels[own] = made.NEVER
     return replace(made, labels=labels)
 

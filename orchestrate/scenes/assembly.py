@@ -325,21 +325,20 @@ def _largest(loop: Loop) -> float:
 
 def _reached(scene: Scene, k: int, made: mesh.Mesh | solid_mesh.SolidMesh) -> mesh.Mesh | solid_mesh.SolidMesh:
     """The mesh of body k. Its inner outlines may touch like the outer one where the body touches itself
-    or something is in their circle. Nothing reaches the others, so they need no contact points."""
+    or something is inside. Nothing reaches the others, so they need no contact points."""
     if any(pair.first == pair.second == k for pair in scene.pairs):
         return made
     return mesh.without_inner(made, partial(_holds, scene, k))
 
 
-def _holds(scene: Scene, k: int, inner: np.ndarray) -> bool:
-    """Whether another body or an obstacle is in the circle (sphere) around an inner outline of body k,
-    points (n, axes) of its mesh."""
+def _holds(scene: Scene, k: int, inner: np.ndarray, rest: np.ndarray) -> bool:
+    """Whether another body or an obstacle is inside an inner outline of body k, vertices (n, axes) of
+    its mesh: it is then nearer to that outline than to the rest of the boundary."""
     body = scene.bodies[k]
-    turned = inner if scene.dimension is SOLID else inner @ rotation(body.angle).T
-    centre = (turned.min(axis=0) + turned.max(axis=0)) / 2
-    around = np.linalg.norm(turned - centre, axis=1).max()
+    turn = np.eye(3) if scene.dimension is SOLID else rotation(body.angle).T
+    own, outer = (points @ turn + body.position for points in (inner, rest))
     others = [*(other.placed for j, other in enumerate(scene.bodies) if j != k), *scene.obstacles]
-    return any(other.gap((centre + body.position)[None])[0] < around for other in others)
+    return any(other.gap(own).min() < other.gap(outer).min() for other in others)
 
 
 # ---- meshes
