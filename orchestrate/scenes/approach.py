@@ -186,22 +186,29 @@ def refuse_nothing(scene: Scene, met: list[Meeting]) -> None:
 
 
 def refuse_sinking(scene: Scene, met: list[Meeting]) -> None:
-    """BadInput where a body first comes to a plane, and with a part of its boundary that may not
-    touch: it would go through."""
+    """BadInput where a body first comes to a plane or another body, and with a part of its boundary
+    that may not touch: it would go through."""
     for k, body in enumerate(scene.bodies):
         mine = [one for one in met if k in (one.first, one.second)]
         first = min(mine, key=lambda one: one.time, default=None)
-        if not first or not math.isfinite(first.time) or first.second >= 0 or not body.sides:
+        if not first or not math.isfinite(first.time) or not body.sides:
             continue
-        obstacle, (corners, may_touch) = scene.obstacles[-1 - first.second], body.sides
-        if obstacle.kind != "plane" or 0 < scene.values["end_time"] < first.time:
+        if 0 < scene.values["end_time"] < first.time:
             continue
-        placed = body.outline.carried(first.outlines[0], corners.reshape(-1, corners.shape[2]))
-        gaps = obstacle.gap(placed)
+        own, other = first.outlines if k == first.first else first.outlines[::-1]
+        corners, may_touch = body.sides
+        if isinstance(other, Obstacle) and other.kind != "plane":
+            continue
+        placed = body.outline.carried(own, corners.reshape(-1, corners.shape[2]))
+        gaps = other.gap(placed)
         nearest = gaps.reshape(corners.shape[:2]).min(axis=1)
-        if nearest[may_touch].min() > nearest.min() + MET * first.radius:
+        # from a plane the nearest point is a corner, from a body it may lie within a side
+        near = MET * first.radius if isinstance(other, Obstacle) else np.ptp(corners, axis=1).max()
+        if nearest[may_touch].min() > nearest.min() + near:
+            partner = first.second if k == first.first else first.first
+            name = (scene.bodies[partner] if partner >= 0 else scene.obstacles[-1 - partner]).name
             place = ", ".join(f"{x:.3g}" for x in placed[gaps.argmin()])
-            raise BadInput(f"body.{k + 1}.file: '{body.name}' comes to '{obstacle.name}' with ({place}) "
+            raise BadInput(f"body.{k + 1}.file: '{body.name}' comes to '{name}' with ({place}) "
                            f"m, which may not touch and would go through it (accepted: a file whose "
                            f"label {mesh.FREE}, or physical group 'contact', is there, too)")
 

@@ -1,8 +1,8 @@
 """What FreeFEM computes a scene of bodies on: one mesh of all of them, apart from each other, and a data file of words and numbers.
 
-Region k of the mesh is body k, from 0; its edges have the label 1 where the body may touch, another one where its file excludes that or
-nothing reaches them. The
-bodies stand side by side along x, not turned, each about its own centre of area; scene.dat says where they are at the start. Of bodies of
+Region k of the mesh is body k, from 0. Its edges have the label 1 where the body may touch, another
+one where its file excludes that or nothing reaches them. The bodies stand side by side along x, not
+turned, each about its own centre of area; scene.dat says where they are at the start. Of bodies of
 revolution it is the half x >= 0 of their sections, the axis with the label 2, one above the other.
 """
 
@@ -323,17 +323,17 @@ def _largest(loop: Loop) -> float:
     return np.inf if loop.semi_axes is None else ROUND * loop.semi_axes.min()
 
 
-def _reached(scene: Scene, k: int, made: mesh.Mesh | solid_mesh.SolidMesh) -> mesh.Mesh | solid_mesh.SolidMesh:
-    """The mesh of body k. Its inner outlines may touch like the outer one where the body touches itself
-    or something is inside. Nothing reaches the others, so they need no contact points."""
+def _reached(scene: Scene, k: int, made):
+    """The Mesh or SolidMesh of body k. Its inner outlines may touch like the outer one where the body
+    touches itself or something is inside. Nothing reaches the others, which need no contact points."""
     if any(pair.first == pair.second == k for pair in scene.pairs):
         return made
     return mesh.without_inner(made, partial(_holds, scene, k))
 
 
 def _holds(scene: Scene, k: int, inner: np.ndarray, rest: np.ndarray) -> bool:
-    """Whether another body or an obstacle is inside an inner outline of body k, vertices (n, axes) of
-    its mesh: it is then nearer to that outline than to the rest of the boundary."""
+    """Whether another body or an obstacle is inside an inner outline of body k, vertices (n, axes)
+    of its mesh: it is then nearer to that outline than to the rest of the boundary."""
     body = scene.bodies[k]
     turn = np.eye(3) if scene.dimension is SOLID else rotation(body.angle).T
     own, outer = (points @ turn + body.position for points in (inner, rest))
