@@ -241,18 +241,23 @@ def test_geometries_are_meshed_with_the_sizes_of_the_scene(files):
 
 
 def test_named_surfaces_may_touch(files):
-    """Faces of the physical surface `contact` have the label 1, all others 4; without one all have 1, those of a cavity where something reaches them."""
+    """Faces of the physical surface `contact` have the label 1, all others 4; without one all have
+    1, those of a cavity where something reaches them."""
     m = assembly.assemble(read({"shape": "mesh", "file": "named.geo", "position": [0, 0.1, 0]}, folder=files, obstacles=[FLOOR | {"point": [0, 0, 0]}])).mesh
     below = (m.points[m.faces][..., 1] < m.points[:, 1].min() + 1e-6).all(axis=1)
     assert np.array_equal(m.labels == 1, below) and set(m.labels) == {1, 4}
     (files / "hollow.geo").write_text('SetFactory("OpenCASCADE"); Sphere(1) = {0, 0, 0, 1}; Sphere(2) = {0, 0, 0, 0.5}; BooleanDifference(3) = { Volume{1}; Delete; }{ Volume{2}; Delete; };\n')
     assert set(solid_file.read(files / "hollow.geo").labels) == {1}
-    hollow, floor = {"shape": "mesh", "file": "hollow.geo", "position": [0, 1.1, 0], "mesh_size": 0.3, "contact_mesh_size": 0.3}, FLOOR | {"point": [0, 0, 0]}
-    inside = {"name": "inside", "shape": "ball", "radius": 0.1, "position": [0.1, 1.1, 0], "mesh_size": 0.05, "contact_mesh_size": 0.05}
+    hollow = {"shape": "mesh", "file": "hollow.geo", "position": [0, 1.1, 0], "mesh_size": 0.3,
+              "contact_mesh_size": 0.3}
+    inside = {"name": "inside", "shape": "ball", "radius": 0.1, "position": [0.1, 1.1, 0],
+              "mesh_size": 0.05, "contact_mesh_size": 0.05}
     beside = inside | {"position": [2, 1.1, 0]}
-    for more, word, labels in (([], "off", {4}), ([], "on", {1}), ([inside], "off", {1}), ([beside], "off", {4})):
-        made = assembly.assemble(read(hollow, *more, folder=files, obstacles=[floor], contact={"self_contact": word})).mesh
-        away = np.linalg.norm(made.points[made.faces].mean(axis=1), axis=1)     # the body is about the origin
+    for more, word, labels in (([], "off", {4}), ([], "on", {1}), ([inside], "off", {1}),
+                               ([beside], "off", {4})):
+        made = assembly.assemble(read(hollow, *more, folder=files, obstacles=[FLOOR],
+                                      contact={"self_contact": word})).mesh
+        away = np.linalg.norm(made.points[made.faces].mean(axis=1), axis=1)
         assert set(made.labels[away < 0.7]) == labels and set(made.labels[away > 0.7]) == {1}
 
 

@@ -18,8 +18,8 @@ LABELS = {"contact": mesh.FREE, "symmetry": mesh.AXIS}
 
 def load(path: Path, alone: bool = False) -> bytes:
     """The mesh in a file as FreeFEM's .msh: one of gmsh is converted, one of FreeFEM is taken as it is (what is in it is checked
-    by edp/core/input/mesh-file.idp). A body `alone` on a plane touches nothing in its holes. BadInput
-    where it cannot be read, or is one of gmsh that gmsh or we cannot use."""
+    by edp/core/input/mesh-file.idp). A body `alone` on a plane touches nothing in its holes.
+    BadInput where it cannot be read, or is one of gmsh that gmsh or we cannot use."""
     try:
         text = path.read_bytes()
     except OSError as error:

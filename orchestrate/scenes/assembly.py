@@ -324,8 +324,8 @@ def _largest(loop: Loop) -> float:
 
 
 def _reached(scene: Scene, k: int, made):
-    """The Mesh or SolidMesh of body k. Its inner outlines may touch like the outer one where the body
-    touches itself or something is inside. Nothing reaches the others, which need no contact points."""
+    """The Mesh or SolidMesh of body k. Its inner outlines may touch like the outer one where the
+    body touches itself or something is inside. Nothing reaches the others: no contact points."""
     if any(pair.first == pair.second == k for pair in scene.pairs):
         return made
     return mesh.without_inner(made, partial(_holds, scene, k))
