@@ -244,6 +244,9 @@ def test_steps_grow_in_a_flight_before_an_end_time(tmp_path):
     rise = h["vy"][k] * (h["t"] - h["t"][k]) - 9.81 * (h["t"] - h["t"][k])**2 / 2
     assert h["t"][-1] - h["t"][k] > 1000 * transit and len(h["t"]) - k < 300
     assert h["y"][k:] - h["y"][k] == pytest.approx(rise[k:], abs=1e-9) and s["energy_drift"] < 1e-8
+    log = (found.folder / "log.txt").read_text()                      # forecasts know the flight
+    told = [int(n) / float(share) for share, n in re.findall(r"progress (\S+) t=\S+ steps=(\d+)", log)]
+    assert max(told) < 5 * len(h["t"])
 
 
 def test_steps_of_a_compact_body_stay_before_an_end_time(tmp_path):
