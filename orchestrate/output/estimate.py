@@ -51,8 +51,8 @@ MEASURES = {"rebound_spin": "Ddd", "friction_work": "Add", "peak_force": "Ddd"} 
 ROOT = {"thresholded_contact_time": 4, "contact_time": 4}                           # of the others: 3
 ALIKE = {"D": 1.4, "impulse": 0.3, "rebound": 0.7, "rebound_spin": 0.5, "energy": 1.0, "friction_work": 0.03}   # over A, by steps alone
 # of flat strikes: front_errors(), calibrated likewise
-FRONT = {"impulse": 3.0, "rebound": 3.0, "rebound_spin": 3.0, "energy": 4.0, "friction_work": 3.0, "thresholded_contact_time": 1.7,
-         "contact_time": 1.7, "peak_force": 4.0}
+FRONT = {"impulse": 3.0, "rebound": 3.0, "rebound_spin": 5.0, "energy": 3.0, "friction_work": 3.0, "thresholded_contact_time": 3.0,
+         "contact_time": 3.5, "peak_force": 7.0}
 PROMISED = tuple(USUAL)[:6]
 COURSE = {"thresholded_contact_time": "impulse", "contact_time": "impulse", "peak_force": "impulse"}   # whose course stands for theirs
 STILL = 1.6                 # friction work where nothing turns: small slip under a patch that mostly sticks, over BOUND
@@ -321,6 +321,7 @@ def front_errors(apart: Mapping[str, float], way: Mapping[str, float], rise: flo
     moved = [name for name in ("impulse", "rebound", "energy") if way[name] > NONE]
     share = math.sqrt(min(1.0, sum(apart[name] / way[name] for name in moved) / len(moved))) if moved else 0.0
     measures = {name: way[name] * share for name in BOUND}
+    measures["energy"] = max(measures["energy"], 2 * measures["rebound"])      # dE/E = 2 dv/v
     measures |= {name: rise + apart[name] for name in ("thresholded_contact_time", "contact_time")}
     measures["peak_force"] = way["impulse"] + apart["peak_force"]
     found = {name: max(apart[name], FRONT[name] * measure) for name, measure in measures.items()}
