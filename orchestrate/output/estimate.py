@@ -126,7 +126,7 @@ def settle(stage: Path, values: Mapping[str, Value], own_mesh: bool, solve: Solv
 
 
 def _excludes(summary: Mapping, own_mesh: bool) -> list[str]:
-    """What all runs have alike. The open penalty of a flat strike follows the elements."""
+    """What all runs have alike. The rise of a flat strike's front on the penalty is in its estimate (front_errors())."""
     alike = [name for name in REGULARISED if name != "penalty" or summary.get("front_rise") is None]
     return alike if own_mesh else [*alike, "mesh"]
 
@@ -136,7 +136,7 @@ def _stated(fine: Answers, coarse: Answers, before: Mapping[str, float] | None =
     summary = fine.summary
     apart, way = difference(summary, coarse.summary, fine.speed, fine.used.get("radius")), course(fine, coarse)
     if summary.get("front_transit"):
-        rise, lasts = summary["front_rise"] or 0.0, summary["contact_time"]
+        rise, lasts = summary["front_rise"], summary["contact_time"]
         found = front_errors(apart, way, rise / lasts if lasts else 0.0)
     else:
         found = errors(apart, way, resolved(fine), alike(fine, coarse))

@@ -105,8 +105,9 @@ def assemble(scene: Scene, rule: Rule | None = None, met: list[Meeting] | None =
     sizes = [None if body.mesh else _sizes(k, ask) for k, body in enumerate(scene.bodies)]
     together, regions, centres, rounds = (_solids if scene.dimension is SOLID else _sections)(scene, sizes)
     disc = ask.disc(scene.bodies, min(body.outline.half_thickness for body in scene.bodies), slides=True)
-    rise = max((front.rise for pair in scene.pairs if (front := ask.open_front(pair))), default=0.0)
-    front = [(min(one.tau for one in ask.fronts.values()), rise)] if ask.fronts else []
+    penalties = {(pair.first, pair.second): float(own["penalty"]) for pair, own in zip(scene.pairs, pairs)}
+    rises = [one.rise_on(penalties.get(both, values["penalty"]), scene.bodies, values["exponent"]) for both, one in ask.fronts.items()]
+    front = [(min(one.tau for one in ask.fronts.values()), max(rises))] if rises else []
     return Assembly(together, regions, centres, data_file(scene, disc, centres, rounds, pairs, front), values,
                     used_tables(scene, sizes, values, pairs))
 
@@ -368,7 +369,7 @@ def data_file(scene: Scene, disc: dict[str, Value], centres: np.ndarray, rounds:
               front: Sequence[tuple[float, float]] = ()) -> str:
     """The text of scene.dat, words and numbers (SI, radians), as edp/core/input/scene-file.idp says; the disc, or ball, is what the rules
     stand for, `rounds` are the lines of circles, or of spheres and cylinders, `front` the transit through an element and
-    the rise [s] on an open penalty (else 0) of the front of a flat strike, where there is one."""
+    the rise [s] of the front of a flat strike, where there is one."""
     if scene.dimension is SOLID:
         head = [("ffimpact-bodies-3d", 1), ("copies", copies(scene))]
         starts = [(*(body.position - centre), *body.velocity, *body.spin) for body, centre in zip(scene.bodies, centres)]

@@ -47,14 +47,20 @@ class Front:
 
     @property
     def rise(self) -> float:
-        """The time [s] in which the front rises."""
+        """The time [s] in which the front is to rise."""
         return min(self.tau / STEEPNESS, LONGEST * self.transit)
 
     def penalty(self, bodies: list[Body], exponent: float) -> float:
         """The penalty k [Pa/m^m] that lets the front rise so: t_N = k p^m at the pressure rho c v of the strike."""
-        impedances = [bodies[k].density * wave_speed(bodies[k]) for k in self.sizes]
-        pressure = self.meeting.closing / sum(1 / one for one in impedances)             # [Pa]
-        return pressure / (self.meeting.closing * self.rise)**exponent
+        return self._pressure(bodies) / (self.meeting.closing * self.rise)**exponent
+
+    def rise_on(self, penalty: float, bodies: list[Body], exponent: float) -> float:
+        """The time [s] in which the front rises on a penalty [Pa/m^m]."""
+        return (self._pressure(bodies) / penalty)**(1 / exponent) / self.meeting.closing
+
+    def _pressure(self, bodies: list[Body]) -> float:
+        """rho c v [Pa], of two bodies with the impedances rho c of both in series."""
+        return self.meeting.closing / sum(1 / (bodies[k].density * wave_speed(bodies[k])) for k in self.sizes)
 
 
 def fronts(scene: Scene, met: list[Meeting]) -> list[Front]:
