@@ -357,3 +357,27 @@ def test_runs_that_saw_different_touches_say_so():
     told, = estimate.touches({"contact_intervals": 3}, {"contact_intervals": 2})
     assert told.startswith("touches: contact intervals 3, with 1.4 times larger elements and steps 2: ")
     assert not estimate.touches({"contact_intervals": 3}, {"contact_intervals": 3})
+
+
+# ---- flat strikes
+
+def test_errors_of_a_flat_strike_fall_with_their_measures():
+    """Twice the differences of a pair are twice the errors of impulse and rebound; the rise of the front enters contact times; a front
+    that the elements do not resolve leaves an error that no pair shows."""
+    names = {name: 1e-2 for name in [*estimate.BOUND, estimate.OF_ITSELF]}
+    resolved = estimate.front_errors(names, names, 0.01, 1e-3)
+    twice = estimate.front_errors({name: 2e-2 for name in names}, {name: 2e-2 for name in names}, 0.01, 1e-3)
+    assert twice["impulse"] == pytest.approx(2 * resolved["impulse"]) and twice["rebound"] == pytest.approx(2 * resolved["rebound"])
+    later = estimate.front_errors(names, names, 0.02, 1e-3)["contact_time"] - resolved["contact_time"]
+    assert later == pytest.approx(estimate.FRONT["contact_time"] * 0.01)
+    none = dict.fromkeys(names, 0.0)
+    sharp = estimate.front_errors(none, none, 0.01, 0.1)
+    assert sharp["rebound"] == 2 * sharp["impulse"] == pytest.approx(0.024) and estimate.front_errors(none, none, 0.01, 0.0)["rebound"] == 0
+
+
+def test_errors_of_several_impacts_fall_no_faster_than_second_order():
+    """Runs that agree at the end by chance state what their histories differ by, and half of what was stated before."""
+    small, way = {name: 1e-6 for name in estimate.BOUND}, {name: 1e-3 for name in estimate.BOUND}
+    assert estimate.strikes_again(small, way, None)["rebound"] == 1e-3
+    again = estimate.strikes_again(small, way, {name: 1e-2 for name in estimate.BOUND})
+    assert again["rebound"] == pytest.approx(5e-3) and again["peak_force"] == 1e-6

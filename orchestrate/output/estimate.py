@@ -53,6 +53,7 @@ ALIKE = {"D": 1.4, "impulse": 0.3, "rebound": 0.7, "rebound_spin": 0.5, "energy"
 # of flat strikes: front_errors(), calibrated likewise
 FRONT = {"impulse": 3.0, "rebound": 3.0, "rebound_spin": 5.0, "energy": 3.0, "friction_work": 3.0, "thresholded_contact_time": 3.0,
          "contact_time": 3.5, "peak_force": 7.0}
+SHARP, RESOLVED = {"impulse": 0.12, "rebound": 0.24, "energy": 0.48}, 7.5
 PROMISED = tuple(USUAL)[:6]
 COURSE = {"thresholded_contact_time": "impulse", "contact_time": "impulse", "peak_force": "impulse"}   # whose course stands for theirs
 STILL = 1.6                 # friction work where nothing turns: small slip under a patch that mostly sticks, over BOUND
@@ -136,8 +137,8 @@ def _stated(fine: Answers, coarse: Answers, before: Mapping[str, float] | None =
     summary = fine.summary
     apart, way = difference(summary, coarse.summary, fine.speed, fine.used.get("radius")), course(fine, coarse)
     if summary.get("front_transit"):
-        rise, lasts = summary["front_rise"], summary["contact_time"]
-        found = front_errors(apart, way, rise / lasts if lasts else 0.0)
+        lasts = summary["contact_time"] or math.inf
+        found = front_errors(apart, way, summary["front_rise"] / lasts, summary["front_transit"] / lasts)
     else:
         found = errors(apart, way, resolved(fine), alike(fine, coarse))
     if summary.get("bounces", 1) > 1:
@@ -311,12 +312,13 @@ def strikes_again(stated: Mapping[str, float], way: Mapping[str, float], before:
     return dict(stated) | {name: max(stated[name], way[name], least[name]) for name in BOUND if name not in COURSE}
 
 
-def front_errors(apart: Mapping[str, float], way: Mapping[str, float], rise: float) -> dict[str, float]:
+def front_errors(apart: Mapping[str, float], way: Mapping[str, float], rise: float, element: float) -> dict[str, float]:
     """The estimated errors of a flat strike, where answers converge with the first power of the element size and the penalty follows it.
-    `rise` [1] is the rise time of the front over the contact time.
+    `rise` and `element` [1] are the rise time of the front, and its transit through an element, over the contact time.
 
     As in errors() one difference can be small by chance. An error is FRONT d sqrt(r), d the largest difference of its time history,
-    r the mean of the differences at the end over d. Contact ends 1.7 rises late (front.py), which is about its error.
+    r the mean of the differences at the end over d. Contact ends 1.7 rises late (front.py), which is about its error. A front that
+    rises in less than its transit through an element keeps a share of the speed, in runs of all element sizes alike: SHARP element.
     """
     moved = [name for name in ("impulse", "rebound", "energy") if way[name] > NONE]
     share = math.sqrt(min(1.0, sum(apart[name] / way[name] for name in moved) / len(moved))) if moved else 0.0
@@ -324,7 +326,8 @@ def front_errors(apart: Mapping[str, float], way: Mapping[str, float], rise: flo
     measures["energy"] = max(measures["energy"], 2 * measures["rebound"])      # dE/E = 2 dv/v
     measures |= {name: rise + apart[name] for name in ("thresholded_contact_time", "contact_time")}
     measures["peak_force"] = way["impulse"] + apart["peak_force"]
-    found = {name: max(apart[name], FRONT[name] * measure) for name, measure in measures.items()}
+    sharp = element * min(1.0, element / (RESOLVED * rise)) if rise else 0.0
+    found = {name: max(apart[name], FRONT[name] * measure, SHARP.get(name, 0.0) * sharp) for name, measure in measures.items()}
     return found | {OF_ITSELF: found["friction_work"] * way[OF_ITSELF] / way["friction_work"] if way["friction_work"] else 0.0}
 
 
