@@ -1,4 +1,5 @@
-"""Flat strikes: a face that lands as a whole on a face or a plane sends a plane wave front through its body.
+"""Flat strikes: a face that lands as a whole on a face or a plane sends a plane wave front through its
+body.
 
 The contact patch of a disc shrinks with the speed. A front does not, so elements, steps and penalty
 follow the front. A bar of length L (wave speed c, modulus M = rho c^2) on a penalty k has a front with
@@ -15,29 +16,28 @@ import numpy as np
 
 from ..geometry.outlines import Shape
 from ..input.dimension import SOLID
-from ..input.parameters import Value
 from .approach import Meeting
 from .bodies import Body
 from .scene import Scene
 
 __all__ = ["Front", "fronts"]
 
-FLAT = 0.3             # share of the body's width that lands while the front passes an element
+FLAT = 0.3             # share of a body's width that lands while the front passes an element
 PER_ACCURACY = 5.0     # element size over the length along the normal, over the accuracy
 STEEPNESS = 1.5        # elements over the rise length of the front
 LONGEST = 0.02         # rise of the front over its transit across the body
-BRIEF = 30.0           # transits of the front: a run that is asked to go on for longer is not about the front
-MOST_UNKNOWNS = {2: 40000, 3: 60000}   # in the plane, in space: no front asks for more
-# unknowns of a body of area (volume) V on quadratic elements of size h, over V/h^2 (V/h^3)
-UNKNOWNS = {2: 9.5, 3: 36.0}
-STIFFEST = 0.45        # nu: what is nearer to 0.5 acts on the volume of elements and carries no front (docs/method.md)
+BRIEF = 30.0           # transits: a run that is asked to go on for longer is not about the front
+# By the number of axes: unknowns of a body that no front asks to exceed; unknowns of a body of the area
+# (volume) V with quadratic elements of the size h, over V/h^2 (V/h^3); area (volume) of an element over h^2 (h^3).
+MOST_UNKNOWNS, UNKNOWNS, ELEMENT = {2: 40000, 3: 60000}, {2: 9.5, 3: 36.0}, {2: 0.43, 3: 0.12}
+STIFFEST = 0.45        # nu: the rest up to 0.5 acts on the volume of elements (docs/method.md)
 
 
 @dataclass(frozen=True)
 class Front:
-    """The front of one flat strike: `meeting`, the time `tau` [s] that it takes through an element, the shortest
-    `transit` [s] across a body, the element size `sizes` [m] of each
-    of its bodies (by number), and those bodies that are `crossed` as a whole by a plane front."""
+    """The front of one flat strike: the meeting, the time `tau` [s] in which it passes an element, the
+    shortest `transit` [s] across a body, the element sizes [m] of the bodies (by number), and the bodies
+    that are `crossed` as a whole by a plane front."""
 
     meeting: Meeting
     tau: float
@@ -51,7 +51,8 @@ class Front:
         return min(self.tau / STEEPNESS, LONGEST * self.transit)
 
     def penalty(self, bodies: list[Body], exponent: float) -> float:
-        """The penalty k [Pa/m^m] that lets the front rise so: t_N = k p^m at the pressure rho c v of the strike."""
+        """The penalty k [Pa/m^m] that lets the front rise so: t_N = k p^m is the pressure rho c v at the
+        penetration v rise."""
         return self._pressure(bodies) / (self.meeting.closing * self.rise)**exponent
 
     def rise_on(self, penalty: float, bodies: list[Body], exponent: float) -> float:
@@ -59,16 +60,20 @@ class Front:
         return (self._pressure(bodies) / penalty)**(1 / exponent) / self.meeting.closing
 
     def _pressure(self, bodies: list[Body]) -> float:
-        """rho c v [Pa], of two bodies with the impedances rho c of both in series."""
-        return self.meeting.closing / sum(1 / (bodies[k].density * wave_speed(bodies[k])) for k in self.sizes)
+        """rho c v [Pa], with the impedances rho c of two bodies in series."""
+        impedances = [bodies[k].density * wave_speed(bodies[k]) for k in self.sizes]
+        return self.meeting.closing / sum(1 / one for one in impedances)
 
 
 def fronts(scene: Scene, met: list[Meeting]) -> list[Front]:
-    """The flat strikes among the meetings of a scene; none where its run is asked to go on for long after them."""
+    """The flat strikes among the meetings of a scene. A run that is asked to go on for long after a strike
+    has none."""
     if scene.values["until"] == "rest":
         return []
-    found = [front for one in met if math.isfinite(one.time) and one.closing > 0 and (front := _front(scene, one))]
-    return [one for one in found if scene.values["end_time"] <= one.meeting.time + BRIEF * one.transit]
+    strikes = [one for one in met if math.isfinite(one.time) and one.closing > 0]
+    found = [front for one in strikes if (front := _front(scene, one))]
+    end = scene.values["end_time"]
+    return [front for front in found if end <= front.meeting.time + BRIEF * front.transit]
 
 
 def wave_speed(body: Body) -> float:
@@ -78,34 +83,33 @@ def wave_speed(body: Body) -> float:
 
 
 def _front(scene: Scene, one: Meeting) -> Front | None:
-    """That of a meeting, None where no body lands flat."""
+    """The front of a meeting, None where no body lands flat."""
     bodies = {k: scene.bodies[k] for k in (one.first, one.second) if k >= 0}
-    wanted = {k: _wanted(scene, one, k) for k in bodies}                               # [m]
-    crossed = tuple(k for k in bodies if _lands_flat(one, k, bodies[k], wanted[k]))
+    sizes = {k: body.mesh_size or _size(scene, one, k) for k, body in bodies.items()}        # [m]
+    crossed = tuple(k for k, body in bodies.items() if _lands_flat(one, k, body, sizes[k]))
     if not crossed:
         return None
-    tau = min((bodies[k].mesh_size or wanted[k]) / wave_speed(bodies[k]) for k in crossed)
+    tau = min(sizes[k] / wave_speed(bodies[k]) for k in crossed)
     transit = min(_length(one, k) / wave_speed(bodies[k]) for k in crossed)
     return Front(one, tau, transit, {k: tau * wave_speed(body) for k, body in bodies.items()}, crossed)
 
 
-def _wanted(scene: Scene, one: Meeting, k: int) -> float:
-    """The element size [m] that the accuracy asks for in body k: no smaller than the unknowns allow, four across its thickness at least."""
-    body, accuracy = scene.bodies[k], scene.values["accuracy"] / (1 if scene.values["accuracy_of"] == "promised" else 2)
+def _size(scene: Scene, one: Meeting, k: int) -> float:
+    """The element size [m] of body k: that of its file, or what the accuracy asks for, which is no smaller
+    than MOST_UNKNOWNS allow and gives four elements across the thickness at least."""
+    body, axes = scene.bodies[k], scene.dimension.axes
+    content = body.outline.volume if scene.dimension is SOLID else body.outline.area       # [m3] or [m2]
     if body.mesh:
-        cells = getattr(body.mesh, "cells", getattr(body.mesh, "triangles", None))
-        return (_content(body) / len(cells) / (0.12 if scene.dimension is SOLID else 0.43))**(1 / scene.dimension.axes)
-    power = 3 if scene.dimension is SOLID else 2
-    least = (UNKNOWNS[power] * _content(body) / MOST_UNKNOWNS[power])**(1 / power)
-    return min(body.outline.half_thickness / 2, max(least, PER_ACCURACY * accuracy * _length(one, k)))
-
-
-def _content(body: Body) -> float:
-    """Area [m2] or volume [m3]."""
-    return getattr(body.outline, "volume", None) or body.outline.area
+        cells = body.mesh.cells if scene.dimension is SOLID else body.mesh.triangles
+        return (content / len(cells) / ELEMENT[axes])**(1 / axes)
+    accuracy = scene.values["accuracy"] / (1 if scene.values["accuracy_of"] == "promised" else 2)
+    least = (UNKNOWNS[axes] * content / MOST_UNKNOWNS[axes])**(1 / axes)
+    wanted = max(least, PER_ACCURACY * accuracy * _length(one, k))
+    return min(body.outline.half_thickness / 2, wanted)
 
 
 def _shape(one: Meeting, k: int) -> Shape:
+    """Body k as it is at the meeting."""
     return one.outlines[0 if k == one.first else 1]
 
 
@@ -115,7 +119,7 @@ def _length(one: Meeting, k: int) -> float:
 
 
 def _lands_flat(one: Meeting, k: int, body: Body, size: float) -> bool:
-    """Whether a good part of the width of body k lands while the front passes an element."""
+    """Whether a good part of the width of body k lands while the front passes an element of a size [m]."""
     points, spacing = body.outline.samples(min(size, body.outline.half_thickness / 2))
     moved = body.outline.carried(_shape(one, k), points)
     gaps = one.gaps(k, moved)
