@@ -81,9 +81,9 @@ docs: $(READY) ## a site of README and docs/: results/site/html (installs MkDocs
 	@NO_MKDOCS_2_WARNING=1 $(PYTHON) -m mkdocs build -q -s && echo "results/site/html/index.html"
 
 pictures: disc-normal disc-oblique ## the README's pictures, drawn again from the present runs
-	@$(PYTHON) -c "from PIL import Image; from pathlib import Path; from orchestrate.output.results import read_summary; \
-	from orchestrate.report import drawing; runs = {'disc-normal': ('shapes', 'picture.png'), 'disc-oblique': ('flight', 'picture-oblique.png')}; \
-	[(drawing.draw(run := Path('results', name), read_summary(run)['warnings']), \
+	@$(PYTHON) -c "from PIL import Image; from pathlib import Path; from orchestrate.report import drawing; \
+	runs = {'disc-normal': ('shapes', 'picture.png'), 'disc-oblique': ('flight', 'picture-oblique.png')}; \
+	[(drawing.draw(run := Path('results', name)), \
 	Image.open(run / f'figures/{figure}.png').convert('RGB').quantize(256).save(picture, optimize=True)) for name, (figure, picture) in runs.items()]"
 
 test: $(READY) ## run all tests, on two cores: some eight minutes
