@@ -157,7 +157,7 @@ SCENES = {
     "a table": b"[speed]\n", "nested": b"speed = {a = {b = 1}}\n", "a list": b"speed = [8]\n", "a date": b"speed = 2020-01-01\n", "true": b"speed = true\n",
     "an integer beyond all": b"speed = " + b"9" * 5000, "twice": b"speed = 8\nspeed = 8\n", "no value": b"speed =\n", "no name": b"= 8\n", "half a string": b'law = "svk\n',
     "no TOML": b"speed: 8\n", "JSON": b'{"speed": 8}\n', "XML": b"<speed>8</speed>\n", "an ELF": b"\x7fELF\x02\x01\x01\x00\x00", "latin-1": "title = \"Stoß\"\n".encode("latin-1"),
-    "UTF-16": "speed = 8\n".encode("utf-16"), "a zero": b"speed = 8\x00\n", "a mark": b"\xef\xbb\xbfspeed = 8\n", "half a character": b'title = "\xc3"\n',
+    "UTF-16": "speed = 8\n".encode("utf-16"), "a zero": b"speed = 8\x00\n", "a mark": b"\xef\xbb\xbfspeed : 8\n", "half a character": b'title = "\xc3"\n',
     "deep": b"speed = " + b"[" * 100_000 + b"]" * 100_000, "deep tables": b"speed = " + b"{a=" * 100_000, "another script": b'script = "friction-laws"\n',
     "a script elsewhere": b'script = "../../tmp/x"\n', "a script that is none": b"script = 8\n", "a title that is none": b"title = 1\n", "scripts": b'script = ["disc-plane"]\n', "unknown table": b"[body]\nlaw = 1\n",
     "a code point": b'law = "\\ud800"\n', "python": b"import os\n"}
