@@ -124,8 +124,12 @@ def words(point: Point) -> str:
     told = {"law", "young", "density", "nu" if known else "", "speed", "friction_static", "friction_dynamic", "body.1.position",
             "body.1.velocity", "body.2.velocity"}
     point = {name.removeprefix("contact."): value for name, value in point.items()}
-    speed = point["speed"] if "speed" in point else max(
-        abs(a - b) for a, b in zip(point["body.1.velocity"], point.get("body.2.velocity", [0, 0])))
+    if "speed" in point:
+        speed = point["speed"]
+    elif "body.1.velocity" in point and isinstance(point["body.1.velocity"], list):
+        speed = max(abs(a - b) for a, b in zip(point["body.1.velocity"], point.get("body.2.velocity", [0, 0])))
+    else:                                      # of flat strikes: components along one axis
+        speed = sum(abs(value) for name, value in point.items() if ".velocity" in name)
     parts = [point["law"], named[point["young"], point["density"]], f"v/c {speed / bar_speed(point['young'], point['density']):.2g}"]
     if point.get("friction_static"):
         parts.append(f"friction {point['friction_static']:g}, {point['friction_dynamic']:g}")
