@@ -11,30 +11,38 @@ from .scene import Scene
 __all__ = ["scaled"]
 
 
-def scaled(scene: Scene, values: Mapping, used: Mapping, factor: float, own_mesh: bool = True) -> dict[str, Value | list]:
-    """What a scene, run as the tables `used`, is overridden by for `factor` times the elements and steps. Penalty, slip velocity and
-    dynamic friction stay as they were, except the penalty of flat strikes. Meshes of files stay, too."""
+def scaled(scene: Scene, values: Mapping, used: Mapping, factor: float,
+           own_mesh: bool = True) -> dict[str, Value | list]:
+    """What a scene, run as the tables `used`, is overridden by for `factor` times the elements and
+    steps. Penalty, slip velocity and dynamic friction stay as they were, except the penalty of flat
+    strikes. Meshes of files stay, too."""
     if not scene.bodies:
         return estimate.other(values, used, factor, own_mesh)
-    found = {f"contact.{name}": used["contact"][name] for name in ("penalty", "slip_velocity", "friction_dynamic")}
+    kept = ("penalty", "slip_velocity", "friction_dynamic")
+    found = {f"contact.{name}": used["contact"][name] for name in kept}
     if used["contact"].get("pair"):
-        found["contact.pair"] = _pairs(scene, used["contact"]["pair"])
+        found["contact.pair"] = _pairs(scene, used["contact"]["pair"], factor)
     for k, (body, given) in enumerate(zip(scene.bodies, used["body"]), 1):
         if not body.mesh:
             bulk = min(factor * given["mesh_size"], body.outline.half_thickness)
-            found |= {f"body.{k}.mesh_size": bulk, f"body.{k}.contact_mesh_size": min(bulk, factor * given["contact_mesh_size"])}
+            contact = min(bulk, factor * given["contact_mesh_size"])
+            found |= {f"body.{k}.mesh_size": bulk, f"body.{k}.contact_mesh_size": contact}
     if used["dt"] > 0:
         found["dt"] = factor * used["dt"]
-    return found | {"accuracy": estimate.loosened(used["accuracy"], factor)} | estimate.output(factor)
+    found["accuracy"] = estimate.loosened(used["accuracy"], factor)
+    return found | estimate.output(factor)
 
 
-def _pairs(scene: Scene, used: list[dict]) -> list[dict]:
-    """The tables [[contact.pair]] as used. The open penalty of a flat strike stays open and follows the elements: its error
-    is that of elements and penalty together (front.py)."""
+def _pairs(scene: Scene, used: list[dict], factor: float) -> list[dict]:
+    """The tables [[contact.pair]] as used. The open penalty of a flat strike lets the front rise in
+    `factor` times the time: the error is that of elements and penalty together (front.py)."""
     given = {(pair.first, pair.second) for pair in scene.pairs if "penalty" in pair.values}
     if scene.contact["penalty"] != "auto" or len(used) == len(given):
         return used
-    flat = {(front.meeting.first, front.meeting.second) for front in fronts(scene, meetings(scene))} - given
-    names = [[scene.bodies[first].name, scene.bodies[second].name if second >= 0 else scene.obstacles[-1 - second].name]
-             for first, second in flat]
-    return [pair | {"penalty": "auto"} if pair["bodies"] in names else pair for pair in used]
+    found = [front.meeting for front in fronts(scene, meetings(scene))]
+    others = [one.name for one in [*scene.bodies, *reversed(scene.obstacles)]]      # -1 is obstacle 0
+    flat = [[others[one.first], others[one.second]] for one in found
+            if (one.first, one.second) not in given]
+    softer = factor**scene.contact["exponent"]
+    return [pair | {"penalty": pair["penalty"] / softer} if pair["bodies"] in flat else pair
+            for pair in used]

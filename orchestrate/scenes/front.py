@@ -1,12 +1,12 @@
-"""Flat strikes: a face that lands as a whole on a face or a plane sends a plane wave front through its
-body.
+"""Flat strikes: a face that lands as a whole on a face or a plane sends a plane wave front through
+its body.
 
 The contact patch of a disc shrinks with the speed. A front does not, so elements, steps and penalty
-follow the front. A bar of length L (wave speed c, modulus M = rho c^2) on a penalty k has a front with
-the rise time M/(k c). It loses 0.051 M/(k L) of its rebound and leaves 1.68 M/(k c) late (exact solution:
-docs/method.md). Let tau be the time that the front takes through one element. The penalty lets the front
-rise in tau / STEEPNESS, and in LONGEST of its transit across the body at most. Then the elements resolve
-the front, and all errors are of first order in the element size.
+follow the front. A bar of length L (wave speed c, modulus M = rho c^2) on a penalty k has a front
+with the rise time M/(k c). It loses 0.051 M/(k L) of its rebound and leaves 1.68 M/(k c) late (exact
+solution: docs/method.md). Let tau be the time in which the front passes one element. The penalty lets
+the front rise in tau / STEEPNESS, and in LONGEST of its transit across the body at most. Then all
+errors are of first order in the element size.
 """
 
 import math
@@ -27,17 +27,18 @@ PER_ACCURACY = 5.0     # element size over the length along the normal, over the
 STEEPNESS = 1.5        # elements over the rise length of the front
 LONGEST = 0.02         # rise of the front over its transit across the body
 BRIEF = 30.0           # transits: a run that is asked to go on for longer is not about the front
-# By the number of axes: unknowns of a body that no front asks to exceed; unknowns of a body of the area
-# (volume) V with quadratic elements of the size h, over V/h^2 (V/h^3); area (volume) of an element over h^2 (h^3).
+# By the number of axes: unknowns of a body that no front asks to exceed; unknowns of a body of the
+# area (volume) V with quadratic elements of the size h, over V/h^2 (V/h^3); area (volume) of an
+# element over h^2 (h^3).
 MOST_UNKNOWNS, UNKNOWNS, ELEMENT = {2: 40000, 3: 60000}, {2: 9.5, 3: 36.0}, {2: 0.43, 3: 0.12}
 STIFFEST = 0.45        # nu: the rest up to 0.5 acts on the volume of elements (docs/method.md)
 
 
 @dataclass(frozen=True)
 class Front:
-    """The front of one flat strike: the meeting, the time `tau` [s] in which it passes an element, the
-    shortest `transit` [s] across a body, the element sizes [m] of the bodies (by number), and the bodies
-    that are `crossed` as a whole by a plane front."""
+    """The front of one flat strike: the meeting, the time `tau` [s] in which it passes an element,
+    the shortest `transit` [s] across a body, the element sizes [m] of the bodies (by number), and the
+    bodies that are `crossed` as a whole by a plane front."""
 
     meeting: Meeting
     tau: float
@@ -51,8 +52,8 @@ class Front:
         return min(self.tau / STEEPNESS, LONGEST * self.transit)
 
     def penalty(self, bodies: list[Body], exponent: float) -> float:
-        """The penalty k [Pa/m^m] that lets the front rise so: t_N = k p^m is the pressure rho c v at the
-        penetration v rise."""
+        """The penalty k [Pa/m^m] that lets the front rise so: t_N = k p^m is the pressure rho c v at
+        the penetration v rise."""
         return self._pressure(bodies) / (self.meeting.closing * self.rise)**exponent
 
     def rise_on(self, penalty: float, bodies: list[Body], exponent: float) -> float:
@@ -66,8 +67,8 @@ class Front:
 
 
 def fronts(scene: Scene, met: list[Meeting]) -> list[Front]:
-    """The flat strikes among the meetings of a scene. A run that is asked to go on for long after a strike
-    has none."""
+    """The flat strikes among the meetings of a scene. A run that is asked to go on for long after a
+    strike has none."""
     if scene.values["until"] == "rest":
         return []
     strikes = [one for one in met if math.isfinite(one.time) and one.closing > 0]
@@ -91,14 +92,15 @@ def _front(scene: Scene, one: Meeting) -> Front | None:
         return None
     tau = min(sizes[k] / wave_speed(bodies[k]) for k in crossed)
     transit = min(_length(one, k) / wave_speed(bodies[k]) for k in crossed)
-    return Front(one, tau, transit, {k: tau * wave_speed(body) for k, body in bodies.items()}, crossed)
+    alike = {k: tau * wave_speed(body) for k, body in bodies.items()}
+    return Front(one, tau, transit, alike, crossed)
 
 
 def _size(scene: Scene, one: Meeting, k: int) -> float:
-    """The element size [m] of body k: that of its file, or what the accuracy asks for, which is no smaller
-    than MOST_UNKNOWNS allow and gives four elements across the thickness at least."""
+    """The element size [m] of body k: that of its file, or what the accuracy asks for. The latter is
+    no smaller than MOST_UNKNOWNS allow, and gives at least four elements across the thickness."""
     body, axes = scene.bodies[k], scene.dimension.axes
-    content = body.outline.volume if scene.dimension is SOLID else body.outline.area       # [m3] or [m2]
+    content = body.outline.volume if scene.dimension is SOLID else body.outline.area   # [m3], [m2]
     if body.mesh:
         cells = body.mesh.cells if scene.dimension is SOLID else body.mesh.triangles
         return (content / len(cells) / ELEMENT[axes])**(1 / axes)
@@ -119,7 +121,7 @@ def _length(one: Meeting, k: int) -> float:
 
 
 def _lands_flat(one: Meeting, k: int, body: Body, size: float) -> bool:
-    """Whether a good part of the width of body k lands while the front passes an element of a size [m]."""
+    """Whether a good part of the width of body k lands while the front passes an element [m]."""
     points, spacing = body.outline.samples(min(size, body.outline.half_thickness / 2))
     moved = body.outline.carried(_shape(one, k), points)
     gaps = one.gaps(k, moved)
