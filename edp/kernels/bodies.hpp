@@ -135,7 +135,7 @@ public:
     g0.assign(node.size() * D, 0.);
   }
 
-  // G' (w P) + M (massScale d - inertiaKnown) - bodyForce, 0 at what is held [N/m, N]: inner forces, inertia and body force of (2) at the
+  // G' (w P) + M (massScale d - inertiaKnown) - bodyForce [N/m, N], also at what is held: inner forces, inertia and body force of (2) at the
   // increment d, and the deformation that they are taken at.
   int forces(const double *d, const double *inertiaKnown, const double *bodyForce, const Step &step, const Deformation &at,
              double *residual) {
@@ -144,10 +144,10 @@ public:
     for (int i = 0; i < nodes * D; i++) nodal[i] = d[unknown[i]];
     dispatch([&](auto stored) { ended = this->template innerForces<decltype(stored)>(step, at); });
     if (ended != fine) return ended;
-    if (step.carries) for (int i = 0; i < nodes * D; i++) volume.lag[unknown[i]] = lagging[i] * free[unknown[i]];
+    if (step.carries) for (int i = 0; i < nodes * D; i++) volume.lag[unknown[i]] = lagging[i];
     for (int i = 0; i < nodes * D; i++) nodal[i] = step.massScale * nodal[i] - inertiaKnown[unknown[i]];
     dispatch([&](auto stored) { this->template inertia<stored.D>(); });
-    for (int i = 0; i < nodes * D; i++) residual[unknown[i]] = (pull[i] - bodyForce[unknown[i]]) * free[unknown[i]];
+    for (int i = 0; i < nodes * D; i++) residual[unknown[i]] = pull[i] - bodyForce[unknown[i]];
     return fine;
   }
 

@@ -46,6 +46,7 @@ static void addBodies() {
     body.make(entries(gradient), entries(mass));
     factor.pattern(body);
   });
+  add("kernelFree", +[](Reals free) { body.free = copied<double>(free); });   // where supports hold other unknowns than before
   add("kernelDeformation", +[](Reals F0, Reals C0, Reals F1, Reals C1, Reals jacobian1, Reals Fs, Reals Ss) {
     deformation = {F0, C0, F1, C1, jacobian1, Fs, Ss};
   });

@@ -3,13 +3,14 @@ that is not constant there. It becomes a program of numbers for a stack, which F
 and how the gap comes from it); `gap` does the same."""
 
 import ast
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..failure import BadInput, brief
 
-ACCEPTED = "numbers, {axes}, + - * / ^, sin cos sqrt exp abs min max and parentheses"
+ACCEPTED = "numbers, pi, {names}, + - * / ^, sin cos sqrt exp abs min max and parentheses"
 LONGEST = 1000               # characters of an expression
 TWO = {ast.Add: 4, ast.Sub: 5, ast.Mult: 6, ast.Div: 7, ast.Pow: 8, "min": 9, "max": 10}
 ONE = {ast.USub: 11, "sin": 12, "cos": 13, "sqrt": 14, "exp": 15, "abs": 16}
@@ -29,43 +30,45 @@ class Stop(Exception):
     what: str
 
 
-def program(path: str, text: object, axes: int) -> tuple[float, ...]:
-    """The program of an expression. BadInput, naming path.distance."""
-    accepted = f"(accepted: {ACCEPTED.format(axes=', '.join('xyz'[:axes]))})"
+def program(entry: str, text: object, names: str) -> tuple[float, ...]:
+    """The program of an expression of variables with names of one letter. BadInput, naming the entry."""
+    accepted = f"(accepted: {ACCEPTED.format(names=', '.join(names))})"
     if not isinstance(text, str) or not text.strip():
-        raise BadInput(f"{path}.distance: '{brief(text)}' is no expression {accepted}" if text is not None
-                       else f"{path}.distance: is missing {accepted}")
+        raise BadInput(f"{entry}: '{brief(text)}' is no expression {accepted}" if text is not None
+                       else f"{entry}: is missing {accepted}")
     if len(text) > LONGEST:
-        raise BadInput(f"{path}.distance: {len(text)} characters (accepted: up to {LONGEST})")
+        raise BadInput(f"{entry}: {len(text)} characters (accepted: up to {LONGEST})")
     try:
-        return tuple(_tokens(ast.parse(text.strip().replace("^", "**"), mode="eval").body, axes))
+        return tuple(_tokens(ast.parse(text.strip().replace("^", "**"), mode="eval").body, names))
     except Stop as stop:
-        raise BadInput(f"{path}.distance: '{brief(stop.what)}' in '{brief(text)}' is not known {accepted}") from None
+        raise BadInput(f"{entry}: '{brief(stop.what)}' in '{brief(text)}' is not known {accepted}") from None
     except (SyntaxError, ValueError, RecursionError, MemoryError):
-        raise BadInput(f"{path}.distance: '{brief(text)}' is no expression {accepted}") from None
+        raise BadInput(f"{entry}: '{brief(text)}' is no expression {accepted}") from None
 
 
-def _tokens(node: ast.AST, axes: int) -> list[float]:
+def _tokens(node: ast.AST, names: str) -> list[float]:
     match node:
         case ast.Constant(value=int() | float() as value) if not isinstance(value, bool) and abs(value) < 1e300:
             return [0.0, float(value)]
-        case ast.Name(id=name) if name in tuple("xyz"[:axes]):
-            return [1.0 + "xyz".index(name)]
+        case ast.Name(id="pi"):
+            return [0.0, math.pi]
+        case ast.Name(id=name) if name in tuple(names):
+            return [1.0 + names.index(name)]
         case ast.UnaryOp(op=ast.UAdd(), operand=one):
-            return _tokens(one, axes)
+            return _tokens(one, names)
         case ast.UnaryOp(op=ast.USub(), operand=one):
-            return [*_tokens(one, axes), float(ONE[ast.USub])]
+            return [*_tokens(one, names), float(ONE[ast.USub])]
         case ast.BinOp(left=base, op=ast.Pow(), right=power):
-            exponent = _tokens(power, axes)
+            exponent = _tokens(power, names)
             if any(token in (1, 2, 3) for token in exponent[::2]) or len(exponent) > 3:
                 raise Stop("^ " + ast.unparse(power))
-            return [*_tokens(base, axes), *exponent, float(TWO[ast.Pow])]
+            return [*_tokens(base, names), *exponent, float(TWO[ast.Pow])]
         case ast.BinOp(left=a, op=op, right=b) if type(op) in TWO:
-            return [*_tokens(a, axes), *_tokens(b, axes), float(TWO[type(op)])]
+            return [*_tokens(a, names), *_tokens(b, names), float(TWO[type(op)])]
         case ast.Call(func=ast.Name(id=name), args=[one], keywords=[]) if name in ONE:
-            return [*_tokens(one, axes), float(ONE[name])]
+            return [*_tokens(one, names), float(ONE[name])]
         case ast.Call(func=ast.Name(id=name), args=[a, b], keywords=[]) if name in TWO:
-            return [*_tokens(a, axes), *_tokens(b, axes), float(TWO[name])]
+            return [*_tokens(a, names), *_tokens(b, names), float(TWO[name])]
     raise Stop(ast.unparse(node))
 
 

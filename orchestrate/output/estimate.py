@@ -52,7 +52,7 @@ ROOT = {"thresholded_contact_time": 4, "contact_time": 4}                       
 ALIKE = {"D": 1.4, "impulse": 0.3, "rebound": 0.7, "rebound_spin": 0.5, "energy": 1.0, "friction_work": 0.03}   # over A, by steps alone
 # of flat strikes: front_errors(), calibrated likewise
 FRONT = {"impulse": 3.0, "rebound": 3.0, "rebound_spin": 5.0, "energy": 3.0, "friction_work": 3.0, "thresholded_contact_time": 3.8,
-         "contact_time": 2.6, "peak_force": 9.0}
+         "contact_time": 3.2, "peak_force": 9.0}
 SHARP, RESOLVED = {"impulse": 0.12, "rebound": 0.24, "energy": 0.48}, 7.5
 PROMISED = tuple(USUAL)[:6]
 COURSE = {"thresholded_contact_time": "impulse", "contact_time": "impulse", "peak_force": "impulse"}   # whose course stands for theirs

@@ -55,6 +55,7 @@ class Meeting:
 
 def meetings(scene: Scene) -> list[Meeting]:
     """One for each two bodies and each body with each obstacle, and those that follow as a hit turns them."""
+    scene = replace(scene, bodies=[body.carried_along for body in scene.bodies])
     bodies = len(scene.bodies)
     pairs = [(i, j) for i in range(bodies) for j in [*range(i + 1, bodies), *(-1 - k for k in range(len(scene.obstacles)))]]
     return [one for pair in pairs for one in _in_turn(scene, _meeting(scene, *pair))]
@@ -121,7 +122,8 @@ def _middle(one: Meeting) -> np.ndarray:
 def _meeting(scene: Scene, first: int, second: int) -> Meeting:
     body = scene.bodies[first]
     other = scene.bodies[second] if second >= 0 else scene.obstacles[-1 - second]
-    pull = _fall(scene) if second < 0 else np.zeros(scene.dimension.axes)    # two bodies fall alike
+    falls = [not one.supports for one in (body, other) if isinstance(one, Body)]     # two bodies fall alike
+    pull = _fall(scene) * (falls[0] - (falls[1] if second >= 0 else 0))
     start = body.velocity - other.velocity
     radius = min([body.outline.half_thickness, *([other.outline.half_thickness] if second >= 0 else [])])
     turning = sum(one.outline.fastest(one.angle, one.spin) * one.outline.reach for one in (body, other) if isinstance(one, Body))
@@ -171,11 +173,15 @@ def turned(scene: Scene) -> Scene:
 
 def refuse_nothing(scene: Scene, met: list[Meeting]) -> None:
     """BadInput where nothing can ever move, or nothing touch before an end that is left open."""
+    driven = [k for k, body in enumerate(scene.bodies, 1) if body.driven]
+    if driven and (scene.values["end_time"] == 0 or scene.values["until"] == "rest"):
+        raise BadInput(f"end_time: {scene.values['end_time']:g} with until = '{scene.values['until']}', but body.{driven[0]} is moved or loaded "
+                       f"from the start, which has no end of its own (accepted: an end_time > 0, until = 'impact')")
     moving = [*(one.velocity for one in [*scene.bodies, *scene.obstacles]), *(np.atleast_1d(body.spin) for body in scene.bodies)]
     forces = [scene.values.get(name, 0.0) for name in ("gravity", "body_force_x", "body_force_y")]
-    if not any(np.any(one) for one in moving) and not any(forces):
+    if not any(np.any(one) for one in moving) and not any(forces) and not any(body.supports or body.loads for body in scene.bodies):
         raise BadInput("velocity: 0 of every body, without spin, gravity or body force: nothing would ever move (accepted: one of them)")
-    if scene.values["end_time"] == 0 and all(one.never for one in met):
+    if scene.values["end_time"] == 0 and all(one.never for one in met) and met:
         raise BadInput("end_time: 0 is the end of the contact, but nothing ever touches: the bodies miss each other and every obstacle "
                        "(accepted: an end_time > 0, or velocities and positions that lead them together)")
     for one in met if scene.values["end_time"] == 0 and scene.values["until"] != "rest" else []:

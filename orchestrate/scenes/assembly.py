@@ -24,6 +24,7 @@ from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID
 from ..failure import BadInput
 from ..mesh.mesh import AXIS, FREE, Curve, Sizes, mesh_body, nearest
 from .mirror import COPIES, FOLDED, copies
+from .parts import sections
 from .scene import OWN, SELF_CONTACT, Pair, Scene
 from ..geometry.outlines import Loop, rotation
 from ..input.parameters import Value
@@ -72,7 +73,7 @@ def prepare(scene: Scene, where: Path, foreign: bytes | None = None,
     other sizes and steps alone."""
     file = where / scene.mesh_name
     if scene.bodies:
-        if len(scene.bodies) == 1 and not scene.obstacles:
+        if len(scene.bodies) == 1 and not scene.obstacles and not (scene.bodies[0].supports or scene.bodies[0].loads):
             raise BadInput("obstacle: is missing, and a second body too (accepted: one table [[obstacle]] or more, or several [[body]])")
         scene = turned(scene)
         met = meetings(scene)
@@ -103,27 +104,29 @@ def assemble(scene: Scene, rule: Rule | None = None, met: list[Meeting] | None =
     scene = replace(scene, pairs=_with_open_penalties(scene, ask), bodies=bodies)
     pairs = [pair_values(pair, ask, values) for pair in scene.pairs]
     sizes = [None if body.mesh else _sizes(k, ask) for k, body in enumerate(scene.bodies)]
-    together, regions, centres, rounds = (_solids if scene.dimension is SOLID else _sections)(scene, sizes)
+    meshes, centres, rounds = (_solids if scene.dimension is SOLID else _sections)(scene, sizes)
+    together, regions = stack(meshes, centres)
+    conditions = sections(scene.bodies, meshes, scene.obstacles, scene.dimension, copies(scene))
     disc = ask.disc(scene.bodies, min(body.outline.half_thickness for body in scene.bodies), slides=True)
     penalties = {(pair.first, pair.second): float(own["penalty"]) for pair, own in zip(scene.pairs, pairs)}
     rises = [one.rise_on(penalties.get(both, values["penalty"]), scene.bodies, values["exponent"]) for both, one in ask.fronts.items()]
     front = [(min(one.tau for one in ask.fronts.values()), max(rises))] if rises else []
-    return Assembly(together, regions, centres, data_file(scene, disc, centres, rounds, pairs, front), values,
+    return Assembly(together, regions, centres, data_file(scene, disc, centres, rounds, pairs, front, conditions), values,
                     used_tables(scene, sizes, values, pairs))
 
 
-def _sections(scene: Scene, sizes: list[Sizes | None]) -> tuple[mesh.Mesh, np.ndarray, np.ndarray, list[tuple]]:
-    """The mesh of bodies in the plane, the body of each triangle, the centres in it, the lines of circles in scene.dat (of sections those
+def _sections(scene: Scene, sizes: list[Sizes | None]) -> tuple[list[mesh.Mesh], np.ndarray, list[tuple]]:
+    """The meshes of bodies in the plane, their centres in the mesh of all, the lines of circles in scene.dat (of sections those
     that are not another's mirror image)."""
     meshes = [body.mesh or mesh_body(_boundary(scene, k), sizes[k], body.outline.half_thickness) for k, body in enumerate(scene.bodies)]
     meshes = [_reached(scene, k, made) for k, made in enumerate(meshes)]
     centres = side_by_side(meshes, 1 if scene.dimension is AXISYMMETRIC else 0)
     circles = [(k, *(centre + at), radius) for k, (body, centre) in enumerate(zip(scene.bodies, centres)) for loop in body.outline.loops
                for at, radius in loop.circles if scene.dimension is not AXISYMMETRIC or at[0] >= 0]
-    return *stack(meshes, centres), centres, [("circles", len(circles)), *circles]
+    return meshes, centres, [("circles", len(circles)), *circles]
 
 
-def _solids(scene: Scene, sizes: list[Sizes | None]) -> tuple[solid_mesh.SolidMesh, np.ndarray, np.ndarray, list[tuple]]:
+def _solids(scene: Scene, sizes: list[Sizes | None]) -> tuple[list[solid_mesh.SolidMesh], np.ndarray, list[tuple]]:
     """The same in three dimensions: bodies turned as they are at the start, one above the other; half or a quarter where that is enough."""
     folded = FOLDED[copies(scene)]
     accuracy = float(scene.values["accuracy"])
@@ -137,7 +140,7 @@ def _solids(scene: Scene, sizes: list[Sizes | None]) -> tuple[solid_mesh.SolidMe
     surfaces = [(k, *(centre + one.centre), *one.axis, one.radius) for k, (made, centre) in enumerate(zip(meshes, centres))
                 for one in made.curved]
     spheres, cylinders = ([one for one in surfaces if len(one) == size] for size in (5, 8))
-    return *stack(meshes, centres), centres, [("spheres", len(spheres)), *spheres, ("cylinders", len(cylinders)), *cylinders]
+    return meshes, centres, [("spheres", len(spheres)), *spheres, ("cylinders", len(cylinders)), *cylinders]
 
 
 # ---- what the scene leaves open
@@ -366,10 +369,10 @@ def stack(meshes: list[mesh.Mesh] | list[solid_mesh.SolidMesh], centres: np.ndar
 # ---- scene.dat
 
 def data_file(scene: Scene, disc: dict[str, Value], centres: np.ndarray, rounds: list[tuple], pairs: list[dict[str, Value]],
-              front: Sequence[tuple[float, float]] = ()) -> str:
+              front: Sequence[tuple[float, float]] = (), conditions: Sequence[tuple] = ()) -> str:
     """The text of scene.dat, words and numbers (SI, radians), as edp/core/input/scene-file.idp says; the disc, or ball, is what the rules
     stand for, `rounds` are the lines of circles, or of spheres and cylinders, `front` the transit through an element and
-    the rise [s] of the front of a flat strike, where there is one."""
+    the rise [s] of the front of a flat strike, where there is one, `conditions` the lines of supports and loads."""
     if scene.dimension is SOLID:
         head = [("ffimpact-bodies-3d", 1), ("copies", copies(scene))]
         starts = [(*(body.position - centre), *body.velocity, *body.spin) for body, centre in zip(scene.bodies, centres)]
@@ -390,4 +393,5 @@ def data_file(scene: Scene, disc: dict[str, Value], centres: np.ndarray, rounds:
     lines += [("front", *one) for one in front]
     damped = [(k, *(getattr(body, name) for name in DAMPING)) for k, body in enumerate(scene.bodies) if body.damped]
     lines += [("damping", len(damped)), *damped] if damped else []
+    lines += conditions
     return "".join(" ".join(repr(float(one)) if isinstance(one, float) else str(one) for one in line) + "\n" for line in lines)

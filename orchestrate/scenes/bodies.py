@@ -2,7 +2,7 @@
 units. Shapes and motions: flat.py in plane strain, revolution.py of revolution, solids.py in three dimensions."""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import ModuleType
 
@@ -18,6 +18,7 @@ from ..mesh.solid_mesh import SolidMesh
 from ..mesh.solids import Solid
 from ..input.parameters import Value
 from ..input.tables import SHORTEST, Table
+from .conditions import Load, Support, read_loads, read_supports
 
 GEOMETRY = {PLANE_STRAIN: flat, AXISYMMETRIC: revolution, SOLID: solids}     # SHAPES with their entries, shape(), MOTION, motion()
 DAMPING = ("viscosity", "bulk_viscosity", "relaxation_modulus", "relaxation_time")
@@ -25,7 +26,7 @@ DAMPED = ("viscosity", "bulk_viscosity", "relaxation_modulus", "loss")     # one
 OPTIONAL = ("law_parameters", *DAMPING, "loss")
 MATERIAL = ("law", "young", "nu", "density", *OPTIONAL)
 SIZES = ("mesh_size", "contact_mesh_size")
-COMMON = ("name", "shape", "position", "velocity", *MATERIAL, *SIZES)
+COMMON = ("name", "shape", "position", "velocity", *MATERIAL, *SIZES, "support", "load")
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_.-]*")
 
 
@@ -53,10 +54,27 @@ class Body:
     loss: float
     mesh_size: float
     contact_mesh_size: float
+    supports: tuple[Support, ...] = ()
+    loads: tuple[Load, ...] = ()
 
     @property
     def damped(self) -> bool:
         return any(getattr(self, name) for name in DAMPED)
+
+    @property
+    def driven(self) -> bool:
+        """Whether a support moves it, or a stress that is given loads it (a gas does not)."""
+        return any(one.moves for one in self.supports) or any(one.kind != "gas" for one in self.loads)
+
+    @property
+    def carried_along(self) -> "Body":
+        """The same, as fast as its support on the way to where that is farthest from the start."""
+        ways = [one.path() for one in self.supports]
+        if not ways:
+            return self
+        way, when = max(ways, key=lambda one: float(np.linalg.norm(one[0])))
+        velocity = way / when if when > 0 else np.zeros_like(self.velocity)
+        return replace(self, velocity=velocity, spin=0 * self.spin)
 
     @property
     def sides(self) -> tuple[np.ndarray, np.ndarray] | None:
@@ -82,7 +100,7 @@ class Body:
 
 def read(tables: list[dict], top: dict, folder: Path, dimension: Dimension = PLANE_STRAIN) -> list[Body]:
     """The bodies of the [[body]] tables; `top` holds the entries at the top of the file, mesh files are sought from `folder` on."""
-    return [_body(f"body.{k}", given, top, folder, GEOMETRY[dimension]) for k, given in enumerate(tables, 1)]
+    return [_body(f"body.{k}", given, top, folder, dimension) for k, given in enumerate(tables, 1)]
 
 
 def keys_of(dimension: Dimension) -> set[str]:
@@ -91,7 +109,8 @@ def keys_of(dimension: Dimension) -> set[str]:
     return {*COMMON, *geometry.MOTION, *(key for keys in geometry.SHAPES.values() for key in keys)}
 
 
-def _body(path: str, given: dict, top: dict, folder: Path, geometry: ModuleType) -> Body:
+def _body(path: str, given: dict, top: dict, folder: Path, of: Dimension) -> Body:
+    geometry: ModuleType = GEOMETRY[of]
     if "shape" not in given:
         raise BadInput(f"{path}.shape: is missing (accepted: {'|'.join(geometry.SHAPES)})")
     if not isinstance(given["shape"], str) or given["shape"] not in geometry.SHAPES:
@@ -106,7 +125,14 @@ def _body(path: str, given: dict, top: dict, folder: Path, geometry: ModuleType)
                        f"which has its own element sizes (accepted: {', '.join(SIZES)} where gmsh makes "
                        f"the mesh: of a shape, or of a geometry, {', '.join(GEOMETRIES)})")
     return Body(checked_name(path, given.get("name", path.replace(".", ""))), outline, body_mesh, **geometry.motion(table),
-                **_material(table, top), mesh_size=bulk, contact_mesh_size=contact)
+                **_material(table, top), mesh_size=bulk, contact_mesh_size=contact,
+                supports=read_supports(path, given.get("support", []), of, _end_time(top)),
+                loads=read_loads(path, given.get("load", []), of, _end_time(top)))
+
+
+def _end_time(top: dict) -> float:
+    """The scene's end_time [s], up to which functions of time are used."""
+    return float(parameters.table()["end_time"].check(top.get("end_time", 0.0)))
 
 
 def checked_name(path: str, name) -> str:

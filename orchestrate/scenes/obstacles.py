@@ -123,7 +123,7 @@ def _circle(table: Table, dimension: Dimension) -> tuple[float, ...]:
 
 
 def _implicit(table: Table, dimension: Dimension) -> tuple[float, ...]:
-    code = implicit.program(table.path, table.given.get("distance"), dimension.axes)
+    code = implicit.program(table.at("distance"), table.given.get("distance"), "xyz"[:dimension.axes])
     if dimension is AXISYMMETRIC and not implicit.is_mirrored(code, 0, 2):
         raise BadInput(f"{table.path}.distance: '{brief(table.given['distance'])}' is not the same for x and -x, as of revolution "
                        f"(accepted: with x^2 or abs(x))")

@@ -20,7 +20,7 @@ from ..input.parameters import Parameter, Value
 from ..input.tables import Table, listed
 from ..mesh.solid_file import takes_in_others
 from ..output import estimate
-from . import bodies, mirror, obstacles
+from . import bodies, conditions, mirror, obstacles
 from .bodies import MATERIAL, SIZES, Body
 from .entries import release, set_entry, toml_value
 from .obstacles import Obstacle
@@ -201,6 +201,7 @@ def read(given: dict, folder: Path, name: str) -> Scene:
 def _of_tables(given: dict, folder: Path, name: str) -> Scene:
     """That of bodies in tables."""
     of = dimension.of(given)
+    given = conditions.inlined(given, folder, of)
     own = ("symmetry",) if of is SOLID else ()
     table = Table("", given, ("title", "script", "dimension", *own, "body", "obstacle", "contact", *MATERIAL, *SIZES, *RUN),
                   {key: f"body.1.{key}" for key in bodies.keys_of(of)} | {key: f"contact.{key}" for key in CONTACT})
@@ -227,14 +228,23 @@ def _of_tables(given: dict, folder: Path, name: str) -> Scene:
     pairs = _own_of_obstacles(rigid, len(all_bodies))
     for both, pair in _exceptions(contact_table, index).items():
         pairs[both] = replace(pair, values=pairs[both].values | pair.values) if both in pairs else pair
-    for k in _touching_themselves(contact_table, contact.get("pairing", "closest-point"), all_bodies, of):
+    for k in _touching_themselves(contact_table, contact.get("pairing", "closest-point"), all_bodies, of,
+                                  len(all_bodies) == 1 and not all_obstacles):
         pairs.setdefault((k, k), Pair(k, k, {}, "contact"))
     values = _parameters(table, RUN, of)
     found = Scene(name, table.text("title", name), script, given, folder, values, of, all_bodies, all_obstacles, contact,
                   [pairs[both] for both in sorted(pairs)])
     _apart(found)
+    _refuse_integrator(found)
     mirror.copies(found)
     return found
+
+
+def _refuse_integrator(found: Scene) -> None:
+    """BadInput where supports and loads would not do exact work."""
+    accepted, asked = ("auto", "energy-momentum", "midpoint"), found.values["integrator"]
+    if asked not in accepted and any(body.supports or body.loads for body in found.bodies):
+        raise BadInput(f"integrator: '{asked}' has no supports and loads (accepted with them: {'|'.join(accepted)})")
 
 
 def _parameters(table: Table, keys: tuple[str, ...], of: Dimension) -> dict[str, Value]:
@@ -282,12 +292,14 @@ def _exceptions(contact: Table, index: dict[str, int]) -> dict[tuple[int, int], 
     return pairs
 
 
-def _touching_themselves(contact: Table, pairing: str, all_bodies: list[Body], of: Dimension) -> list[int]:
+def _touching_themselves(contact: Table, pairing: str, all_bodies: list[Body], of: Dimension, alone: bool) -> list[int]:
     """The bodies that self_contact makes their own partners."""
     asked = contact.parameter(SELF_CONTACT.name, SELF_CONTACT)
     if asked == "on" and pairing != "closest-point":
         raise BadInput(f"{contact.at(SELF_CONTACT.name)}: on, but pairing = '{pairing}' is between bodies "
                        f"(accepted: auto|off, or pairing = 'closest-point')")
+    if alone:                                         # what nothing else can touch
+        return [0]
     if asked == "off" or pairing != "closest-point":
         return []
     flat = of is not SOLID

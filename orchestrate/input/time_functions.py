@@ -1,0 +1,146 @@
+"""Functions of time that supports and loads follow: a number, an expression of t [s] or a table.
+
+All become cubic Hermite polynomials between knots, which FreeFEM evaluates
+(edp/core/input/conditions.idp). A table is interpolated monotonically and with a continuous slope
+(Fritsch and Carlson 1980), an expression to CLOSE of its largest value.
+"""
+
+import ast
+import csv
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
+
+from ..failure import BadInput, brief
+from ..geometry import implicit
+from .tables import LONGEST
+
+__all__ = ["TimeFunction", "constant", "of_csv", "of_entry", "of_table"]
+
+CLOSE = 1e-8                 # error of an expression's polynomials over its largest value
+FEWEST, MOST = 64, 2**16     # intervals between knots
+
+
+@dataclass(frozen=True)
+class TimeFunction:
+    """`knots` (n, 3): time [s], value, slope; before the first and behind the last it is constant."""
+
+    knots: np.ndarray
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether its value is the same at all times."""
+        return bool(np.ptp(self.knots[:, 1]) == 0)
+
+    @property
+    def is_zero(self) -> bool:
+        """Whether it is 0 at all times."""
+        return not self.knots[:, 1].any()
+
+    def __call__(self, t: np.ndarray | float) -> np.ndarray:
+        """Values at times [s]."""
+        times, values, slopes = self.knots.T
+        if len(times) == 1:
+            return values[0] + 0 * np.asarray(t)
+        return CubicHermiteSpline(times, values, slopes)(np.clip(t, times[0], times[-1]))
+
+
+def constant(value: float) -> TimeFunction:
+    """The same value at all times."""
+    return TimeFunction(np.array([[0.0, value, 0.0]]))
+
+
+def of_entry(entry: str, given: object, end_time: float) -> TimeFunction:
+    """A number, or an expression of t, which is used from 0 to end_time [s]. BadInput, naming the
+    entry, where it is neither, or no number at some time."""
+    if isinstance(given, bool) or not isinstance(given, int | float | str):
+        raise BadInput(f"{entry}: '{brief(given)}' is no function of time (accepted: a number, or an "
+                       f"expression of t in quotes)")
+    if isinstance(given, int | float):
+        return constant(_limited(entry, float(given)))
+    program = implicit.program(entry, given, "t")
+    value, _ = _evaluated(entry, given, program, np.zeros(1))
+    if not any(isinstance(node, ast.Name) and node.id == "t" for node in ast.walk(ast.parse(given.strip().replace("^", "**")))):
+        return constant(float(value[0]))
+    if end_time <= 0:
+        raise BadInput(f"{entry}: '{brief(given)}' is a function of time, and end_time is 0, the end "
+                       f"of the contact (accepted: a number here, or an end_time > 0)")
+    return TimeFunction(_sampled(entry, given, program, end_time))
+
+
+def of_table(entry: str, times: object, values: object) -> TimeFunction:
+    """Values at times [s] that grow. BadInput, naming the entry."""
+    columns = []
+    for name, column in (("t", times), ("value", values)):
+        if not isinstance(column, list) or not all(type(one) in (int, float) for one in column):
+            raise BadInput(f"{entry}: '{brief(column)}' of {name} is no list of numbers "
+                           f"(accepted: as many numbers as times, two or more)")
+        columns.append(np.array([_limited(entry, float(one)) for one in column]))
+    t, value = columns
+    if len(t) != len(value) or len(t) < 2:
+        raise BadInput(f"{entry}: {len(t)} times and {len(value)} values (accepted: as many values as "
+                       f"times, two or more)")
+    if not (np.diff(t) > 0).all():
+        where = int(np.argmin(np.diff(t) > 0)) + 1
+        raise BadInput(f"{entry}: the time {t[where]:g} s follows {t[where - 1]:g} s (accepted: times "
+                       f"that grow)")
+    return TimeFunction(np.column_stack([t, value, PchipInterpolator(t, value).derivative()(t)]))
+
+
+def of_csv(entry: str, path: Path, columns: int) -> dict[str, list[float]]:
+    """The table in a CSV file as columns {"t": [...], "x": [...], ...}: its first line names them, t
+    first. BadInput, naming the entry."""
+    accepted = f"(accepted: a CSV file with a first line 't,...' and {columns + 1} columns of numbers)"
+    try:
+        with open(path, encoding="utf-8-sig", newline="") as file:
+            rows = [[cell.strip() for cell in row] for row in csv.reader(file) if any(row)]
+    except (OSError, UnicodeDecodeError, ValueError, csv.Error) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise BadInput(f"{entry}: '{brief(path.name)}' cannot be read: {reason} {accepted}") from None
+    if not rows or rows[0][0] != "t" or len(rows[0]) != columns + 1:
+        first = ",".join(rows[0]) if rows else ""
+        raise BadInput(f"{entry}: '{brief(path.name)}' begins with '{brief(first)}' {accepted}")
+    for number, row in enumerate(rows[1:], 2):
+        try:
+            if len([float(cell) for cell in row]) != len(rows[0]):
+                raise ValueError
+        except ValueError:
+            raise BadInput(f"{entry}: line {number} of '{brief(path.name)}' is '{brief(','.join(row))}' "
+                           f"{accepted}") from None
+    return {name: [float(row[k]) for row in rows[1:]] for k, name in enumerate(rows[0])}
+
+
+def _sampled(entry: str, given: str, program: tuple[float, ...], end: float) -> np.ndarray:
+    """Knots of an expression from 0 to `end`, twice as many until they are close to it."""
+    count = FEWEST
+    while count <= MOST:
+        t = np.linspace(0, end, count + 1)
+        knots = np.column_stack([t, *_evaluated(entry, given, program, t)])
+        between = (t[1:] + t[:-1]) / 2
+        value, _ = _evaluated(entry, given, program, between)
+        off = abs(TimeFunction(knots)(between) - value).max()
+        if off <= CLOSE * abs(knots[:, 1]).max():
+            return knots
+        count *= 2
+    return knots                      # of a kink: to 1/MOST of end_time
+
+
+def _evaluated(entry: str, given: str, program: tuple[float, ...],
+               t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Values and slopes at times (n,)."""
+    with np.errstate(all="ignore"):
+        value, slope = implicit.run(program, t[:, None])
+    value, slope = np.broadcast_to(value, t.shape), np.broadcast_to(slope[:, 0], t.shape)
+    bad = ~(np.isfinite(value) & np.isfinite(slope) & (abs(value) <= LONGEST**2))
+    if bad.any():
+        raise BadInput(f"{entry}: '{brief(given)}' is {value[bad][0]:g}, its slope {slope[bad][0]:g}, at "
+                       f"t = {t[bad][0]:g} s (accepted: a number and a finite slope at all times)")
+    return value, slope
+
+
+def _limited(entry: str, value: float) -> float:
+    if not abs(value) <= LONGEST**2:
+        raise BadInput(f"{entry}: {value:g} is out of range (accepted: up to {LONGEST**2:g})")
+    return value
