@@ -23,7 +23,7 @@ promised, is a note (notes.py).
 import math
 import os
 import shutil
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -144,7 +144,7 @@ def _stated(fine: Answers, coarse: Answers, before: Mapping[str, float] | None =
     if summary.get("bounces", 1) > 1:
         found = strikes_again(found, way, before)
     found["energy"] = max(found["energy"], summary.get("energy_drift", 0.0))   # of which the pair may have the same
-    return found | highest(fine, coarse)
+    return found | highest(fine, coarse) | driven(fine, coarse)
 
 
 def _ended(solve: Solve, values: dict[str, Value], where: Path) -> Failure | None:
@@ -252,8 +252,8 @@ def _over_impulse(history: Mapping) -> np.ndarray:
     return np.interp(SHARES * impulse[-1], impulse, history["friction_work"])
 
 
-def highest(fine: Answers, coarse: Answers) -> dict[str, float]:
-    """The error that is stated of largest values, HIGHEST, over themselves. Such a value is of one instant: two runs may agree
+def highest(fine: Answers, coarse: Answers, names: Sequence[str] = HIGHEST) -> dict[str, float]:
+    """The error that is stated of the largest values of columns, over themselves. Such a value is of one instant: two runs may agree
     in it by chance. So the stated error is INSTANT times the root mean square difference of the two histories while one of them
     is above half the largest value, and no less than the difference of the largest values."""
     def stated(name: str) -> float:
@@ -267,7 +267,28 @@ def highest(fine: Answers, coarse: Answers) -> dict[str, float]:
         share = np.gradient(t)[high]
         apart = math.sqrt(np.sum(share * (first - second)[high] ** 2) / share.sum())
         return float(max(INSTANT * apart, abs(largest - other)) / largest)
-    return {name: stated(name) for name in HIGHEST}
+    return {name: stated(name) for name in names}
+
+
+def driven(fine: Answers, coarse: Answers) -> dict[str, float]:
+    """The error that is stated of what supports and loads do: of the largest force of a support as of other largest values
+    (highest()), of their work INSTANT times the largest difference of the histories, over the largest energy."""
+    def force(one: Answers, number: int) -> np.ndarray:
+        return np.linalg.norm([one.history[f"support_force_{axis}_{number}"] for axis in "xyz"
+                               if f"support_force_{axis}_{number}" in one.history], axis=0)
+    found, number = {}, 1
+    while f"support_force_x_{number}" in fine.history:
+        name = f"support_peak_{number}"
+        both = [one._replace(history={"t": one.history["t"], name: force(one, number)}) for one in (fine, coarse)]
+        found |= highest(*both, names=(name,))
+        number += 1
+    energy = fine.summary["largest_energy"]
+    for name in ("support_work", "load_work"):
+        if name in fine.history and energy:
+            t = fine.history["t"]
+            other = np.interp(t, coarse.history["t"], coarse.history[name])
+            found[name] = float(INSTANT * abs(fine.history[name] - other).max() / energy)
+    return found
 
 
 def resolved(run: Answers) -> float:

@@ -4,6 +4,7 @@ provenance)."""
 
 import hashlib
 import json
+import math
 import re
 import tomllib
 from collections.abc import Iterable, Iterator
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
 # what is read again
 WRITTEN = ("scene.toml", "history.csv", "contacts.csv", "modes.csv", "fields.pvd", "fields/*.vtu", "fields/contact.csv")
+STILL = 1e-6                 # of the speed of all energy: a body as slow does not move
 AGAIN = "delete its folder, or run it again with --force"
 
 
@@ -167,7 +169,8 @@ def read_answers(folder: Path) -> Answers:
     axes, bodies = [axis for axis in "xyz" if f"v{axis}" in history], suffixes(history)
     mass = summary["mass"]
     common = np.column_stack([history[f"v{axis}"] for axis in axes])
-    frame = _frame(used, common[0], len(bodies))
+    held = "support_work" in history                       # by what does not move with the bodies
+    frame = np.zeros_like(common[0]) if held else _frame(used, common[0], len(bodies))
     seen = common if frame is None else np.broadcast_to(frame, common.shape)
     speed = max(float(np.linalg.norm([history[f"v{axis}{of}"] - seen[:, i] for i, axis in enumerate(axes)], axis=0).max()) for of in bodies)
     shared = mass * (seen * (seen / 2 - common)).sum(axis=1)                 # from the scene's frame to the other
@@ -175,7 +178,7 @@ def read_answers(folder: Path) -> Answers:
     last = np.array([summary.get(f"rebound_v{axis}", 0.0) for axis in axes])
     at = last if frame is None else frame
     found = summary | {"largest_energy": energy, "energy_final": summary["energy_final"] + mass * float(at @ (at / 2 - last))}
-    return Answers(found, used, speed, history)
+    return Answers(found, used, max(speed, STILL * math.sqrt(2 * energy / mass)), history)
 
 
 def _frame(used: dict, like: np.ndarray, bodies: int) -> np.ndarray | None:
