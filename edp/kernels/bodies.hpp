@@ -135,8 +135,8 @@ public:
     g0.assign(node.size() * D, 0.);
   }
 
-  // G' (w P) + M (massScale d - inertiaKnown) - bodyForce [N/m, N], also at what is held: inner forces, inertia and body force of (2) at the
-  // increment d, and the deformation that they are taken at.
+  // G' (w P) + M (massScale d - inertiaKnown) - bodyForce [N/m, N], also at what is held: inner forces, inertia
+  // and body force of (2) at the increment d, and the deformation that they are taken at.
   int forces(const double *d, const double *inertiaKnown, const double *bodyForce, const Step &step, const Deformation &at,
              double *residual) {
     int ended = fine;

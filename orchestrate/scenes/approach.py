@@ -175,8 +175,9 @@ def refuse_nothing(scene: Scene, met: list[Meeting]) -> None:
     """BadInput where nothing can ever move, or nothing touch before an end that is left open."""
     driven = [k for k, body in enumerate(scene.bodies, 1) if body.driven]
     if driven and (scene.values["end_time"] == 0 or scene.values["until"] == "rest"):
-        raise BadInput(f"end_time: {scene.values['end_time']:g} with until = '{scene.values['until']}', but body.{driven[0]} is moved or loaded "
-                       f"from the start, which has no end of its own (accepted: an end_time > 0, until = 'impact')")
+        raise BadInput(f"end_time: {scene.values['end_time']:g} with until = '{scene.values['until']}', but "
+                       f"body.{driven[0]} is moved or loaded from the start, which has no end of its own "
+                       f"(accepted: an end_time > 0, until = 'impact')")
     moving = [*(one.velocity for one in [*scene.bodies, *scene.obstacles]), *(np.atleast_1d(body.spin) for body in scene.bodies)]
     forces = [scene.values.get(name, 0.0) for name in ("gravity", "body_force_x", "body_force_y")]
     if not any(np.any(one) for one in moving) and not any(forces) and not any(body.supports or body.loads for body in scene.bodies):

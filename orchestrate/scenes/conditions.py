@@ -12,10 +12,10 @@ from pathlib import Path
 import numpy as np
 
 from ..failure import BadInput, brief, unknown
-from ..input import time_functions
+from ..geometry import time_functions
 from ..input.dimension import AXISYMMETRIC, SOLID, Dimension
 from ..input.tables import LONGEST, SHORTEST, Table, listed
-from ..input.time_functions import TimeFunction
+from ..geometry.time_functions import TimeFunction
 
 __all__ = ["Load", "Part", "Support", "inlined", "read_loads", "read_supports"]
 

@@ -8,7 +8,7 @@ import numpy as np
 from ..failure import BadInput, brief
 from ..geometry.outlines import rotation
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
-from ..input.time_functions import TimeFunction
+from ..geometry.time_functions import TimeFunction
 from ..mesh import mesh
 from ..mesh.mesh import Mesh
 from ..mesh.solid_mesh import SolidMesh

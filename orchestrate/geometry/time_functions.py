@@ -14,8 +14,8 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
 from ..failure import BadInput, brief
-from ..geometry import implicit
-from .tables import LONGEST
+from . import implicit
+from ..input.tables import LONGEST
 
 __all__ = ["TimeFunction", "constant", "of_csv", "of_entry", "of_table"]
 
