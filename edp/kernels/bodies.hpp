@@ -251,6 +251,7 @@ private:
     if (step.carries) ownLagging.assign(node.size() * D, 0.);
     #pragma omp parallel for
     for (int g = 0; g < elements; g++) {
+      if (nodesOf(g) == 0) continue;       // points of rigid bodies that count for nothing (rigid-bodies.idp)
       stretched<T>(g, step, at);
       stressed<T>(g, step, at);
     }
@@ -389,6 +390,7 @@ private:
   template<class T> void stiffness(const double *F, const double *S, const double *pressure, double scale, double rate) {
     for (size_t g = 0; g + 1 < firstNode.size(); g++) {
       const int n = nodesOf(g), D = T::D;
+      if (n == 0) continue;
       const double *N = &shape[firstShape[g]];
       for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++) {
         double A[T::F][T::F];
@@ -432,6 +434,7 @@ private:
   // g0, slope of an element, and block += slope g0 g0^T.
   template<class T> void rankOne(size_t g, const double *F, double scale) {
     const int n = nodesOf(g);
+    if (n == 0) return;
     const laws::Material &m = material(firstPoint[g]);
     const double *N = &shape[firstShape[g]];
     double *its = &g0[size_t(firstNode[g]) * D], theta = 0;

@@ -122,7 +122,9 @@ def _cut(size: float, start: float, end: float, before: list[float], after: list
 
 
 def material(one: dict[str, Value]) -> str:
-    """Law with its own numbers, E, nu and density of a body."""
+    """Law with its own numbers, E, nu and density of a body; of a rigid one its mass or density."""
+    if one.get("rigid"):
+        return f"rigid, m = {one['mass']:g} kg" if "mass" in one else f"rigid, ρ = {one['density']:g} kg/m³"
     own = "" if one.get("law_parameters", "none") == "none" else f" ({one['law_parameters']})"
     viscosities = "".join(f", {sign} = {one[name]:.3g} Pa s" for name, sign in (("viscosity", "η"), ("bulk_viscosity", "ζ"))
                           if one.get(name))

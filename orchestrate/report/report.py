@@ -120,6 +120,8 @@ def _scene(scene: dict[str, Value]) -> list[str]:
 
 
 def _material(body: dict[str, Value]) -> str:
+    if body.get("rigid"):
+        return "rigid, " + (f"mass = {body['mass']:g} kg" if "mass" in body else f"density = {body['density']:g} kg/m3")
     return f"{body['law']}, young = {body['young']:g} Pa, nu = {body['nu']:g}, density = {body['density']:g} kg/m3"
 
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from ..mesh import mesh, revolution, solid_mesh, solids
 from .approach import Meeting, meetings, refuse_nothing, refuse_sinking, turned
-from .bodies import DAMPING, MATERIAL, Body
+from .bodies import DAMPING, MATERIAL, STIFF, Body
 from .front import Front, fronts
 from ..freefem.describe import describe
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID
@@ -185,7 +185,7 @@ class Asker:
                                             for name in ("closing", "sliding", "pressing", "pulling"))
         soft = min(bodies, key=lambda body: body.young)
         asked = {name: self.scene.values[name] for name in ("accuracy", "accuracy_of", "end_time", "until")}
-        asked |= {"exponent": self.scene.contact["exponent"], "young": soft.young, "nu": soft.nu, "density": soft.density,
+        asked |= {"exponent": self.scene.contact["exponent"], "young": soft.young / (STIFF if soft.rigid else 1), "nu": soft.nu, "density": soft.density,
                   "radius": radius, "symmetry": "full", "speed": along, "angle": 90.0, "spin": 0.0, "gravity": pressing}
         if slides:
             asked |= {"speed": math.hypot(along, across), "angle": math.degrees(math.atan2(along, across)),
@@ -244,7 +244,8 @@ def used_tables(scene: Scene, sizes: list[Sizes | None], values: dict[str, Value
         return [(scene.bodies[k] if k >= 0 else scene.obstacles[-1 - k]).name for k in (pair.first, pair.second)]
     bodies = []
     for given, body, size in zip(scene.given["body"], scene.bodies, sizes):
-        used = {"name": body.name} | given | {key: getattr(body, key) for key in MATERIAL}
+        used = {"name": body.name} | given | ({} if body.rigid else {key: getattr(body, key) for key in MATERIAL})
+        used |= {"density": body.density} if body.rigid and not body.mass else {}
         used |= {"mesh_size": size.bulk, "contact_mesh_size": size.contact} if size else {}
         used |= {"file": str((scene.folder / given["file"]).resolve())} if "file" in given else {}
         bodies.append(used)
@@ -276,6 +277,8 @@ def _sizes(k: int, ask: Asker) -> Sizes:
     bulk = float(_of_body(k, ask, **given)["mesh_size"])
     hits = [_hit(body, k, one, ask) for one in ask.met if k in (one.first, one.second)]
     mine = [front for front in ask.fronts.values() if k in front.sizes]
+    if body.rigid and not body.mesh_size:
+        bulk = float(body.outline.half_thickness)               # nothing goes on inside
     if not body.mesh_size:
         bulk = min((front.sizes[k] for front in mine if k in front.crossed), default=bulk)
     contact = body.contact_mesh_size or min([bulk, *(size for size, *_ in hits), *(front.sizes[k] for front in mine)])
@@ -393,5 +396,7 @@ def data_file(scene: Scene, disc: dict[str, Value], centres: np.ndarray, rounds:
     lines += [("front", *one) for one in front]
     damped = [(k, *(getattr(body, name) for name in DAMPING)) for k, body in enumerate(scene.bodies) if body.damped]
     lines += [("damping", len(damped)), *damped] if damped else []
+    stiff = [(k, body.mass, *body.moments) for k, body in enumerate(scene.bodies) if body.rigid]
+    lines += [("rigid", len(stiff)), *stiff] if stiff else []
     lines += conditions
     return "".join(" ".join(repr(float(one)) if isinstance(one, float) else str(one) for one in line) + "\n" for line in lines)

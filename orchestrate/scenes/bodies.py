@@ -12,21 +12,23 @@ from ..input import parameters
 from ..mesh import flat, mesh, revolution, solids
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
 from ..failure import BadInput, brief, unknown
+from ..geometry import tumbling
 from ..geometry.outlines import Outline
 from ..mesh.solid_file import GEOMETRIES
 from ..mesh.solid_mesh import SolidMesh
 from ..mesh.solids import Solid
 from ..input.parameters import Value
-from ..input.tables import SHORTEST, Table
+from ..input.tables import LONGEST, SHORTEST, Table
 from .conditions import Load, Support, read_loads, read_supports
 
 GEOMETRY = {PLANE_STRAIN: flat, AXISYMMETRIC: revolution, SOLID: solids}     # SHAPES with their entries, shape(), MOTION, motion()
 DAMPING = ("viscosity", "bulk_viscosity", "relaxation_modulus", "relaxation_time")
 DAMPED = ("viscosity", "bulk_viscosity", "relaxation_modulus", "loss")     # one of which is above 0
+STIFF = 1e5                 # young of a rigid body over that of the others: its strain is as much smaller
 OPTIONAL = ("law_parameters", *DAMPING, "loss")
 MATERIAL = ("law", "young", "nu", "density", *OPTIONAL)
 SIZES = ("mesh_size", "contact_mesh_size")
-COMMON = ("name", "shape", "position", "velocity", *MATERIAL, *SIZES, "support", "load")
+COMMON = ("name", "shape", "position", "velocity", *MATERIAL, *SIZES, "support", "load", "rigid", "mass", "inertia")
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_.-]*")
 
 
@@ -56,6 +58,9 @@ class Body:
     contact_mesh_size: float
     supports: tuple[Support, ...] = ()
     loads: tuple[Load, ...] = ()
+    rigid: bool = False
+    mass: float = 0.0                  # given, of a rigid body [kg/m; kg]; 0: by density
+    moments: tuple[float, ...] = (0.0,) * 6     # likewise, as edp/core/input/conditions.idp has them
 
     @property
     def damped(self) -> bool:
@@ -124,10 +129,63 @@ def _body(path: str, given: dict, top: dict, folder: Path, of: Dimension) -> Bod
         raise BadInput(f"{table.at(sizes[0])}: '{brief(table.given[sizes[0]])}' for a mesh from a file, "
                        f"which has its own element sizes (accepted: {', '.join(SIZES)} where gmsh makes "
                        f"the mesh: of a shape, or of a geometry, {', '.join(GEOMETRIES)})")
+    stiff = table.flag("rigid", False)
+    if not stiff and (found := [key for key in ("mass", "inertia") if key in table]):
+        raise BadInput(f"{table.at(found[0])}: is of a rigid body (accepted: with rigid = true, or density)")
+    material = _rigid(table, top, of, outline) if stiff else _material(table, top)
     return Body(checked_name(path, given.get("name", path.replace(".", ""))), outline, body_mesh, **geometry.motion(table),
-                **_material(table, top), mesh_size=bulk, contact_mesh_size=contact,
+                **material, mesh_size=bulk, contact_mesh_size=contact,
                 supports=read_supports(path, given.get("support", []), of, _end_time(top)),
                 loads=read_loads(path, given.get("load", []), of, _end_time(top)))
+
+
+def _rigid(table: Table, top: dict, of: Dimension, outline: Outline | Solid) -> dict:
+    """What a rigid body has instead of a material; its young is settled by the scene (stiffened())."""
+    for key in ("law", "young", "nu", *OPTIONAL, "support"):
+        if key in table:
+            raise BadInput(f"{table.at(key)}: a rigid body has none (accepted: density, or mass; without rigid = true)")
+    if "mass" in table and "density" in table:
+        raise BadInput(f"{table.at('mass')}: stands beside density (accepted: one of them)")
+    rule = parameters.table()["density"]
+    mass = table.number("mass", 1e-12, LONGEST) if "mass" in table else 0.0
+    content = outline.volume if isinstance(outline, Solid) else outline.area      # of revolution a scale alone
+    if not mass and "density" not in table and "density" not in top:
+        raise BadInput(f"{table.at('density')}: is missing, here and at the top of the file (accepted: {rule.accepted}, or mass)")
+    density = mass / content if mass else table.parameter("density", rule) if "density" in table else rule.check(top["density"])
+    found = {key: parameters.table()[key].default for key in OPTIONAL}
+    return found | {"law": "svk", "young": 1.0, "nu": 0.0, "density": float(density), "rigid": True, "mass": mass,
+                    "moments": _moments(table, of)}
+
+
+def _moments(table: Table, of: Dimension) -> tuple[float, ...]:
+    """Of the entry inertia: in the plane the polar moment of inertia; in space, from those about the body's own axes, the integrals of
+    rho X_i X_j about the centre, in the scene's axes: 11, 22, 33, 12, 23, 13. 0 where there is no such entry."""
+    if "inertia" not in table:
+        return (0.0,) * 6
+    if of is AXISYMMETRIC:
+        raise BadInput(f"{table.at('inertia')}: no body of revolution turns in its scene (accepted: without inertia)")
+    if of is PLANE_STRAIN:
+        return (table.number("inertia", 1e-18, LONGEST), *(0.0,) * 5)
+    about = table.numbers("inertia", count=3, low=1e-18)
+    own = about.sum() / 2 - about
+    if not (own > 0).all():
+        raise BadInput(f"{table.at('inertia')}: '{brief(table.given['inertia'])}' has one that is no less than the others together "
+                       f"(accepted: moments about x, y, z of a body that is nowhere flat)")
+    turn = tumbling.rotation(solids.motion(table)["angle"])
+    E = turn @ np.diag(own) @ turn.T
+    return float(E[0, 0]), float(E[1, 1]), float(E[2, 2]), float(E[0, 1]), float(E[1, 2]), float(E[0, 2])
+
+
+def stiffened(found: list[Body], penalty: Value, path: str) -> list[Body]:
+    """The bodies of a scene with the young of its rigid ones: STIFF times the largest of the others, or, where all are rigid, times the
+    stiffness of the penalty over the largest of them. BadInput where that is open then."""
+    if not any(body.rigid for body in found):
+        return found
+    soft = max((body.young for body in found if not body.rigid), default=0.0)
+    if not soft and penalty == "auto":
+        raise BadInput(f"{path}: 'auto' follows from a body that deforms, and all are rigid (accepted: a number, Pa/m^m)")
+    young = STIFF * (soft or float(penalty) * max(body.outline.half_thickness for body in found))
+    return [replace(body, young=young) if body.rigid else body for body in found]
 
 
 def _end_time(top: dict) -> float:

@@ -87,7 +87,7 @@ def _front(scene: Scene, one: Meeting) -> Front | None:
     """The front of a meeting, None where no body lands flat."""
     bodies = {k: scene.bodies[k] for k in (one.first, one.second) if k >= 0}
     sizes = {k: body.mesh_size or _size(scene, one, k) for k, body in bodies.items()}        # [m]
-    crossed = tuple(k for k, body in bodies.items() if _lands_flat(one, k, body, sizes[k]))
+    crossed = tuple(k for k, body in bodies.items() if not body.rigid and _lands_flat(one, k, body, sizes[k]))
     if not crossed:
         return None
     tau = min(sizes[k] / wave_speed(bodies[k]) for k in crossed)

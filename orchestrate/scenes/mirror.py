@@ -52,6 +52,8 @@ def _of_body(one: Body, axis: int, plane: str) -> str:
         return f"moves along {AXES[axis]}"
     if np.delete(one.spin, axis).any():                  # an axial vector keeps its part along the normal
         return f"spins out of {plane}"
+    if any(one.moments):
+        return "has moments of inertia of its own"
     if one.mesh or one.outline.geometry:
         return "is a file's"
     mirrored = one.outline.shape.is_mirrored(one.placed.rotation.T @ normal)

@@ -225,6 +225,7 @@ def _of_tables(given: dict, folder: Path, name: str) -> Scene:
     index = _names(all_bodies, all_obstacles)
     contact_table = Table("contact", given.get("contact", {}), (*CONTACT, SELF_CONTACT.name, "pair"))
     contact = _parameters(contact_table, CONTACT, of)
+    all_bodies = bodies.stiffened(all_bodies, contact["penalty"], "contact.penalty")
     pairs = _own_of_obstacles(rigid, len(all_bodies))
     for both, pair in _exceptions(contact_table, index).items():
         pairs[both] = replace(pair, values=pairs[both].values | pair.values) if both in pairs else pair
