@@ -1,6 +1,6 @@
 """Functions of time that supports and loads follow: a number, an expression of t [s] or a table.
 
-All become cubic Hermite polynomials between knots, which FreeFEM evaluates
+They become cubic Hermite polynomials between knots, which FreeFEM evaluates
 (edp/core/input/conditions.idp). A table is interpolated monotonically and with a continuous slope
 (Fritsch and Carlson 1980), an expression to CLOSE of its largest value.
 """
@@ -20,7 +20,11 @@ from ..input.tables import LONGEST
 __all__ = ["TimeFunction", "constant", "of_csv", "of_entry", "of_table"]
 
 CLOSE = 1e-8                 # error of an expression's polynomials over its largest value
-FEWEST, MOST = 64, 2**16     # intervals between knots
+STEEPEST = 1e30              # 1/s: a slope beyond is none
+ROUGH, BROKEN = 1e-6, 1e-2   # the same of what changes often; of what is not continuous
+FEWEST, MOST = 64, 2**17     # knots
+TESTED = 15                  # times between two knots at which an expression and its polynomial are compared
+SHORTEST_INTERVAL = 1e-12    # of end_time
 
 
 @dataclass(frozen=True)
@@ -89,19 +93,20 @@ def of_table(entry: str, times: object, values: object) -> TimeFunction:
     return TimeFunction(np.column_stack([t, value, PchipInterpolator(t, value).derivative()(t)]))
 
 
-def of_csv(entry: str, path: Path, columns: int) -> dict[str, list[float]]:
-    """The table in a CSV file as columns {"t": [...], "x": [...], ...}: its first line names them, t
-    first. BadInput, naming the entry."""
-    accepted = f"(accepted: a CSV file with a first line 't,...' and {columns + 1} columns of numbers)"
+def of_csv(entry: str, path: Path, columns: str) -> dict[str, list[float]]:
+    """The table in a CSV file as columns {"t": [...], "x": [...], ...}: its first line names t and the
+    `columns`, each a letter. BadInput, naming the entry."""
+    first = ",".join(["t", *columns])
+    accepted = f"(accepted: a CSV file with the first line '{first}' and {len(columns) + 1} columns of numbers)"
     try:
         with open(path, encoding="utf-8-sig", newline="") as file:
             rows = [[cell.strip() for cell in row] for row in csv.reader(file) if any(row)]
     except (OSError, UnicodeDecodeError, ValueError, csv.Error) as error:
         reason = getattr(error, "strerror", None) or error
         raise BadInput(f"{entry}: '{brief(path.name)}' cannot be read: {reason} {accepted}") from None
-    if not rows or rows[0][0] != "t" or len(rows[0]) != columns + 1:
-        first = ",".join(rows[0]) if rows else ""
-        raise BadInput(f"{entry}: '{brief(path.name)}' begins with '{brief(first)}' {accepted}")
+    if not rows or sorted(rows[0]) != sorted(["t", *columns]):
+        begins = ",".join(rows[0]) if rows else ""
+        raise BadInput(f"{entry}: '{brief(path.name)}' begins with '{brief(begins)}' {accepted}")
     for number, row in enumerate(rows[1:], 2):
         try:
             if len([float(cell) for cell in row]) != len(rows[0]):
@@ -113,18 +118,28 @@ def of_csv(entry: str, path: Path, columns: int) -> dict[str, list[float]]:
 
 
 def _sampled(entry: str, given: str, program: tuple[float, ...], end: float) -> np.ndarray:
-    """Knots of an expression from 0 to `end`, twice as many until they are close to it."""
-    count = FEWEST
-    while count <= MOST:
-        t = np.linspace(0, end, count + 1)
+    """Knots of an expression from 0 to `end`: intervals are halved until the polynomial in each is
+    close to it, at a kink until they are as short as SHORTEST_INTERVAL."""
+    t = np.linspace(0, end, FEWEST + 1)
+    while True:
         knots = np.column_stack([t, *_evaluated(entry, given, program, t)])
-        between = (t[1:] + t[:-1]) / 2
-        value, _ = _evaluated(entry, given, program, between)
-        off = abs(TimeFunction(knots)(between) - value).max()
-        if off <= CLOSE * abs(knots[:, 1]).max():
-            return knots
-        count *= 2
-    return knots                      # of a kink: to 1/MOST of end_time
+        width = np.diff(t)
+        between = t[:-1, None] + width[:, None] * np.arange(1, TESTED + 1) / (TESTED + 1)
+        value, _ = _evaluated(entry, given, program, between.ravel())
+        off = abs(TimeFunction(knots)(between) - value.reshape(between.shape)).max(axis=1)
+        largest = max(abs(knots[:, 1]).max(), abs(value).max())
+        open_ones = (off > CLOSE * largest) & (width > SHORTEST_INTERVAL * end)
+        too_many = len(t) + open_ones.sum() > MOST
+        if off.max() <= (ROUGH * largest if too_many else CLOSE * largest) or not open_ones.any():
+            break
+        if too_many:
+            raise BadInput(f"{entry}: '{brief(given)}' changes too often up to end_time = {end:g} s "
+                           f"(accepted: what {MOST} cubic polynomials follow)")
+        t = np.sort(np.append(t, (t[:-1] + width / 2)[open_ones]))
+    if off.max() > BROKEN * largest:
+        raise BadInput(f"{entry}: '{brief(given)}' jumps, or has no limit, at t = {t[off.argmax()]:.6g} s "
+                       f"(accepted: a continuous function)")
+    return knots
 
 
 def _evaluated(entry: str, given: str, program: tuple[float, ...],
@@ -133,7 +148,7 @@ def _evaluated(entry: str, given: str, program: tuple[float, ...],
     with np.errstate(all="ignore"):
         value, slope = implicit.run(program, t[:, None])
     value, slope = np.broadcast_to(value, t.shape), np.broadcast_to(slope[:, 0], t.shape)
-    bad = ~(np.isfinite(value) & np.isfinite(slope) & (abs(value) <= LONGEST**2))
+    bad = ~((abs(value) <= LONGEST**2) & (abs(slope) <= STEEPEST))
     if bad.any():
         raise BadInput(f"{entry}: '{brief(given)}' is {value[bad][0]:g}, its slope {slope[bad][0]:g}, at "
                        f"t = {t[bad][0]:g} s (accepted: a number and a finite slope at all times)")

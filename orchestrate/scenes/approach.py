@@ -16,6 +16,7 @@ from ..input.dimension import PLANE_STRAIN
 from ..failure import BadInput
 from .scene import Scene, gap_between
 from ..mesh import mesh
+from .conditions import WHOLE
 from .obstacles import Obstacle
 from ..geometry.outlines import Outline, Shape
 
@@ -33,7 +34,7 @@ class Meeting:
     """Body `first` and `second` (body k, or -1 - k for obstacle k) when they first touch, or, where they do not, at the start: both as they
     are then; the parts along and across the normal, positive, of their relative velocity [m/s] and of the constant force between them
     [m/s2]; the radius that stands for the pair [m]; the time [s], infinite where they do not; the normal, outward of the second; whether as
-    rigid bodies they never meet."""
+    rigid bodies they never meet; the closing speed [m/s] of an impact that presses as much as the motion of a support does."""
 
     first: int
     second: int
@@ -46,6 +47,7 @@ class Meeting:
     time: float
     normal: np.ndarray
     never: bool = False
+    pressed: float = 0.0
 
     def gaps(self, body: int, points: np.ndarray) -> np.ndarray:
         """Gaps (n,) from the other one of the points of `body`, as it is at the meeting, for the sizes of elements."""
@@ -126,6 +128,7 @@ def _meeting(scene: Scene, first: int, second: int) -> Meeting:
     pull = _fall(scene) * (falls[0] - (falls[1] if second >= 0 else 0))
     start = body.velocity - other.velocity
     radius = min([body.outline.half_thickness, *([other.outline.half_thickness] if second >= 0 else [])])
+    loaded = max(loaded_pull(one) for one in (body, other) if isinstance(one, Body))
     turning = sum(one.outline.fastest(one.angle, one.spin) * one.outline.reach for one in (body, other) if isinstance(one, Body))
     t, never = _first_touch(body, other, start, pull, turning, radius)
     met = not math.isinf(t)
@@ -133,9 +136,12 @@ def _meeting(scene: Scene, first: int, second: int) -> Meeting:
     outlines, velocity = _at(body, other, t, pull), start + pull * t
     normal = outlines[0].normal_from(outlines[1])
     if not met:                                                # what lets them meet later may turn them in any direction
-        return Meeting(first, second, outlines, float(np.linalg.norm(velocity)), 0.0, float(np.linalg.norm(pull)), 0.0, float(radius),
-                       math.inf, normal, never)
-    one = Meeting(first, second, outlines, *_parts(velocity, normal), *_parts(pull, normal), float(radius), t, normal)
+        driven = any(one.driven for one in (body, other) if isinstance(one, Body))
+        return Meeting(first, second, outlines, float(np.linalg.norm(velocity)), 0.0, float(np.linalg.norm(pull)) + loaded, 0.0,
+                       float(radius), math.inf, normal, never and not driven)
+    along, across = _parts(pull, normal)
+    one = Meeting(first, second, outlines, *_parts(velocity, normal), along + loaded, across, float(radius), t, normal)
+    one = replace(one, pressed=_pressed(scene, one))
     if scene.dimension is not PLANE_STRAIN:
         return one
     point, spun = _middle(one), velocity @ normal              # of the points that touch: what turns strikes by its spin, too
@@ -143,6 +149,29 @@ def _meeting(scene: Scene, first: int, second: int) -> Meeting:
         if isinstance(each, Body) and abs(lever := _lever(shape, point, normal)) > ECCENTRIC * shape.reach:
             spun += sign * each.spin * lever
     return replace(one, closing=float(abs(spun)))
+
+
+def loaded_pull(body: Body) -> float:
+    """The acceleration [m/s2] of a body by its loads, on parts as wide as the body is thick. What
+    acts all around the body or a cavity has no resultant."""
+    stress = [one.largest for one in body.loads
+              if one.kind == "traction" or (one.kind == "pressure" and one.part.name not in WHOLE)]
+    if isinstance(body.outline, Outline):
+        width, content = 2 * body.outline.half_thickness, body.outline.area
+    else:
+        width, content = math.pi * body.outline.half_thickness**2, body.outline.volume
+    return sum(stress) * width / (body.density * content)
+
+
+def _pressed(scene: Scene, one: Meeting) -> float:
+    """The speed [m/s] of an impact whose contact is as wide as a support makes it, that goes on by a
+    depth [m] after the touch. Half-widths b of discs: b^2 = 0.8 R depth (R/10 deep), of the impact
+    2 R^2 v/c (edp/core/input/sizes.idp); of balls b^2 = R depth, and b = 1.31 R (v/c)^0.4."""
+    bodies = [scene.bodies[k] for k in (one.first, one.second) if k >= 0]
+    ends = [support.path()[1] for body in bodies for support in body.supports if support.moves]
+    share = min(0.5, one.closing * max([0.0, *(end - one.time for end in ends)]) / one.radius)
+    bar_speed = min(math.sqrt(body.young / body.density) for body in bodies)
+    return bar_speed * (0.4 * share if scene.dimension is PLANE_STRAIN else 0.5 * share**1.25)
 
 
 def _lever(shape: Shape, point: np.ndarray, n: np.ndarray) -> float:

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from ..mesh import mesh, revolution, solid_mesh, solids
-from .approach import Meeting, meetings, refuse_nothing, refuse_sinking, turned
+from .approach import Meeting, loaded_pull, meetings, refuse_nothing, refuse_sinking, turned
 from .bodies import DAMPING, MATERIAL, STIFF, Body
 from .front import Front, fronts
 from ..freefem.describe import describe
@@ -165,9 +165,9 @@ class Asker:
         is_open = pair.values.get("penalty", self.scene.contact["penalty"]) == "auto"
         return self.fronts.get((pair.first, pair.second)) if is_open else None
 
-    def answer(self, bodies: list[Body], radius: float, slides: bool = False, **more: Value) -> dict:
+    def answer(self, bodies: list[Body], radius: float, slides: bool = False, presses: bool = True, **more: Value) -> dict:
         """Of the rule, for such a disc."""
-        return self.rule(self.disc(bodies, radius, slides) | more)
+        return self.rule(self.disc(bodies, radius, slides, presses) | more)
 
     def small(self, first: int, second: int) -> float:
         """The radius [m] of an obstacle where a body meets it, if less than half of the body's own, 0 at a sharp corner; else infinite."""
@@ -178,14 +178,23 @@ class Asker:
                 return radius if radius < one.radius / 2 else math.inf
         return math.inf
 
-    def disc(self, bodies: list[Body], radius: float, slides: bool) -> dict[str, Value]:
-        """A disc of this radius [m] and the softer body's material; straight on unless it `slides`."""
+    @cached_property
+    def pressed(self) -> float:
+        """The closing speed [m/s] of impacts that press as much as moving supports do."""
+        return float(f"{max((one.pressed for one in self.met), default=0.0):.6g}")
+
+    def disc(self, bodies: list[Body], radius: float, slides: bool, presses: bool = True) -> dict[str, Value]:
+        """A disc of this radius [m] and the softer body's material; straight on unless it `slides`; where it `presses` as wide
+        a contact as moving supports make."""
         # no round-off: a mesh follows every digit
         along, across, pressing, pulling = (float(f"{max((getattr(one, name) for one in self.met), default=0.0):.6g}")
                                             for name in ("closing", "sliding", "pressing", "pulling"))
+        along = max(along, self.pressed) if presses else along
+        pressing = pressing if self.met else max(loaded_pull(body) for body in self.scene.bodies)
         soft = min(bodies, key=lambda body: body.young)
         asked = {name: self.scene.values[name] for name in ("accuracy", "accuracy_of", "end_time", "until")}
-        asked |= {"exponent": self.scene.contact["exponent"], "young": soft.young / (STIFF if soft.rigid else 1), "nu": soft.nu, "density": soft.density,
+        young = soft.young / (STIFF if soft.rigid else 1)
+        asked |= {"exponent": self.scene.contact["exponent"], "young": young, "nu": soft.nu, "density": soft.density,
                   "radius": radius, "symmetry": "full", "speed": along, "angle": 90.0, "spin": 0.0, "gravity": pressing}
         if slides:
             asked |= {"speed": math.hypot(along, across), "angle": math.degrees(math.atan2(along, across)),
@@ -203,6 +212,9 @@ def contact_values(bodies: list[Body], contact: dict[str, Value], ask: Asker, pa
     if (left := [name for name in ("penalty", "slip_velocity") if contact[name] == "auto"]):
         used = ask.answer(bodies, radius, slides=True, exponent=contact["exponent"], **more)["used"]
         found |= {name: used[name] for name in left}
+        if "slip_velocity" in left and ask.pressed > 0:            # a slow motion slips slowly, however far it goes
+            used = ask.answer(bodies, radius, slides=True, presses=False, exponent=contact["exponent"], **more)["used"]
+            found["slip_velocity"] = used["slip_velocity"]
     if contact["friction_dynamic"] == "auto":
         found["friction_dynamic"] = contact["friction_static"]
     if found["friction_dynamic"] > found["friction_static"]:

@@ -121,7 +121,7 @@ def _with_tables(path: str, table: dict, names: tuple[str, ...], folder: Path, o
     for name in names:
         value = table.get(name)
         if isinstance(value, str) and value.lower().endswith(".csv"):
-            columns = 1 if name == "pressure" else of.axes
+            columns = "p" if name == "pressure" else "xyz"[:of.axes]
             changed[name] = time_functions.of_csv(f"{path}.{name}", folder / value, columns)
     return changed
 
@@ -177,10 +177,9 @@ def _functions(table: Table, key: str, names: str, end_time: float) -> tuple[Tim
     """A function for each of the names, of a list of them, one alone, or a table {t, ...}."""
     entry, given = table.at(key), table.given[key]
     if isinstance(given, dict):
-        columns = [name for name in given if name != "t"]
-        if "t" not in given or len(columns) != len(names):
+        if set(given) != {"t", *names}:
             raise BadInput(f"{entry}: '{brief(given)}' is no table (accepted: t and {', '.join(names)})")
-        return tuple(time_functions.of_table(f"{entry}.{name}", given["t"], given[name]) for name in columns)
+        return tuple(time_functions.of_table(f"{entry}.{name}", given["t"], given[name]) for name in names)
     if len(names) == 1 and not isinstance(given, list):
         given = [given]
     if not isinstance(given, list) or len(given) != len(names):

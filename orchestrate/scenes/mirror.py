@@ -56,8 +56,22 @@ def _of_body(one: Body, axis: int, plane: str) -> str:
         return "has moments of inertia of its own"
     if one.mesh or one.outline.geometry:
         return "is a file's"
-    mirrored = one.outline.shape.is_mirrored(one.placed.rotation.T @ normal)
-    return "" if mirrored else f"is not its own mirror image in {plane}"
+    if not one.outline.shape.is_mirrored(one.placed.rotation.T @ normal):
+        return f"is not its own mirror image in {plane}"
+    return _of_conditions(one, axis, plane)
+
+
+def _of_conditions(one: Body, axis: int, plane: str) -> str:
+    """Which support or load of a body has no mirror image, or acts along the axis."""
+    for kind, listed in (("support", one.supports), ("load", one.loads)):
+        if not all(each.part.is_mirrored(axis, one.placed.rotation) for each in listed):
+            return f"has a {kind} that is not its own mirror image in {plane}"
+    moved = [(each.fixed[axis] or each.normal) and not each.motion[axis].is_constant
+             for each in one.supports]
+    pushed = [each.kind == "traction" and not each.functions[axis].is_zero for each in one.loads]
+    if any(moved) or any(pushed):
+        return f"has a {'support' if any(moved) else 'load'} that acts along {AXES[axis]}"
+    return ""
 
 
 def _of_obstacle(one: Obstacle, axis: int) -> bool:

@@ -1,0 +1,205 @@
+"""Loads: tractions, pressures that follow the surface, and gases in cavities."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq, least_squares
+
+from orchestrate.mesh import mesh
+from test_checkpoint import assert_same, direct, kill_at
+from verification.measure import bodies, outcome, prepared
+
+FLOOR = {"kind": "plane", "point": [0, 0], "normal": [0, 1]}
+SOFT = {"law": "neohookean", "young": 1e6, "nu": 0.3, "density": 1000, "accuracy": 0.1}
+RADIUS, WALL = 0.05, 0.002   # m, of the middle of thin rings and shells
+THIN = {"law": "svk", "young": 1e7, "nu": 0.0, "density": 1000, "accuracy": 0.05}
+
+
+def energy(history: dict) -> np.ndarray:
+    """Kinetic, elastic and contact energy."""
+    return history["kinetic"] + history["elastic"] + history["contact"]
+
+
+def assert_exact(run) -> None:
+    """Energy with all works to 1e-9 of the largest, momenta to 1e-8."""
+    assert abs(run.history["balance"]).max() < 1e-9 * energy(run.history).max()
+    assert run.summary["momentum_drift"] < 1e-8 and (run.summary["angular_momentum_drift"] or 0) < 1e-8
+
+
+# ---- exactness
+
+PUSHED = SOFT | {"end_time": 0.02, "contact": {"friction_static": 0.4}, "obstacle": [FLOOR], "body": [
+    {"name": "pad", "shape": "rectangle", "width": 0.1, "height": 0.05, "position": [0, 0.0255],
+     "support": [{"where": "top", "motion": ["0.003*sin(400*t)", "-0.002*(1-cos(600*t))"]}],
+     "load": [{"where": "right", "pressure": "2e4*sin(300*t)"}, {"where": "left", "traction": ["1e4*t/0.02", -3e3]}]},
+    {"name": "tyre", "shape": "ring", "radius": 0.03, "inner_radius": 0.02, "position": [0.15, 0.0305], "velocity": [1, -3], "spin": 20,
+     "load": [{"where": "inner", "gas": {"gauge_pressure": 2e4, "exponent": 1.4}}]}]}
+ROUND = SOFT | {"dimension": "axisymmetric", "end_time": 0.01, "contact": {"friction_static": 0.4}, "obstacle": [FLOOR], "body": [
+    {"shape": "cylinder", "radius": 0.04, "height": 0.04, "position": 0.0205, "support": [{"where": "top", "motion": [0, "-0.002*(1-cos(600*t))"]}],
+     "load": [{"where": "right", "pressure": "3e4*sin(300*t)"}, {"where": "bottom", "traction": [500, 1e3]}]}]}
+SOLID = SOFT | {"dimension": "3d", "end_time": 4e-3, "contact": {"friction_static": 0.4}, "symmetry": "full",
+                "obstacle": [{"kind": "plane", "point": [0, 0, 0], "normal": [0, 1, 0]}],
+                "body": [{"shape": "box", "width": 0.04, "height": 0.04, "depth": 0.04, "position": [0, 0.0202, 0], "mesh_size": 0.02,
+                          "contact_mesh_size": 0.02, "support": [{"where": "top", "motion": [0, "-0.002*(1-cos(900*t))", 0]}],
+                          "load": [{"where": "right", "pressure": "3e4*sin(300*t)"}, {"where": "front", "traction": [1e3, 2e3, "1e4*sin(500*t)"]}]}]}
+
+
+@pytest.mark.parametrize("scene", [PUSHED, ROUND, SOLID], ids=["plane", "revolution", "space"])
+def test_loads_do_exact_work(tmp_path, scene):
+    """Dead and follower loads and a gas, on bodies that are held and moved and rub."""
+    run = bodies(tmp_path, scene)
+    assert_exact(run)
+    summary = run.summary
+    assert abs(summary["load_work"]) > 1e-3 * energy(run.history).max() and summary["friction_work"] > 1e-3 * energy(run.history).max()
+    assert summary["external_work"] == pytest.approx(summary["support_work"] + summary["load_work"], rel=1e-12)
+
+
+@pytest.mark.parametrize("dimension", ["plane-strain", "3d"])
+def test_a_push_on_a_free_body(tmp_path, dimension):
+    """A block that nothing holds, pushed at the end of one side for a while, and then free: the momentum
+    is the integral of the force, exactly that of the dead load; what it has afterwards stays."""
+    axes = 3 if dimension == "3d" else 2
+    size = {"shape": "box", "width": 0.1, "height": 0.04, "depth": 0.04} if axes == 3 else {"shape": "rectangle", "width": 0.1, "height": 0.04}
+    high = {"kind": "box", "low": [-0.06, 0.0, -1][:axes], "high": [-0.04, 0.03, 1][:axes]}
+    push = {"where": "left", "traction": [{"t": [0, 2e-3, 4e-3], "x": [0, 1e4, 0], "y": [0, 0, 0], "z": [0, 0, 0]}]}
+    push["traction"] = {name: push["traction"][0][name] for name in ["t", *"xyz"[:axes]]}
+    load = [push, {"where": high, "pressure": {"t": [0, 1e-3, 4e-3], "p": [0, 5e3, 0]}}]
+    run = bodies(tmp_path, SOFT | {"dimension": dimension, "end_time": 6e-3, "dt": 1e-4, "mesh_size": 0.02,
+                                   "body": [size | {"position": [0] * axes, "load": load}]} | ({"symmetry": "full"} if axes == 3 else {}))
+    history = run.history
+    assert_exact(run)
+    later = history["t"] > 4e-3 * (1 + 1e-9)
+    assert np.ptp(energy(history)[later]) < 1e-9 * energy(history).max() and np.ptp(history["momentum_x"][later]) < 1e-12
+    assert np.ptp(history["angular_momentum"][later]) < 1e-8 * abs(history["angular_momentum"]).max() > 0
+
+
+def test_a_follower_turns_with_its_body(tmp_path):
+    """A pressure on one side of a stiff bar that turns half a turn pushes back in the end: the force on the
+    bar, by the change of its momentum, is -p A n with the normal of the state. A dead load keeps its direction."""
+    bar = {"shape": "rectangle", "width": 0.2, "height": 0.05, "position": [0, 0], "spin": math.pi / 2e-2, "mesh_size": 0.025}
+    kinds = ({"where": "right", "pressure": 1e3}, {"where": "right", "traction": [-1e3, 0]})
+    runs = [bodies(tmp_path / str(k), SOFT | {"young": 1e9, "accuracy": 0.05, "end_time": 0.02, "body": [bar | {"load": [one]}]}) for k, one in enumerate(kinds)]
+    for run, force_x in zip(runs, (lambda angle: -50 * np.cos(angle), lambda angle: -50 + 0 * angle)):
+        assert_exact(run)
+        history = run.history
+        middle = history["t"][1:] - history["dt"][1:] / 2
+        rate = np.diff(history["momentum_x"]) / history["dt"][1:]
+        assert rate == pytest.approx(force_x(math.pi / 2e-2 * middle), abs=1.5)
+
+
+def test_a_constant_pressure_around_a_body_has_no_resultant(tmp_path):
+    """It works p times the change of the area, to round-off; momentum and angular momentum stay 0."""
+    block = {"shape": "rectangle", "width": 0.1, "height": 0.06, "position": [0, 0], "mesh_size": 0.02, "load": [{"where": "all", "pressure": 1e5}]}
+    run = bodies(tmp_path, SOFT | {"end_time": 0.01, "body": [block]})
+    assert_exact(run)
+    assert run.summary["load_work"] > 0
+    assert abs(run.history["momentum_x"]).max() < 1e-12 and abs(run.history["angular_momentum"]).max() < 1e-12
+
+
+# ---- gas
+
+def frequency(t: np.ndarray, values: np.ndarray, guess: float) -> float:
+    """The angular frequency [rad/s] of the oscillation and its double that fit values best."""
+    def off(one: np.ndarray) -> np.ndarray:
+        matrix = np.column_stack([np.ones_like(t), *(turn(k * one[0] * t) for k in (1, 2) for turn in (np.cos, np.sin))])
+        return (matrix @ np.linalg.lstsq(matrix, values, rcond=None)[0] - values) / abs(values).max()
+
+    return float(least_squares(off, [guess], x_scale=[guess]).x[0])
+
+
+AMBIENT, EXPONENT = 1e6, 1.4
+SHELL = "shell.msh"
+
+
+def shell_file(path) -> None:
+    """Half of a section of a spherical shell: 24 x 2 squares in two triangles each; the axis has the label 2."""
+    around, across = 24, 2
+    angle = np.linspace(-math.pi / 2, math.pi / 2, around + 1)[:, None]
+    radius = np.linspace(RADIUS - WALL / 2, RADIUS + WALL / 2, across + 1)[None]
+    x = radius * np.cos(angle)
+    x[[0, -1]] = 0
+    points = np.column_stack([x.ravel(), (radius * np.sin(angle)).ravel()])
+    at = np.arange(len(points)).reshape(around + 1, across + 1)
+    a, b, c, d = at[:-1, :-1], at[:-1, 1:], at[1:, 1:], at[1:, :-1]
+    triangles = np.vstack([np.stack([a, b, c], axis=-1).reshape(-1, 3), np.stack([a, c, d], axis=-1).reshape(-1, 3)])
+    outer, inner = at[:, -1], at[::-1, 0]
+    ends = [np.column_stack([line[:-1], line[1:]]) for line in (outer, inner, at[-1, ::-1], at[0])]
+    labels = np.repeat([1, 1, 2, 2], [len(one) for one in ends])
+    made = mesh.Mesh(points, triangles, np.vstack(ends), labels)
+    mesh.write(made, path)
+
+
+def ring(load: list) -> dict:
+    return {"shape": "ring", "radius": RADIUS + WALL / 2, "inner_radius": RADIUS - WALL / 2, "position": [0, 0], "mesh_size": WALL / 2, "load": load}
+
+
+@pytest.mark.parametrize("shape", ["ring", "shell"])
+@pytest.mark.parametrize("filled", [False, True], ids=["empty", "gas"])
+def test_thin_bodies_breathe_as_membranes(tmp_path, shape, filled):
+    """A small step of pressure outside, nu = 0: a ring breathes with omega^2 = E/(rho R^2), a spherical
+    shell with twice that; a gas at ambient pressure adds its own stiffness, n p_a dV/V for each radius.
+    To 1 % of omega."""
+    ways = 2 if shape == "ring" else 3                      # dV/V over dR/R
+    load = [{"where": "outer", "pressure": -1e3}]
+    squared = THIN["young"] / (THIN["density"] * RADIUS**2) * (ways - 1)
+    if filled:
+        load.append({"where": "inner", "gas": {"gauge_pressure": 0.0, "ambient_pressure": AMBIENT, "exponent": EXPONENT}})
+        squared += ways * EXPONENT * AMBIENT * (1 - WALL / 2 / RADIUS)**(ways - 2) / (THIN["density"] * WALL * RADIUS)
+    period = 2 * math.pi / math.sqrt(squared)
+    tables = THIN | {"end_time": 2.5 * period, "dt": period / 50, "body": [ring(load)]}
+    if shape == "shell":
+        shell_file(tmp_path / SHELL)
+        tables |= {"dimension": "axisymmetric", "body": [{"shape": "mesh", "file": str(tmp_path / SHELL), "position": 0, "load": load}]}
+    run = bodies(tmp_path, tables)
+    assert_exact(run)
+    assert frequency(run.history["t"], run.history["elastic"], math.sqrt(squared)) == pytest.approx(math.sqrt(squared), rel=0.01)
+    if filled:
+        volume = run.history["gas_volume_2"]
+        inside = RADIUS - WALL / 2
+        assert volume[0] == pytest.approx(math.pi * inside**2 if shape == "ring" else 4 / 3 * math.pi * inside**3, rel=2e-3)
+        pressure = AMBIENT * ((volume[0] / volume)**EXPONENT - 1)        # of the state at the end of a step
+        assert np.abs(run.history["gas_pressure_2"] - pressure).max() < 1e-9 * AMBIENT
+
+
+def test_a_gas_begins_in_equilibrium(tmp_path):
+    """A ring flies at rest in itself: its hoop stress E e h/R bears what is left of the gauge pressure,
+    which is that in the undeformed cavity, once the cavity has grown with the strain e."""
+    gauge, ambient = 2e3, 101325.0
+    load = [{"where": "inner", "gas": {"gauge_pressure": gauge, "exponent": 1.0}}]
+    run = bodies(tmp_path, THIN | {"end_time": 5e-4, "dt": 1e-4, "body": [ring(load) | {"velocity": [3, 0]}]})
+    assert_exact(run)
+    history = run.history
+    assert np.ptp(history["elastic"]) < 1e-9 * history["elastic"][0]
+    inside = RADIUS - WALL / 2
+    strain = brentq(lambda e: (ambient + gauge) / (1 + e)**2 - ambient - THIN["young"] * e * WALL / inside, 0, 1)
+    assert history["elastic"][0] == pytest.approx(THIN["young"] * strain**2 / 2 * 2 * math.pi * RADIUS * WALL, rel=0.05)
+    assert history["gas_pressure_1"][-1] == pytest.approx(THIN["young"] * strain * WALL / inside, rel=0.05)
+    assert np.ptp(history["vx"]) < 1e-9 and history["vx"][0] == pytest.approx(3, rel=1e-12)
+
+
+def test_more_pressure_makes_a_contact_shorter(tmp_path):
+    """A hollow disc falls on a plane: the stiffer its gas, the sooner it leaves."""
+    times = []
+    for gauge in (0, 2e4, 5e4):
+        tyre = {"shape": "ring", "radius": 0.052, "inner_radius": 0.044, "position": [0, 0.06], "velocity": [0, -1],
+                "load": [{"where": "inner", "gas": {"gauge_pressure": gauge, "exponent": 1.4}}]}
+        run = bodies(tmp_path / f"{gauge:g}", SOFT | {"accuracy": 0.05, "end_time": 0.0, "body": [tyre], "obstacle": [FLOOR]})
+        assert_exact(run)
+        assert run.summary["load_work"] == pytest.approx(run.history["load_work"][-1], rel=1e-9)
+        times.append(run.summary["thresholded_contact_time"])
+    assert times[0] > 1.2 * times[1] and times[1] > 1.2 * times[2]
+
+
+def test_half_a_run_with_a_gas_and_the_rest_are_the_whole(tmp_path):
+    """Killed twice, a run with a gas, dead and follower loads goes on as if nothing had happened."""
+    flags = prepared(tmp_path / "scene", PUSHED | {"end_time": 8e-3})
+    straight = direct(flags, tmp_path / "straight", "bodies")
+    assert straight.communicate(timeout=120) and straight.returncode == 0
+    rows = len(outcome(tmp_path / "straight").history["t"])
+    flags, out = flags | {"checkpoint_every": 10}, tmp_path / "out"
+    kill_at(direct(flags, out, "bodies"), out / "checkpoint", rows // 4)
+    kill_at(direct(flags | {"restart": out / "checkpoint"}, out, "bodies"), out / "checkpoint", 2 * rows // 3)
+    last = direct(flags | {"restart": out / "checkpoint"}, out, "bodies")
+    assert last.communicate(timeout=120) and last.returncode == 0
+    assert_same(out, tmp_path / "straight")
