@@ -7,6 +7,7 @@ They become cubic Hermite polynomials between knots, which FreeFEM evaluates
 
 import ast
 import csv
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,9 +16,9 @@ from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
 from ..failure import BadInput, brief
 from . import implicit
-from ..input.tables import LONGEST
+from ..input.tables import LONGEST, Table
 
-__all__ = ["TimeFunction", "constant", "of_csv", "of_entry", "of_table"]
+__all__ = ["TimeFunction", "constant", "farthest", "functions", "of_csv", "of_entry", "of_table"]
 
 CLOSE = 1e-8                 # error of an expression's polynomials over its largest value
 STEEPEST = 1e30              # 1/s: a slope beyond is none
@@ -115,6 +116,35 @@ def of_csv(entry: str, path: Path, columns: str) -> dict[str, list[float]]:
             raise BadInput(f"{entry}: line {number} of '{brief(path.name)}' is '{brief(','.join(row))}' "
                            f"{accepted}") from None
     return {name: [float(row[k]) for row in rows[1:]] for k, name in enumerate(rows[0])}
+
+
+def functions(table: Table, key: str, names: str, end_time: float) -> tuple[TimeFunction, ...]:
+    """The entry `key` of a table as a function for each of the names: a list of them, one alone, or
+    a table {t, ...}. BadInput, naming the entry."""
+    entry, given = table.at(key), table.given[key]
+    if isinstance(given, dict):
+        if set(given) != {"t", *names}:
+            raise BadInput(f"{entry}: '{brief(given)}' is no table (accepted: t and {', '.join(names)})")
+        return tuple(of_table(f"{entry}.{name}", given["t"], given[name]) for name in names)
+    if len(names) == 1 and not isinstance(given, list):
+        given = [given]
+    if not isinstance(given, list) or len(given) != len(names):
+        raise BadInput(f"{entry}: '{brief(given)}' is no [{', '.join(names)}] (accepted: {len(names)} numbers "
+                       f"or expressions of t, or a CSV file)")
+    return tuple(of_entry(f"{entry}.{k}" if len(names) > 1 else entry, one, end_time)
+                 for k, one in enumerate(given, 1))
+
+
+def farthest(way: Sequence[TimeFunction], until: float = np.inf) -> tuple[np.ndarray, float]:
+    """How far (axes,) functions of the components have moved when that is farthest from their start, up
+    to a time [s], and when [s]."""
+    times = np.unique(np.concatenate([one.knots[:, 0] for one in way]))
+    times = times[(times >= 0) & (times <= until)]
+    if not len(times):
+        return np.zeros(len(way)), 0.0
+    moved = np.array([one(times) - one(0.0) for one in way]).T
+    k = int(np.linalg.norm(moved, axis=1).argmax())
+    return moved[k], float(times[k])
 
 
 def _sampled(entry: str, given: str, program: tuple[float, ...], end: float) -> np.ndarray:

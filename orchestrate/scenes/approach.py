@@ -57,7 +57,8 @@ class Meeting:
 
 def meetings(scene: Scene) -> list[Meeting]:
     """One for each two bodies and each body with each obstacle, and those that follow as a hit turns them."""
-    scene = replace(scene, bodies=[body.carried_along for body in scene.bodies])
+    scene = replace(scene, bodies=[body.carried_along for body in scene.bodies],
+                    obstacles=[one.carried_along for one in scene.obstacles])
     bodies = len(scene.bodies)
     pairs = [(i, j) for i in range(bodies) for j in [*range(i + 1, bodies), *(-1 - k for k in range(len(scene.obstacles)))]]
     return [one for pair in pairs for one in _in_turn(scene, _meeting(scene, *pair))]
@@ -136,7 +137,7 @@ def _meeting(scene: Scene, first: int, second: int) -> Meeting:
     outlines, velocity = _at(body, other, t, pull), start + pull * t
     normal = outlines[0].normal_from(outlines[1])
     if not met:                                                # what lets them meet later may turn them in any direction
-        driven = any(one.driven for one in (body, other) if isinstance(one, Body))
+        driven = body.driven or other.driven
         return Meeting(first, second, outlines, float(np.linalg.norm(velocity)), 0.0, float(np.linalg.norm(pull)) + loaded, 0.0,
                        float(radius), math.inf, normal, never and not driven)
     along, across = _parts(pull, normal)
@@ -202,14 +203,16 @@ def turned(scene: Scene) -> Scene:
 
 def refuse_nothing(scene: Scene, met: list[Meeting]) -> None:
     """BadInput where nothing can ever move, or nothing touch before an end that is left open."""
-    driven = [k for k, body in enumerate(scene.bodies, 1) if body.driven]
+    driven = [f"{kind}.{k}" for kind, all_of in (("body", scene.bodies), ("obstacle", scene.obstacles))
+              for k, one in enumerate(all_of, 1) if one.driven]
     if driven and (scene.values["end_time"] == 0 or scene.values["until"] == "rest"):
         raise BadInput(f"end_time: {scene.values['end_time']:g} with until = '{scene.values['until']}', but "
-                       f"body.{driven[0]} is moved or loaded from the start, which has no end of its own "
+                       f"{driven[0]} is moved or loaded from the start, which has no end of its own "
                        f"(accepted: an end_time > 0, until = 'impact')")
     moving = [*(one.velocity for one in [*scene.bodies, *scene.obstacles]), *(np.atleast_1d(body.spin) for body in scene.bodies)]
     forces = [scene.values.get(name, 0.0) for name in ("gravity", "body_force_x", "body_force_y")]
-    if not any(np.any(one) for one in moving) and not any(forces) and not any(body.supports or body.loads for body in scene.bodies):
+    if not any(np.any(one) for one in moving) and not any(forces) and not driven and not any(body.supports or body.loads
+                                                                                        for body in scene.bodies):
         raise BadInput("velocity: 0 of every body, without spin, gravity or body force: nothing would ever move (accepted: one of them)")
     if scene.values["end_time"] == 0 and all(one.never for one in met) and met:
         raise BadInput("end_time: 0 is the end of the contact, but nothing ever touches: the bodies miss each other and every obstacle "

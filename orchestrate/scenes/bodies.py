@@ -135,8 +135,8 @@ def _body(path: str, given: dict, top: dict, folder: Path, of: Dimension) -> Bod
     material = _rigid(table, top, of, outline) if stiff else _material(table, top)
     return Body(checked_name(path, given.get("name", path.replace(".", ""))), outline, body_mesh, **geometry.motion(table),
                 **material, mesh_size=bulk, contact_mesh_size=contact,
-                supports=read_supports(path, given.get("support", []), of, _end_time(top)),
-                loads=read_loads(path, given.get("load", []), of, _end_time(top)))
+                supports=read_supports(path, given.get("support", []), of, end_time_of(top)),
+                loads=read_loads(path, given.get("load", []), of, end_time_of(top)))
 
 
 def _rigid(table: Table, top: dict, of: Dimension, outline: Outline | Solid) -> dict:
@@ -188,7 +188,7 @@ def stiffened(found: list[Body], penalty: Value, path: str) -> list[Body]:
     return [replace(body, young=young) if body.rigid else body for body in found]
 
 
-def _end_time(top: dict) -> float:
+def end_time_of(top: dict) -> float:
     """The scene's end_time [s], up to which functions of time are used."""
     return float(parameters.table()["end_time"].check(top.get("end_time", 0.0)))
 

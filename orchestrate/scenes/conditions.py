@@ -15,7 +15,7 @@ from ..failure import BadInput, brief, unknown
 from ..geometry import time_functions
 from ..input.dimension import AXISYMMETRIC, SOLID, Dimension
 from ..input.tables import LONGEST, SHORTEST, Table, listed
-from ..geometry.time_functions import TimeFunction
+from ..geometry.time_functions import TimeFunction, farthest, functions
 
 __all__ = ["Load", "Part", "Support", "inlined", "read_loads", "read_supports"]
 
@@ -80,11 +80,7 @@ class Support:
 
     def path(self) -> tuple[np.ndarray, float]:
         """How far it has moved when it is farthest from the start [m], and when [s]."""
-        times = np.unique(np.concatenate([one.knots[:, 0] for one in self.motion]))
-        times = times[times <= self.release] if self.release < NEVER else times
-        way = np.array([one(times) - one(0.0) for one in self.motion]).T if len(times) else np.zeros((1, 1))
-        farthest = int(np.linalg.norm(way, axis=1).argmax())
-        return way[farthest], float(times[farthest]) if len(times) else 0.0
+        return farthest(self.motion, self.release)
 
 
 @dataclass(frozen=True)
@@ -113,7 +109,9 @@ def inlined(given: dict, folder: Path, of: Dimension) -> dict:
                 changed[key] = [_with_tables(f"body.{b}.{key}.{k}", one, names, folder, of)
                                 for k, one in enumerate(listed({f"body.{b}.{key}": body[key]}, f"body.{b}.{key}"), 1)]
         bodies.append(changed)
-    return given | {"body": bodies} if bodies else given
+    obstacles = [_with_tables(f"obstacle.{k}", one, ("motion", "rotation"), folder, of)
+                 for k, one in enumerate(listed(given, "obstacle"), 1)]
+    return given | ({"body": bodies} if bodies else {}) | ({"obstacle": obstacles} if obstacles else {})
 
 
 def _with_tables(path: str, table: dict, names: tuple[str, ...], folder: Path, of: Dimension) -> dict:
@@ -148,7 +146,7 @@ def _support(path: str, given: dict, of: Dimension, end_time: float) -> Support:
     fixed = tuple(fix in ("all", axis) for axis in axes)
     motion = (time_functions.constant(0.0),) * of.axes
     if "motion" in table:
-        motion = _functions(table, "motion", axes, end_time)
+        motion = functions(table, "motion", axes, end_time)
         for axis, one, held in zip(axes, motion, fixed):
             if not (held or fix == "normal") and not one.is_zero:
                 raise BadInput(f"{path}.motion: moves along {axis}, which fix = '{fix}' leaves free "
@@ -169,24 +167,8 @@ def _load(path: str, given: dict, of: Dimension, end_time: float) -> Load:
         gauge = gas.number("gauge_pressure", -ambient, MOST_PRESSURE)
         return Load(part, kind, (), (gauge, ambient, gas.number("exponent", 0.0, 10.0, 1.0)))
     if kind == "pressure":
-        return Load(part, kind, _functions(table, kind, "p", end_time))
-    return Load(part, kind, _functions(table, kind, "xyz"[:of.axes], end_time))
-
-
-def _functions(table: Table, key: str, names: str, end_time: float) -> tuple[TimeFunction, ...]:
-    """A function for each of the names, of a list of them, one alone, or a table {t, ...}."""
-    entry, given = table.at(key), table.given[key]
-    if isinstance(given, dict):
-        if set(given) != {"t", *names}:
-            raise BadInput(f"{entry}: '{brief(given)}' is no table (accepted: t and {', '.join(names)})")
-        return tuple(time_functions.of_table(f"{entry}.{name}", given["t"], given[name]) for name in names)
-    if len(names) == 1 and not isinstance(given, list):
-        given = [given]
-    if not isinstance(given, list) or len(given) != len(names):
-        raise BadInput(f"{entry}: '{brief(given)}' is no [{', '.join(names)}] (accepted: {len(names)} numbers "
-                       f"or expressions of t, or a CSV file)")
-    return tuple(time_functions.of_entry(f"{entry}.{k}" if len(names) > 1 else entry, one, end_time)
-                 for k, one in enumerate(given, 1))
+        return Load(part, kind, functions(table, kind, "p", end_time))
+    return Load(part, kind, functions(table, kind, "xyz"[:of.axes], end_time))
 
 
 def _part(table: Table, of: Dimension) -> Part:

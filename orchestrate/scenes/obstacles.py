@@ -5,7 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..geometry import implicit, polyline
+from ..geometry import implicit, polyline, time_functions, tumbling
+from ..geometry.time_functions import TimeFunction, farthest, functions
 from .bodies import checked_name
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
 from ..failure import BadInput, brief, unknown
@@ -23,6 +24,9 @@ for kinds in KINDS.values():
     kinds["implicit"] = ("distance",)
 
 
+DRIVE = ("motion", "rotation", "pivot", "axis")      # entries of an obstacle that follows functions of time
+
+
 @dataclass(frozen=True)
 class Obstacle:
     """`numbers` as the scripts read them: plane x y nx ny, the normal of length 1; circle, sphere and bowl x y radius; polyline closed (1
@@ -33,6 +37,20 @@ class Obstacle:
     kind: str
     numbers: tuple[float, ...]
     velocity: np.ndarray
+    drive: "Drive | None" = None
+
+    @property
+    def driven(self) -> bool:
+        """Whether it follows functions of time."""
+        return self.drive is not None
+
+    @property
+    def carried_along(self) -> "Obstacle":
+        """The same, as fast as it is on the way to where its functions bring it farthest."""
+        if not self.drive:
+            return self
+        way, when = farthest(self.drive.way)
+        return replace(self, velocity=way / when if when > 0 else 0 * self.velocity)
 
     def gap(self, points: np.ndarray) -> np.ndarray:
         """Signed distances (n,) of points (n, axes) from the obstacle, negative inside, where it is at the start."""
@@ -78,12 +96,29 @@ class Obstacle:
     def gap_in_plane(self, points: np.ndarray, t: float) -> np.ndarray:
         """The same of points (n, 2) of the plane z = 0 at the time t [s]."""
         whole = np.pad(points, [(0, 0), (0, len(self.velocity) - 2)])
-        return self.gap(whole - self.velocity * t)
+        return self.gap(self.drive.at_start(whole, t) if self.drive else whole - self.velocity * t)
 
 
-def read(tables: list[dict], dimension: Dimension = PLANE_STRAIN) -> list[Obstacle]:
-    """The obstacles of the [[obstacle]] tables."""
-    return [_obstacle(f"obstacle.{k}", given, dimension) for k, given in enumerate(tables, 1)]
+@dataclass(frozen=True)
+class Drive:
+    """What moves an obstacle from where it is given: its `way` [m], and its `turn` [rad] about an axis (3,) through `pivot`."""
+
+    way: tuple[TimeFunction, ...]
+    turn: TimeFunction
+    pivot: np.ndarray
+    axis: np.ndarray
+
+    def at_start(self, points: np.ndarray, t: float) -> np.ndarray:
+        """Where points (n, axes) of the time t [s] would be on the obstacle at the start."""
+        axes = points.shape[1]
+        way = np.array([one(t) - one(0.0) for one in self.way])
+        back = tumbling.rotation(-self.axis * float(self.turn(t) - self.turn(0.0)))[:axes, :axes]
+        return self.pivot + (points - self.pivot - way) @ back.T
+
+
+def read(tables: list[dict], dimension: Dimension = PLANE_STRAIN, end_time: float = 0.0) -> list[Obstacle]:
+    """The obstacles of the [[obstacle]] tables; functions of time are used up to end_time [s]."""
+    return [_obstacle(f"obstacle.{k}", given, dimension, end_time) for k, given in enumerate(tables, 1)]
 
 
 def settled(found: list[Obstacle], centre: np.ndarray, half: float) -> list[Obstacle]:
@@ -92,14 +127,41 @@ def settled(found: list[Obstacle], centre: np.ndarray, half: float) -> list[Obst
             for k, one in enumerate(found, 1)]
 
 
-def _obstacle(path: str, given: dict, dimension: Dimension) -> Obstacle:
+def _obstacle(path: str, given: dict, dimension: Dimension, end_time: float) -> Obstacle:
     kind, kinds = given.get("kind"), KINDS[dimension]
     if kind not in tuple(kinds):
         raise BadInput(f"{path}.kind: " + (f"is missing (accepted: {'|'.join(kinds)})" if kind is None else unknown(kind, kinds)))
-    table = Table(path, given, ("name", "kind", "velocity", *kinds[kind]))
+    table = Table(path, given, ("name", "kind", "velocity", *DRIVE, *kinds[kind]))
     shape = {"plane": _plane, "polyline": _polyline, "implicit": _implicit}.get(kind, _circle)
     return Obstacle(checked_name(path, given.get("name", path.replace(".", ""))), kind, shape(table, dimension),
-                    _vector(table, "velocity", dimension, (0.0,) * dimension.axes))
+                    _vector(table, "velocity", dimension, (0.0,) * dimension.axes), _drive(table, dimension, end_time))
+
+
+def _drive(table: Table, of: Dimension, end_time: float) -> Drive | None:
+    """Of the entries motion, rotation, pivot and axis; None where there are none."""
+    if not any(key in table for key in DRIVE):
+        return None
+    for key, needs in (("pivot", "rotation"), ("axis", "rotation")):
+        if key in table and needs not in table:
+            raise BadInput(f"{table.at(key)}: stands without {needs} (accepted: with it)")
+    if "velocity" in table:
+        raise BadInput(f"{table.at('velocity')}: stands beside motion or rotation (accepted: one of them)")
+    if of is AXISYMMETRIC and "rotation" in table:
+        raise BadInput(f"{table.at('rotation')}: nothing turns in a scene of revolution (accepted: motion)")
+    if "axis" in table and of is not SOLID:
+        raise BadInput(f"{table.at('axis')}: is of three dimensions (accepted: without it, about z)")
+    none = time_functions.constant(0.0)
+    way = functions(table, "motion", "xyz"[:of.axes], end_time) if "motion" in table else (none,) * of.axes
+    if of is AXISYMMETRIC and not way[0].is_zero:
+        raise BadInput(f"{table.at('motion')}.1: leaves the axis of revolution (accepted: 0)")
+    degrees = functions(table, "rotation", "r", end_time)[0] if "rotation" in table else none
+    turn = replace(degrees, knots=degrees.knots * [1.0, np.pi / 180, np.pi / 180])
+    axis = table.numbers("axis", (0.0, 0.0, 1.0), 3) if of is SOLID else np.array([0.0, 0.0, 1.0])
+    if not axis.any():
+        raise BadInput(f"{table.at('axis')}: '{brief(table.given['axis'])}' has no direction (accepted: other than 0)")
+    about = next((key for key in ("centre", "point") if key in table), None)
+    pivot = table.numbers("pivot", tuple(table.given[about]) if about and isinstance(table.given[about], list) else (0.0,) * of.axes, of.axes)
+    return Drive(way, turn, pivot, axis / np.linalg.norm(axis))
 
 
 def _vector(table: Table, key: str, dimension: Dimension, default: tuple[float, ...] | None = None) -> np.ndarray:

@@ -24,7 +24,7 @@ Lines = list[tuple]
 
 def sections(bodies: Sequence[Body], meshes: Sequence[Mesh | SolidMesh], obstacles: Sequence, of: Dimension,
              copies: int) -> Lines:
-    """The lines of functions, supports and loads; none where no body has any. BadInput where a part
+    """The lines of functions, driven obstacles, supports and loads; none where there are none. BadInput where a part
     is not there, touches something at the start, or cannot take what it is to."""
     functions: list[TimeFunction] = []
     supports, loads, first = [], [], 0
@@ -44,9 +44,16 @@ def sections(bodies: Sequence[Body], meshes: Sequence[Mesh | SolidMesh], obstacl
             numbers = _numbered(functions, list(load.functions))
             loads.append((k, KINDS[load.kind], *numbers, *load.gas[:2], load.gas[2], len(found), *(first + found)))
         first += len(made.sides)
+    drives = []
+    for k, one in enumerate(obstacles):
+        if one.drive:
+            numbers = _numbered(functions, list(one.drive.way))[:3]
+            turn = _numbered(functions, [one.drive.turn])[0]
+            drives.append((k, *numbers, turn, *one.drive.pivot, *[0.0] * (3 - of.axes), *one.drive.axis))
     lines: Lines = []
     if functions:
         lines += [("functions", len(functions)), *((len(one.knots), *one.knots.ravel().tolist()) for one in functions)]
+    lines += [("drives", len(drives)), *drives] if drives else []
     lines += [("supports", len(supports)), *supports] if supports else []
     return lines + ([("loads", len(loads)), *loads] if loads else [])
 

@@ -215,7 +215,8 @@ def _of_tables(given: dict, folder: Path, name: str) -> Scene:
     rigid = listed(given, "obstacle")
     for k, one in enumerate(rigid, 1):
         _of_the_scene(f"obstacle.{k}", one)
-    all_obstacles = obstacles.read([{key: value for key, value in one.items() if key not in OWN} for one in rigid], of)
+    all_obstacles = obstacles.read([{key: value for key, value in one.items() if key not in OWN} for one in rigid], of,
+                                   bodies.end_time_of(given))
     centres = np.array([body.placed.area_centre for body in all_bodies])
     half = float(np.ptp(centres, axis=0).max() / 2 + 2 * max(body.placed.reach for body in all_bodies))
     all_obstacles = obstacles.settled(all_obstacles, centres.mean(axis=0), half)
