@@ -1,0 +1,192 @@
+"""Rigid bodies: the motions of rigid bodies exactly, and the limit of stiff ones."""
+
+import json
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from orchestrate.__main__ import main
+
+DISC = """
+density = 1000
+accuracy = 0.05
+[[body]]
+shape = "disc"
+radius = 0.05
+rigid = true
+"""
+FLOOR = """
+[[obstacle]]
+kind = "plane"
+point = [0, 0]
+normal = [0, 1]
+[contact]
+penalty = 1e7
+"""
+BLOCK = """
+[[body]]
+shape = "rectangle"
+width = 0.3
+height = 0.15
+position = [0, -0.075]
+law = "svk"
+young = 1e6
+nu = 0.3
+"""
+
+
+def run(tmp_path, text: str, name: str = "scene", **more):
+    """Summary and history of a scene."""
+    file = tmp_path / f"{name}.toml"
+    file.write_text(text)
+    out = tmp_path / name
+    given = [word for key, value in more.items() for word in ("--set", f"{key.replace('__', '.')}={value}")]
+    assert main(["run", str(file), "--out", str(out), "--quiet", *given]) == 0
+    return json.loads((out / "summary.json").read_text()), pd.read_csv(out / "history.csv")
+
+
+def test_a_disc_slides_until_it_rolls(tmp_path):
+    """Coulomb's friction takes v0/3 of a homogeneous disc; energy and momenta are kept."""
+    text = DISC + "position = [0, 0.05]\nvelocity = [1, 0]\n" + FLOOR + "friction_static = 0.3\n"
+    summary, history = run(tmp_path, "gravity = 9.81\nend_time = 0.3\n" + text)
+    assert summary["dofs"] == 6
+    assert history.vx.iloc[-1] == pytest.approx(2 / 3, rel=0.01)      # the penalty lets it in by 2 % of R
+    assert history.spin.iloc[-1] == pytest.approx(-2 / 3 / 0.05, rel=0.02)
+    assert summary["energy_drift"] < 1e-9 and summary["momentum_drift"] < 1e-11
+
+
+def test_mass_and_inertia_are_those_given(tmp_path):
+    """A disc with I = m R^2, as a hoop, keeps half of its speed."""
+    given = "mass = 3\ninertia = 0.0075\n"
+    text = DISC.replace("density = 1000\n", "") + given + "position = [0, 0.05]\nvelocity = [1, 0]\n" + FLOOR + "friction_static = 0.3\n"
+    summary, history = run(tmp_path, "gravity = 9.81\nend_time = 0.3\n" + text)
+    assert summary["mass"] == pytest.approx(3, rel=1e-12)
+    assert history.vx.iloc[-1] == pytest.approx(1 / 2, rel=0.015)
+    assert summary["angular_momentum_drift"] < 1e-11
+
+
+def test_it_is_the_limit_of_a_stiff_disc(tmp_path):
+    """The same disc a thousand times stiffer than the block."""
+    text = DISC + "position = [0, 0.0501]\nvelocity = [0.3, -1]\n" + BLOCK + "[contact]\nfriction_static = 0.3\n"
+    rigid, _ = run(tmp_path, text, "rigid")
+    stiff, _ = run(tmp_path, text.replace("rigid = true", 'law = "svk"\nyoung = 1e9\nnu = 0.3'), "stiff", body__1__density=1000)
+    for name in ("impulse", "rebound_vy_1", "rebound_vy_2"):
+        apart = 0.005 * abs(stiff[name]) + max(one["estimated_error"]["rebound"] for one in (rigid, stiff)) * abs(stiff[name])
+        assert abs(rigid[name] - stiff[name]) < apart, name
+    assert rigid["energy_drift"] < 1e-9 and rigid["momentum_drift"] < 1e-10
+
+
+def test_two_rigid_discs_on_a_soft_one(tmp_path):
+    """Momentum of all bodies stays."""
+    soft = '[[body]]\nshape = "disc"\nradius = 0.05\nposition = [0, 0]\nlaw = "neohookean"\nyoung = 1e6\nnu = 0.3\n'
+    one = '[[body]]\nshape = "disc"\nradius = 0.03\nrigid = true\nposition = [{}, 0]\nvelocity = [{}, 0]\n'
+    summary, history = run(tmp_path, "density = 1000\naccuracy = 0.1\n" + soft + one.format(0.0801, -1) + one.format(-0.0801, 1))
+    assert summary["momentum_drift"] < 1e-11 and summary["energy_drift"] < 1e-9
+    assert history.momentum_x.abs().max() < 1e-9 * history.momentum_x_2.abs().max()
+    assert summary["rebound_vx_2"] == pytest.approx(-summary["rebound_vx_3"], rel=0.02)
+
+
+def test_a_rigid_ball_of_revolution_falls(tmp_path):
+    """On a plane of stiffness k it only moves along the axis and comes back with its speed."""
+    text = ('dimension = "axisymmetric"\ndensity = 1000\naccuracy = 0.05\n[[body]]\nshape = "ball"\nradius = 0.05\nrigid = true\n'
+            "position = [0, 0.0501]\nvelocity = [0, -1]\n" + FLOOR)
+    summary, _ = run(tmp_path, text)
+    assert summary["restitution"] == pytest.approx(1, abs=1e-6)
+    assert summary["mass"] == pytest.approx(1000 * 4 / 3 * math.pi * 0.05**3, rel=1e-3)
+
+
+def test_a_box_spins_freely_in_space(tmp_path):
+    """With moments of inertia of its own: angular momentum and energy stay, the spin precesses."""
+    text = ('dimension = "3d"\naccuracy = 0.1\nend_time = 0.3\nmesh_size = 0.02\n[[body]]\nshape = "box"\nwidth = 0.1\nheight = 0.06\n'
+            "depth = 0.08\nrigid = true\nmass = 2\ninertia = [0.003, 0.004, 0.0035]\nposition = [0, 1, 0]\nspin = [5, 20, -4]\n"
+            '[[obstacle]]\nkind = "plane"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\n[contact]\npenalty = 1e8\n')
+    summary, history = run(tmp_path, text, without="flight")
+    spin = history[["spin_x", "spin_y", "spin"]].to_numpy()
+    assert summary["energy_drift"] < 1e-9 and summary["angular_momentum_drift"] < 1e-9
+    energy = 0.5 * np.array([0.003, 0.004, 0.0035]) @ np.array([5.0, 20, -4])**2
+    assert summary["rotation_energy"] == pytest.approx(energy, rel=1e-4)
+    assert np.abs(spin - spin[0]).max() > 1
+
+
+@pytest.mark.parametrize("entries, named", [
+    ("young = 1e6", "body.1.young"), ("[[body.support]]\nwhere = 'all'", "body.1.support"), ("mass = 1\ndensity = 1", "body.1.mass"),
+    ("inertia = -1", "body.1.inertia"), ("inertia = [1, 1, 1]", "body.1.inertia"), ("viscosity = 1", "body.1.viscosity")])
+def test_wrong_entries(tmp_path, capsys, entries, named):
+    """One line that names the entry, exit code 10."""
+    file = tmp_path / "scene.toml"
+    file.write_text(DISC + "position = [0, 0.06]\nvelocity = [0, -1]\n" + entries + "\n" + FLOOR)
+    assert main(["run", str(file), "--out", str(tmp_path / "out")]) == 10
+    said = capsys.readouterr().err
+    assert named in said and said.count("\n") == 1
+
+
+def test_all_rigid_needs_a_penalty(tmp_path, capsys):
+    """There is no body whose stiffness it could follow."""
+    file = tmp_path / "scene.toml"
+    file.write_text(DISC + "position = [0, 0.06]\nvelocity = [0, -1]\n" + FLOOR.replace("penalty = 1e7", "friction_static = 0.1"))
+    assert main(["run", str(file), "--out", str(tmp_path / "out")]) == 10
+    assert "contact.penalty" in capsys.readouterr().err
+
+
+ROLLER = """
+law = "neohookean"
+young = 1e6
+nu = 0.3
+density = 1000
+accuracy = 0.1
+mesh_size = 0.0125
+contact_mesh_size = 0.006
+end_time = 0.01
+[[body]]
+shape = "rectangle"
+width = 0.2
+height = 0.05
+position = [0, 0.025]
+[[obstacle]]
+kind = "circle"
+centre = [0, 0.0905]
+radius = 0.04
+{}
+[contact]
+friction_static = 0.5
+"""
+
+
+def test_an_obstacle_works_exactly_what_the_body_gains(tmp_path):
+    """A cornered roller that comes down and turns: its work is the energy, its impulse the momentum."""
+    corners = "kind = 'polyline'\nvertices = [[0.03, 0.06], [-0.03, 0.06], [-0.03, 0.12], [0.03, 0.12]]\nclosed = true\nrounding = 0.004"
+    moved = 'motion = [0, "-0.01*sin(pi*t/0.01)"]\nrotation = "-1500*t"\npivot = [0, 0.09]'
+    text = ROLLER.replace('kind = "circle"\ncentre = [0, 0.0905]\nradius = 0.04', corners).format(moved)
+    summary, history = run(tmp_path, text)
+    assert history.friction_work.iloc[-1] > 0.1 and history.external_work.iloc[-1] > 1
+    assert summary["energy_drift"] < 1e-9 and summary["momentum_drift"] < 1e-8 and summary["angular_momentum_drift"] < 1e-8
+
+
+def test_a_constant_motion_is_a_velocity(tmp_path):
+    """The way -2 t is the velocity -2."""
+    drive, _ = run(tmp_path, ROLLER.format('motion = [0, "-2*t"]'), "drive")
+    speed, _ = run(tmp_path, ROLLER.format("velocity = [0, -2]"), "speed")
+    assert drive["impulse"] == pytest.approx(speed["impulse"], rel=2e-2)
+
+
+def test_a_circle_that_turns_about_its_centre_only_rubs(tmp_path):
+    """Gaps stay; the body is driven along, the other way where the circle turns the other way."""
+    both = [run(tmp_path, ROLLER.format(f'motion = [0, "-0.3*t"]\nrotation = "{turn}*t"'), name)[0]
+            for name, turn in (("left", 20000), ("right", -20000))]
+    assert both[0]["rebound_vx"] == pytest.approx(-both[1]["rebound_vx"], rel=0.05) and abs(both[0]["rebound_vx"]) > 1e-3
+    assert max(one["energy_drift"] for one in both) < 1e-9
+
+
+@pytest.mark.parametrize("entries, named", [
+    ('motion = [0, "1/t"]', "obstacle.1.motion.2"), ("motion = 3", "obstacle.1.motion"), ("pivot = [0, 0]", "obstacle.1.pivot"),
+    ('rotation = "10*t"\nvelocity = [0, -1]', "obstacle.1.velocity"), ('rotation = "u"', "obstacle.1.rotation"),
+    ('rotation = "10*t"\naxis = [0, 0, 1]', "obstacle.1.axis")])
+def test_wrong_motions(tmp_path, capsys, entries, named):
+    """One line that names the entry, exit code 10."""
+    file = tmp_path / "scene.toml"
+    file.write_text(ROLLER.format(entries))
+    assert main(["run", str(file), "--out", str(tmp_path / "out")]) == 10
+    said = capsys.readouterr().err
+    assert named in said and said.count("\n") == 1
