@@ -51,7 +51,7 @@ def site(folder: Path) -> None:
                                         "](").replace("](../README.md", "](index.md").replace("](../CONTRIBUTING.md", "](CONTRIBUTING.md")
         text = re.sub(r"\[([^]]+)\]\((?:\.\./)*(?:edp|orchestrate|verification|LICENSE|CITATION)[^)]*\)", r"`\1`", text)
         (folder / ("index.md" if path.name == "README.md" else path.name)).write_text(text)
-    for path in [*ROOT.glob("*.png"), ROOT / "docs/site.css"]:
+    for path in [*ROOT.glob("*.png"), ROOT / "docs/site.css", *(ROOT / "docs").glob("*.svg")]:
         shutil.copy(path, folder)
 
 
