@@ -373,7 +373,7 @@ NO_OBSTACLES = [
     ({}, "obstacle.1.kind: is missing (accepted: plane|"),
     ({"kind": "plane", "point": [0, 0]}, "obstacle.1.normal: is missing (accepted: [x, y]"),
     ({"kind": "bowl", "centre": [0, 0]}, "obstacle.1.radius: is missing"),
-    ({"kind": "bowl", "center": [0, 0]}, "obstacle.1.center: no such entry, set to '[0, 0]'; did you mean centre? (accepted: name, kind, velocity, centre, radius)"),
+    ({"kind": "bowl", "center": [0, 0]}, "obstacle.1.center: no such entry, set to '[0, 0]'; did you mean centre? (accepted: name, kind, velocity, motion, rotation, pivot, axis, centre, radius)"),
     ({"kind": "polyline", "vertices": [[0, 0]]}, "obstacle.1.vertices: '[[0, 0]]' is too little (accepted: 2 points [x, y] or more)"),
     ({"kind": "polyline", "vertices": [[0, 0], [1, 0], [1, 0]]}, "obstacle.1.vertices.3: [1, 0] is the vertex before it again"),
     ({"kind": "polyline", "vertices": [[0, 0], [1, 0]], "closed": "yes"}, "obstacle.1.closed: 'yes' is neither true nor false (accepted: true|false)"),

@@ -178,7 +178,7 @@ def read_answers(folder: Path) -> Answers:
     last = np.array([summary.get(f"rebound_v{axis}", 0.0) for axis in axes])
     at = last if frame is None else frame
     found = summary | {"largest_energy": energy, "energy_final": summary["energy_final"] + mass * float(at @ (at / 2 - last))}
-    return Answers(found, used, max(speed, STILL * math.sqrt(2 * energy / mass)), history)
+    return Answers(found, used, max(speed, (1 if held else STILL) * math.sqrt(2 * energy / mass)), history)
 
 
 def _frame(used: dict, like: np.ndarray, bodies: int) -> np.ndarray | None:

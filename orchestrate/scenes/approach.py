@@ -143,6 +143,9 @@ def _meeting(scene: Scene, first: int, second: int) -> Meeting:
     along, across = _parts(pull, normal)
     one = Meeting(first, second, outlines, *_parts(velocity, normal), along + loaded, across, float(radius), t, normal)
     one = replace(one, pressed=_pressed(scene, one))
+    if isinstance(other, Obstacle) and other.drive:            # its surface slides by as it turns
+        away = np.linalg.norm(outlines[0].points - other.drive.pivot, axis=1).min()
+        one = replace(one, sliding=one.sliding + other.drive.fastest_turn * float(away))
     if scene.dimension is not PLANE_STRAIN:
         return one
     point, spun = _middle(one), velocity @ normal              # of the points that touch: what turns strikes by its spin, too

@@ -108,6 +108,11 @@ class Drive:
     pivot: np.ndarray
     axis: np.ndarray
 
+    @property
+    def fastest_turn(self) -> float:
+        """The largest rate of its turn [rad/s]."""
+        return float(abs(self.turn.knots[:, 2]).max())
+
     def at_start(self, points: np.ndarray, t: float) -> np.ndarray:
         """Where points (n, axes) of the time t [s] would be on the obstacle at the start."""
         axes = points.shape[1]
@@ -159,8 +164,8 @@ def _drive(table: Table, of: Dimension, end_time: float) -> Drive | None:
     axis = table.numbers("axis", (0.0, 0.0, 1.0), 3) if of is SOLID else np.array([0.0, 0.0, 1.0])
     if not axis.any():
         raise BadInput(f"{table.at('axis')}: '{brief(table.given['axis'])}' has no direction (accepted: other than 0)")
-    about = next((key for key in ("centre", "point") if key in table), None)
-    pivot = table.numbers("pivot", tuple(table.given[about]) if about and isinstance(table.given[about], list) else (0.0,) * of.axes, of.axes)
+    about = next((table.given[key] for key in ("centre", "point") if isinstance(table.given.get(key), list)), [0.0] * of.axes)
+    pivot = table.numbers("pivot", tuple(about), of.axes)
     return Drive(way, turn, pivot, axis / np.linalg.norm(axis))
 
 
