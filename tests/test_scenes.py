@@ -373,7 +373,7 @@ def test_flags_of_another_script_are_refused(script, flags, said):
 def test_scripts_describe_themselves():
     """The scripts that there are, and of two bodies the columns of each."""
     assert describe()["scripts"] == "disc-plane|disc-block|ball-axisymmetric|ball-plane|bodies|bodies-axisymmetric|bodies-3d" and describe(script="disc-block")["bodies"] == 2
-    assert {name for name in scene.built_in() if scene.load(name).bodies} == {"two-discs", "three-in-a-row", "disc-bowl", "disc-corner", "block-corner", "disc-step", "two-balls", "ball-cylinder", "ball-block", "balls-3d", "disc-beam", "ball-beam", "hollow-ball"} < set(scene.built_in())
+    assert {name for name in scene.built_in() if scene.load(name).bodies} == {"two-discs", "three-in-a-row", "disc-bowl", "disc-corner", "block-corner", "disc-step", "two-balls", "ball-cylinder", "ball-block", "balls-3d", "disc-beam", "ball-beam", "hollow-ball", "drop-weight", "roller"} < set(scene.built_in())
 
 
 # ---- what is set is what runs
