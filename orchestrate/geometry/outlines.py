@@ -264,6 +264,44 @@ class Outline(Shape):
         return np.max([outer.gap(points), *(-hole.gap(points) for hole in holes)], axis=0)
 
 
+@dataclass(frozen=True)
+class TubeOutline(Outline):
+    """The section of a body of revolution that does not reach the axis: a loop to the right of it, and
+    its mirror image. `loops` are these two."""
+
+    @property
+    def area(self) -> float:
+        """Of both."""
+        return sum(loop.area for loop in self.loops)
+
+    @property
+    def area_centre(self) -> np.ndarray:
+        """On the axis."""
+        return sum(loop.area_centre for loop in self.loops) / 2
+
+    @property
+    def extent(self) -> np.ndarray:
+        """Width and height of the right loop: of the wall."""
+        return np.ptp(self.loops[0].polygon, axis=0)
+
+    @property
+    def disc(self) -> None:
+        """None: it is no ball."""
+        return None
+
+    def placed(self, centre: np.ndarray, angle: float) -> "TubeOutline":
+        """The same elsewhere."""
+        return TubeOutline(tuple(loop.placed(centre, angle) for loop in self.loops))
+
+    def folding(self, revolved: bool = False) -> float:
+        """As of an outline: of the right loop."""
+        return folding(self.loops[0].polygon, self.half_thickness, revolved)
+
+    def gap(self, points: np.ndarray) -> np.ndarray:
+        """Signed distances (n,) of points from the nearer of both."""
+        return np.min([loop.gap(points) for loop in self.loops], axis=0)
+
+
 def normal_of(other, point: np.ndarray) -> np.ndarray:
     """The gradient (axes,) of the distance from a body or an obstacle, the outward normal, to eight digits; 0 where there is none."""
     h = max(1e-7 * np.abs(point).max(), 1e-3 * abs(other.gap(point[None])[0]), SHORTEST)

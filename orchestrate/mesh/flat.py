@@ -97,7 +97,7 @@ def check_simple(path: str, corners: np.ndarray) -> None:
 
 def mesh_file(table: Table, folder: Path, script: str) -> mesh.Mesh:
     """The mesh of a body's file, checked as any mesh file of edp/<script>.edp is, which also says what lies on circles: a whole body in the
-    plane, or half a meridian plane."""
+    plane, or half a meridian plane, or what of it is to the right of an axis that it does not reach."""
     name, file = table.text("file", ""), None
     if "\0" in name or not _may_be_read(folder / name):
         raise BadInput(f"{table.path}.file: {brief(repr(name))} is no file (accepted: FreeFEM's or gmsh's .msh)")
@@ -107,7 +107,9 @@ def mesh_file(table: Table, folder: Path, script: str) -> mesh.Mesh:
             file.write(text)
             file.flush()
             found = mesh.read(Path(file.name))
-            if script == "disc-plane" and (found.labels == mesh.AXIS).any():
+            if script == "ball-axisymmetric" and not (found.labels == mesh.AXIS).any():
+                script = "disc-plane"                       # of a tube: a whole outline
+            elif script == "disc-plane" and (found.labels == mesh.AXIS).any():
                 raise BadInput(f"mesh: '{brief(name)}' has edges with the label {mesh.AXIS} of a symmetry axis (accepted: whole bodies, "
                                f"labels {mesh.FREE}: may touch, 3 and more: never touch)")
             size = float(np.ptp(found.points, axis=0).max()) if len(found.points) else 0.0

@@ -12,10 +12,11 @@ import numpy as np
 
 from . import flat, mesh
 from ..failure import BadInput
-from ..geometry.outlines import Loop, Outline, circle_loop, cross, ellipse_loop
+from ..geometry.outlines import Loop, Outline, TubeOutline, circle_loop, cross, ellipse_loop, signed_area
 from ..input.tables import LONGEST, Table
 
 SHAPES = {"ball": ("radius",), "ellipsoid": ("semi_axes",), "cylinder": ("radius", "height"), "polygon": ("vertices",),
+          "tube": ("radius", "inner_radius", "height"), "torus": ("radius", "section"),
           "mesh": ("file", "scale")}
 LOOPS = {"ball": circle_loop, "ellipsoid": lambda semi_axes: ellipse_loop(*semi_axes),
          "cylinder": lambda r, height: Loop(np.array([r, height / 2]) * [[0, -1], [1, -1], [1, 1], [0, 1], [-1, 1], [-1, -1]])}
@@ -26,11 +27,16 @@ def shape(table: Table, folder: Path) -> tuple[Outline, mesh.Mesh | None]:
     """The section of a body, and the mesh of its half x >= 0 where a file brings it, both about the centre of volume."""
     if table.given["shape"] == "mesh":
         half = flat.mesh_file(table, folder, "ball-axisymmetric")
+        if not (half.labels == mesh.AXIS).any():
+            return _tube_mesh(table, half)
         half.points[np.unique(half.edges[half.labels == mesh.AXIS]), 0] = 0.0      # what a file has of the axis to round-off
         centre = np.array([0.0, _centre_of_volume(half.points[half.triangles])])
         half = half.moved(-centre)
         return flat.mesh_outline(whole(half)), half
-    loop = _loop(table)
+    loop = _tube_loop(table) or _loop(table)
+    if loop.polygon[:, 0].min() > 0:
+        centre = np.array([0.0, _loop_centre(loop)])
+        return TubeOutline((loop.placed(-centre, 0.0), image(loop).placed(-centre, 0.0))), None
     return Outline((loop.placed(np.array([0.0, -_loop_centre(loop)]), 0.0),)), None
 
 
@@ -55,6 +61,49 @@ def _loop(table: Table) -> Loop:
     if kind == "polygon":
         return Loop(closed_over_axis(f"{table.path}.vertices", table.points("vertices")))
     return LOOPS[kind](*table.lengths(SHAPES[kind]))
+
+
+def _tube_loop(table: Table) -> Loop | None:
+    """The loop of a section to the right of the axis, that does not reach it; None of another body."""
+    kind = table.given["shape"]
+    if kind == "torus":
+        radius, section = table.lengths(SHAPES[kind])
+        if not section < radius:
+            raise BadInput(f"{table.at('section')}: {section:g} m reaches the axis (accepted: below radius, {radius:g} m)")
+        return circle_loop(section).placed(np.array([radius, 0.0]), 0.0)
+    if kind == "tube":
+        radius, inner, height = table.lengths(SHAPES[kind])
+        if not inner < radius:
+            raise BadInput(f"{table.at('inner_radius')}: {inner:g} m is no smaller than radius (accepted: below {radius:g} m)")
+        return Loop(np.array([[inner, -height / 2], [radius, -height / 2], [radius, height / 2], [inner, height / 2]]))
+    if kind == "polygon" and (right := table.points("vertices"))[:, 0].min() > 0:
+        flat.check_simple(f"{table.path}.vertices", right)
+        return Loop(right if signed_area(right) > 0 else right[::-1])
+    return None
+
+
+def image(loop: Loop) -> Loop:
+    """The mirror image of a loop across the axis."""
+    if loop.radius:
+        return circle_loop(loop.radius).placed(loop.centre * [-1, 1], 0.0)
+    return Loop(loop.corners[::-1] * [-1, 1])
+
+
+def _tube_mesh(table: Table, half: mesh.Mesh) -> tuple[TubeOutline, mesh.Mesh]:
+    """The section and the mesh of a body from a file that does not reach the axis."""
+    if half.points[:, 0].min() <= 0:
+        raise BadInput(f"{table.at('file')}: it lies down to x = {half.points[:, 0].min():g} m (accepted: to the right of the axis, "
+                       f"or with edges of the label {mesh.AXIS} on it)")
+    half = half.moved(-np.array([0.0, _centre_of_volume(half.points[half.triangles])]))
+    outline = flat.mesh_outline(half)
+    if len(outline.loops) > 1:
+        raise BadInput(f"{table.at('file')}: a section that does not reach the axis and has a hole (accepted: without holes)")
+    return TubeOutline((outline.loops[0], flat.mesh_outline(_mirror(half)).loops[0])), half
+
+
+def _mirror(half: mesh.Mesh) -> mesh.Mesh:
+    """The mirror image of a mesh across the axis."""
+    return mesh.Mesh(half.points * [-1, 1], half.triangles[:, ::-1], half.edges[:, ::-1], half.labels, half.hubs * [-1, 1])
 
 
 def closed_over_axis(path: str, right: np.ndarray) -> np.ndarray:
@@ -83,6 +132,9 @@ def boundary(loop: Loop) -> list[Callable[[np.ndarray], np.ndarray]]:
 def _loop_centre(loop: Loop) -> float:
     if loop.semi_axes is not None:
         return float(loop.centre[1])
+    if loop.corners[:, 0].min() > 0:
+        corners = loop.corners
+        return _centre_of_volume(np.stack([np.broadcast_to(corners[0], (len(corners) - 2, 2)), corners[1:-1], corners[2:]], axis=1))
     first, *pieces = right_half(loop)
     corners = loop.corners[[first, *pieces, (pieces[-1] + 1) % len(loop.corners)]]
     return _centre_of_volume(np.stack([np.broadcast_to(corners[0], (len(corners) - 2, 2)), corners[1:-1], corners[2:]], axis=1))

@@ -26,7 +26,7 @@ from ..mesh.mesh import AXIS, FREE, Curve, Sizes, mesh_body, nearest
 from .mirror import COPIES, FOLDED, copies
 from .parts import sections
 from .scene import OWN, SELF_CONTACT, Pair, Scene
-from ..geometry.outlines import Loop, rotation
+from ..geometry.outlines import Loop, TubeOutline, rotation
 from ..input.parameters import Value
 from ..input.tables import to_toml
 
@@ -332,6 +332,8 @@ def _boundary(scene: Scene, k: int) -> list[list[tuple[Curve, float, int]]]:
     and its label."""
     loops = scene.bodies[k].outline.loops
     if scene.dimension is AXISYMMETRIC:
+        if isinstance(scene.bodies[k].outline, TubeOutline):
+            return [[(partial(loops[0].at, piece), _largest(loops[0]), FREE) for piece in range(len(loops[0].corners))]]
         *surface, axis = revolution.boundary(loops[0])
         return [[*((piece, _largest(loops[0]), FREE) for piece in surface), (axis, np.inf, AXIS)]]
     return [[(partial(loop.at, piece), _largest(loop), FREE) for piece in range(len(loop.corners))]

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..geometry.outlines import Shape
+from ..geometry.outlines import Shape, TubeOutline
 from ..input.dimension import SOLID
 from .approach import Meeting
 from .bodies import Body
@@ -126,7 +126,8 @@ def _lands_flat(one: Meeting, k: int, body: Body, size: float) -> bool:
     moved = body.outline.carried(_shape(one, k), points)
     gaps = one.gaps(k, moved)
     landing = moved[gaps <= gaps.min() + one.closing * size / wave_speed(body)]
-    width = min(np.ptp(moved @ axis) for axis in _tangents(one.normal))
+    walls = moved[moved[:, 0] > 0] if isinstance(body.outline, TubeOutline) else moved
+    width = min(np.ptp(walls @ axis) for axis in _tangents(one.normal))
     return len(landing) > 1 and bool(body.outline.width(landing, spacing) >= FLAT * width)
 
 
