@@ -97,7 +97,7 @@ def test_a_body_may_be_a_mesh_file(tmp_path):
     body, = read({"shape": "mesh", "file": "half.msh", "position": 3}, folder=tmp_path).bodies
     assert body.outline.loops[0].radius == pytest.approx(0.05, rel=1e-9) and abs(body.outline.loops[0].centre).max() < 1e-3
     assert volumes(body.mesh)[1] == pytest.approx(0, abs=1e-9)
-    with pytest.raises(BadInput, match="^body.1.file: no edge has the label 2 of the axis"):
+    with pytest.raises(BadInput, match="^body.1.file: it lies down to x"):
         read({"shape": "mesh", "file": "whole.msh"}, folder=tmp_path)
 
 
@@ -130,7 +130,7 @@ BAD = [
     ({"velocity": "fast"}, {}, "body.1.velocity: 'fast' is not a number"),
     ({"spin": 3}, {}, "body.1.spin: no such entry, set to '3'"),
     ({"angle": 30}, {}, "body.1.angle: no such entry, set to '30'"),
-    ({"shape": "disc"}, {}, "body.1.shape: 'disc' is not known (accepted: ball|ellipsoid|cylinder|polygon|mesh)"),
+    ({"shape": "disc"}, {}, "body.1.shape: 'disc' is not known (accepted: ball|ellipsoid|cylinder|polygon|tube|torus|mesh)"),
     ({"shape": "polygon", "vertices": [[0, 0], [1, 0], [1, 1]]}, {}, "body.1.vertices: do not go from the axis to the axis"),
     ({}, {"body_force_x": 1}, "body_force_x: bodies-axisymmetric takes no such parameter"),
     ({}, {"contact": {"pairing": "pairwise"}}, "pairing: bodies-axisymmetric takes no such parameter"),
