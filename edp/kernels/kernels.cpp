@@ -10,6 +10,7 @@
 #include "contact.hpp"
 #include "pairs.hpp"
 #include "numbers.hpp"
+#include "surface.hpp"
 
 static bodies::Bodies body;
 static bodies::Deformation deformation;
@@ -97,6 +98,7 @@ static void addKernels() {
   addFactor();
   contact::addContact();
   pairs::addPairs();
+  surface::addSurface();
   add("kernelRows", numbers::write);
 }
 

@@ -308,7 +308,7 @@ def _gates(body: Body, other: Body | Obstacle, start: np.ndarray, pull: np.ndarr
         return np.array([Polynomial([x, v, a / 2]) for x, v, a in zip(body.position - point, start, pull)])
     if isinstance(other, Body):
         yield [(seen_from(other.position)**2).sum() - (reach + 1.01 * other.outline.reach)**2]
-    elif other.kind == "implicit":
+    elif other.kind in ("implicit", "surface"):
         yield []
     elif other.kind == "polyline":
         sides, reach = polyline.sides_of(other.numbers), reach + other.numbers[1]

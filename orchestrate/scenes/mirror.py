@@ -77,6 +77,8 @@ def _of_conditions(one: Body, axis: int, plane: str) -> str:
 def _of_obstacle(one: Obstacle, axis: int) -> bool:
     if one.drive and (not one.drive.way[axis].is_zero or not one.drive.turn.is_constant):
         return True
+    if one.kind == "surface":
+        return True
     if one.kind == "implicit":
         return one.velocity[axis] != 0 or not implicit.is_mirrored(one.numbers[2:], axis, 3)
     across = one.numbers[3 + axis] if one.kind == "plane" else one.numbers[axis]

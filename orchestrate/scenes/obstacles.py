@@ -2,6 +2,8 @@
 and signed distances, SI units. Of revolution about x = 0 they lie across the axis or on it, or begin or end there."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from pathlib import Path
 
 import numpy as np
 
@@ -10,6 +12,7 @@ from ..geometry.time_functions import TimeFunction, farthest, functions
 from .bodies import checked_name
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
 from ..failure import BadInput, brief, unknown
+from ..mesh import solids, surface_file
 from ..mesh.revolution import mirrored, on_axis
 from ..input.tables import Table, placeholder
 
@@ -18,7 +21,8 @@ KINDS = {
                    "polyline": ("vertices", "closed", "rounding")},
     AXISYMMETRIC: {"plane": ("point", "normal"), "sphere": ("centre", "radius"), "bowl": ("centre", "radius"),
                    "polyline": ("vertices", "rounding")},
-    SOLID: {"plane": ("point", "normal"), "sphere": ("centre", "radius"), "bowl": ("centre", "radius")},
+    SOLID: {"plane": ("point", "normal"), "sphere": ("centre", "radius"), "bowl": ("centre", "radius"),
+            "surface": ("file", "scale", "position", "turn", "rounding")},
 }
 for kinds in KINDS.values():
     kinds["implicit"] = ("distance",)
@@ -58,12 +62,20 @@ class Obstacle:
             return polyline.gap(points, self.numbers)
         if self.kind == "implicit":
             return implicit.gap(points, self.numbers)
+        if self.kind == "surface":
+            return self._surface.gap(points) - self.numbers[0]
         axes = points.shape[1]
         from_point = points - self.numbers[:axes]
         if self.kind == "plane":
             return from_point @ self.numbers[axes:]
         outside = np.linalg.norm(from_point, axis=1) - self.numbers[axes]
         return -outside if self.kind == "bowl" else outside
+
+    @cached_property
+    def _surface(self) -> solids.Shape:
+        """That of a file."""
+        points, triangles = _triangles(self.numbers)
+        return solids.surface(points[triangles])
 
     def gap_for_sizes(self, points: np.ndarray) -> np.ndarray:
         """The same, of an implicit one far away to first order: where elements are to be small."""
@@ -121,9 +133,11 @@ class Drive:
         return self.pivot + (points - self.pivot - way) @ back.T
 
 
-def read(tables: list[dict], dimension: Dimension = PLANE_STRAIN, end_time: float = 0.0) -> list[Obstacle]:
-    """The obstacles of the [[obstacle]] tables; functions of time are used up to end_time [s]."""
-    return [_obstacle(f"obstacle.{k}", given, dimension, end_time) for k, given in enumerate(tables, 1)]
+def read(tables: list[dict], dimension: Dimension = PLANE_STRAIN, end_time: float = 0.0,
+         folder: Path = Path()) -> list[Obstacle]:
+    """The obstacles of the [[obstacle]] tables; functions of time are used up to end_time [s], files sought from
+    `folder` on."""
+    return [_obstacle(f"obstacle.{k}", given, dimension, end_time, folder) for k, given in enumerate(tables, 1)]
 
 
 def settled(found: list[Obstacle], centre: np.ndarray, half: float) -> list[Obstacle]:
@@ -132,12 +146,13 @@ def settled(found: list[Obstacle], centre: np.ndarray, half: float) -> list[Obst
             for k, one in enumerate(found, 1)]
 
 
-def _obstacle(path: str, given: dict, dimension: Dimension, end_time: float) -> Obstacle:
+def _obstacle(path: str, given: dict, dimension: Dimension, end_time: float, folder: Path) -> Obstacle:
     kind, kinds = given.get("kind"), KINDS[dimension]
     if kind not in tuple(kinds):
         raise BadInput(f"{path}.kind: " + (f"is missing (accepted: {'|'.join(kinds)})" if kind is None else unknown(kind, kinds)))
     table = Table(path, given, ("name", "kind", "velocity", *DRIVE, *kinds[kind]))
-    shape = {"plane": _plane, "polyline": _polyline, "implicit": _implicit}.get(kind, _circle)
+    shape = {"plane": _plane, "polyline": _polyline, "implicit": _implicit,
+             "surface": partial(_surface, folder=folder)}.get(kind, _circle)
     return Obstacle(checked_name(path, given.get("name", path.replace(".", ""))), kind, shape(table, dimension),
                     _vector(table, "velocity", dimension, (0.0,) * dimension.axes), _drive(table, dimension, end_time))
 
@@ -183,6 +198,26 @@ def _plane(table: Table, dimension: Dimension) -> tuple[float, ...]:
                        f"[0, -1])")
     normal = normal / abs(normal).max()                    # so that no square of it underflows
     return *map(float, point), *map(float, normal / np.linalg.norm(normal))
+
+
+def _surface(table: Table, dimension: Dimension, folder: Path) -> tuple[float, ...]:
+    """Turned about the origin of the file's coordinates, then moved."""
+    try:
+        points, triangles = surface_file.read(folder / table.text("file", ""))
+    except BadInput as error:
+        raise BadInput(f"{table.at('file')}: {error}") from None
+    turn = np.radians(table.numbers("turn", (0.0, 0.0, 0.0), 3, -36000, 36000))
+    points = table.number("scale", 1e-9, 1e9, 1.0) * points @ tumbling.rotation(turn).T
+    points = points + table.numbers("position", (0.0, 0.0, 0.0), 3)
+    rounding = table.number("rounding", 0, default=0.0)
+    return rounding, float(len(points)), float(len(triangles)), *points.ravel().tolist(), *map(float, triangles.ravel())
+
+
+def _triangles(numbers: tuple[float, ...]) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices (n, 3) and triangles (t, 3) of a surface's numbers."""
+    points, faces = int(numbers[1]), int(numbers[2])
+    data = np.array(numbers[3:])
+    return data[:3 * points].reshape(-1, 3), data[3 * points:3 * (points + faces)].astype(int).reshape(-1, 3)
 
 
 def _circle(table: Table, dimension: Dimension) -> tuple[float, ...]:

@@ -91,28 +91,32 @@ class Scene:
     @property
     def asked(self) -> dict:
         """What decides the answer beside the script: two scenes that agree in it are one run."""
-        files = [str(given["file"]) for given in self.given.get("body", []) if "file" in given]
+        files = [str(given["file"]) for key in ("body", "obstacle") for given in self.given.get(key, []) if "file" in given]
         meshes = {name: hashlib.sha256((self.folder / name).read_bytes()).hexdigest() for name in files}
         harmless = ("title", "script", *parameters.NOT_DECISIVE)
         return {name: value for name, value in self.given.items() if name not in harmless} | {"files": meshes}
 
     def with_files_in(self, where: Path, tables: dict) -> dict:
-        """The tables of the scene with copies of the bodies' files, made in `where`/body-files: a
-        scene.toml there finds them wherever the folder is moved. A .geo that takes in other files stays
-        beside them: its path is relative to `where`."""
-        listed = []
-        for body, table in zip(self.bodies, tables.get("body", [])):
-            if "file" in table:
-                path = self.folder / table["file"]
-                copy = Path("body-files", f"{body.name}{path.suffix}")
-                if takes_in_others(path):
-                    copy = Path(os.path.relpath(path, where))
-                else:
-                    (where / copy).parent.mkdir(exist_ok=True)
-                    shutil.copyfile(path, where / copy)
-                table = table | {"file": copy.as_posix()}
-            listed.append(table)
-        return tables | ({"body": listed} if listed else {})
+        """The tables of the scene with copies of the files of bodies and obstacles, made in
+        `where`/body-files: a scene.toml there finds them wherever the folder is moved. A .geo that takes
+        in other files stays beside them: its path is relative to `where`."""
+        changed = dict(tables)
+        for key, named in (("body", self.bodies), ("obstacle", self.obstacles)):
+            if tables.get(key):
+                changed[key] = [self._with_copy(where, one.name, table) if "file" in table else table
+                                for one, table in zip(named, tables[key])]
+        return changed
+
+    def _with_copy(self, where: Path, name: str, table: dict) -> dict:
+        """A table with the copy of its file."""
+        path = self.folder / table["file"]
+        copy = Path("body-files", f"{name}{path.suffix}")
+        if takes_in_others(path):
+            copy = Path(os.path.relpath(path, where))
+        else:
+            (where / copy).parent.mkdir(exist_ok=True)
+            shutil.copyfile(path, where / copy)
+        return table | {"file": copy.as_posix()}
 
     @property
     def numbers(self) -> list[str]:
@@ -216,7 +220,7 @@ def _of_tables(given: dict, folder: Path, name: str) -> Scene:
     for k, one in enumerate(rigid, 1):
         _of_the_scene(f"obstacle.{k}", one)
     all_obstacles = obstacles.read([{key: value for key, value in one.items() if key not in OWN} for one in rigid], of,
-                                   bodies.end_time_of(given))
+                                   bodies.end_time_of(given), folder)
     centres = np.array([body.placed.area_centre for body in all_bodies])
     half = float(np.ptp(centres, axis=0).max() / 2 + 2 * max(body.placed.reach for body in all_bodies))
     all_obstacles = obstacles.settled(all_obstacles, centres.mean(axis=0), half)
