@@ -4,6 +4,7 @@ import pytest
 
 from orchestrate import run, scene
 from orchestrate.input.parameters import ROOT
+from verification import measure
 from verification.measurements import bench, equal_errors, peers
 
 
@@ -46,6 +47,24 @@ def test_ngsolve_says_the_same_with_friction(tmp_path):
         assert theirs, reason
         assert equal_errors.errors(case, equal_errors.answers(case, form, theirs), ours)["error"] < limit
         assert theirs["energy_drift"] < 1e-4 and theirs["friction_work"] > 30
+
+
+def test_ngsolve_says_the_same_of_a_clamped_beam(tmp_path):
+    """The first touch of a disc on a beam that is clamped at both ends: impulse, velocity of the disc and
+    the time above 1 % of the peak within 0.5 %, on coarse meshes of either program's own."""
+    if not peers.find("ngsolve"):
+        pytest.skip("ngsolve is not installed")
+    material = {"nu": 0.45, "young": 7e6, "density": 1722.0}
+    beam = {"width": 0.3, "height": 0.06}
+    theirs, reason = peers.two_bodies(200, clamped=1, radius=0.05, speed=4.0, penalty=1e10, **beam, **material)
+    assert theirs, reason
+    disc = {"shape": "disc", "radius": 0.05, "position": [0, 0.0801], "velocity": [0, -4]}
+    held = {"shape": "rectangle", "position": [0, 0], "support": [{"where": "left"}, {"where": "right"}]}
+    ours = measure.bodies(tmp_path, {"law": "neohookean", "accuracy": 4e-3, "end_time": 6e-3, "contact": {"penalty": 1e10},
+                                     "body": [disc, held | beam]} | material).summary
+    assert theirs["impulse"] == pytest.approx(ours["impulse"], rel=5e-3)
+    assert theirs["velocity_upper"] == pytest.approx(ours["rebound_vy_1"], rel=5e-3)
+    assert theirs["contact_time_1_percent"] == pytest.approx(ours["thresholded_contact_time"], rel=5e-3)
 
 
 def test_ours_beside_the_peers():

@@ -1,7 +1,7 @@
 """A disc on a free block with NGSolve (`pip install ngsolve==6.2.2608`): a second opinion on two bodies.
 
-Half of both bodies (u_x = 0 on the axis x = 0), plane strain, curved P2 triangles of netgen, no friction, no gravity. Shares nothing
-with our own step: central differences with the consistent mass. Contact of potential k p^2 / 2 per unit reference length:
+Half of both bodies (u_x = 0 on the axis x = 0), plane strain, curved P2 triangles of netgen, no friction, no gravity. With
+--clamped 1 the block is a beam that is held at its ends. Shares nothing with our own step: central differences with the consistent mass. Contact of potential k p^2 / 2 per unit reference length:
 two-sided: by hand, each Gauss point of either outline against the closest point of the other's deformed outline (P2 edges, so
            parabolas), half the weight in each role; its exact gradient but where the closest point jumps over a corner
            between two edges, so momentum is exact and the energy nearly (1e-5 at k = 1e9 Pa/m, 1e-4 at 1e10).
@@ -40,23 +40,27 @@ def arguments() -> argparse.Namespace:
                "courant": (0.4, "step over the linear limit of stability"), "after": (0.3, "flight after the contact, in contact times")}
     parser.add_argument("--law", choices=("svk", "neohookean"), default="neohookean")
     parser.add_argument("--contact", choices=("two-sided", "ngsolve"), default="two-sided")
+    parser.add_argument("--clamped", type=int, default=0, help="1: the block is a beam, held at its ends")
     parser.add_argument("--history", type=Path, help="writes force, energies and velocities over time there (CSV)")
     return with_numbers(parser, numbers)
 
 
 def bodies_mesh(o: argparse.Namespace) -> ng.Mesh:
-    """Half bodies, drawn 4 radii apart; materials upper and lower, boundaries axis, `OUTLINES` (the fine ones) and free."""
+    """Half bodies, drawn 4 radii apart; materials upper and lower, boundaries axis, `OUTLINES` (the fine ones), clamp and free."""
     half, fine = o.width / 2, 1.6 * o.radius
     upper = occ.WorkPlane().MoveTo(0, 4 * o.radius).Arc(o.radius, FINE_ANGLE).Arc(o.radius, 180 - FINE_ANGLE).Close().Face()
     lower = occ.WorkPlane().MoveTo(0, -o.height).LineTo(half, -o.height).LineTo(half, 0).LineTo(fine, 0).LineTo(0, 0).LineTo(0, -o.height).Face()
     depth = o.radius * (1 - math.cos(math.radians(FINE_ANGLE)))
+    block = 0.16 if o.clamped else 0.6
     for face, name, size, is_fine in ((upper, BODIES[0], 0.16, lambda c: c.y < 4 * o.radius + depth),
-                                      (lower, BODIES[1], 0.6, lambda c: c.y > -1e-9 and c.x < fine)):
+                                      (lower, BODIES[1], block, lambda c: c.y > -1e-9 and c.x < fine)):
         face.name, face.maxh = name, size * o.radius / o.refine
         for edge in face.edges:
             edge.name = "axis" if edge.center.x < 1e-9 else f"{name} outline" if is_fine(edge.center) else "free"
             if edge.name == f"{name} outline":
                 edge.maxh = 0.05 * o.radius / o.refine
+            if o.clamped and edge.center.x > half - 1e-9:
+                edge.name = "clamp"
     return ng.Mesh(occ.OCCGeometry(occ.Compound([upper, lower]), dim=2).GenerateMesh(maxh=o.radius, grading=0.3)).Curve(2)
 
 
@@ -130,7 +134,8 @@ class Pair:
 
     def __init__(self, o: argparse.Namespace):
         self.o, self.t, self.mesh = o, 0.0, bodies_mesh(o)
-        self.space, scalar = ng.VectorH1(self.mesh, order=2, dirichletx="axis"), ng.H1(self.mesh, order=2)
+        self.space = ng.VectorH1(self.mesh, order=2, dirichletx="axis|clamp", dirichlety="clamp")
+        scalar = ng.H1(self.mesh, order=2)
         self.u, self.v, coordinates = (ng.GridFunction(self.space) for _ in range(3))
         self.u.Set(ng.CF((0, -4 * o.radius)), definedon=self.mesh.Materials("upper"))            # to the first touch
         self.v.Set(self.mesh.MaterialCF({"upper": ng.CF((0, -o.speed)), "lower": ng.CF((0, 0))}))
