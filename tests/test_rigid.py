@@ -8,6 +8,7 @@ import pandas as pd
 import pytest
 
 from orchestrate.__main__ import main
+from orchestrate.output import vtu
 
 DISC = """
 density = 1000
@@ -76,6 +77,18 @@ def test_it_is_the_limit_of_a_stiff_disc(tmp_path):
         apart = 0.005 * abs(stiff[name]) + max(one["estimated_error"]["rebound"] for one in (rigid, stiff)) * abs(stiff[name])
         assert abs(rigid[name] - stiff[name]) < apart, name
     assert rigid["energy_drift"] < 1e-9 and rigid["momentum_drift"] < 1e-10
+
+
+def test_fields_show_where_a_rigid_body_is(tmp_path):
+    """Without stress, of volume 1, as far from its reference as its centre: a translation of all nodes."""
+    text = DISC + "position = [0, 0.0501]\nvelocity = [0, -1]\n" + BLOCK
+    run(tmp_path, "fields = 3\n" + text)
+    found = vtu.read(sorted((tmp_path / "scene" / "fields").glob("0*.vtu"))[-1])
+    disc = np.linalg.norm(found.points, axis=1) < 0.05 + 1e-6      # in the mesh it is about the origin
+    moved = found.fields["displacement"][disc]
+    assert disc.sum() > 20 and all(np.isfinite(field).all() for field in found.fields.values())
+    assert np.ptp(moved[:, 1]) < 1e-6 and found.fields["von_mises"][disc].max() == 0 < found.fields["von_mises"].max()
+    assert found.fields["jacobian"][disc] == pytest.approx(1, abs=1e-4)
 
 
 def test_two_rigid_discs_on_a_soft_one(tmp_path):

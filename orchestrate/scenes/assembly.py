@@ -290,7 +290,7 @@ def _sizes(k: int, ask: Asker) -> Sizes:
     hits = [_hit(body, k, one, ask) for one in ask.met if k in (one.first, one.second)]
     mine = [front for front in ask.fronts.values() if k in front.sizes]
     if body.rigid and not body.mesh_size:
-        bulk = float(body.outline.half_thickness)               # nothing goes on inside
+        bulk = float(body.outline.half_thickness) / 3           # nothing goes on inside; the outline is to look round
     if not body.mesh_size:
         bulk = min((front.sizes[k] for front in mine if k in front.crossed), default=bulk)
     contact = body.contact_mesh_size or min([bulk, *(size for size, *_ in hits), *(front.sizes[k] for front in mine)])
