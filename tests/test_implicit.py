@@ -10,7 +10,7 @@ POINTS = np.random.default_rng(1).uniform(-0.3, 0.3, (500, 2))
 
 
 def settled(text, centre=(0.0, 0.05), half=0.1):
-    return implicit.settled("obstacle.1", implicit.program("obstacle.1", text, len(centre)), np.array(centre), half)
+    return implicit.settled("obstacle.1", implicit.program("obstacle.1.distance", text, "xyz"[:len(centre)]), np.array(centre), half)
 
 
 @pytest.mark.parametrize("text, value", [
@@ -19,7 +19,7 @@ def settled(text, centre=(0.0, 0.05), half=0.1):
     ("sqrt(x^2+y^2+1) - exp(cos(x))", lambda x, y: np.sqrt(x**2 + y**2 + 1) - np.exp(np.cos(x)))])
 def test_a_program_is_its_expression(text, value):
     """Value and gradient, the latter against central differences."""
-    code = implicit.program("obstacle.1", text, 2)
+    code = implicit.program("obstacle.1.distance", text, "xy")
     found, slope = implicit.run(code, POINTS)
     assert found == pytest.approx(value(*POINTS.T), rel=1e-13, abs=1e-15)
     for axis, step in enumerate(1e-6 * np.eye(2)):
@@ -34,7 +34,7 @@ def test_a_program_is_its_expression(text, value):
 def test_other_text_is_refused_in_one_line(text, wrong):
     """Nothing but numbers, coordinates, the four operations, powers by numbers and the named functions is taken."""
     with pytest.raises(BadInput, match=r"^obstacle\.1\.distance: ") as error:
-        implicit.program("obstacle.1", text, 2)
+        implicit.program("obstacle.1.distance", text, "xy")
     assert wrong in str(error.value) and "(accepted: " in str(error.value) and "\n" not in str(error.value)
 
 
