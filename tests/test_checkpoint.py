@@ -116,16 +116,28 @@ def test_half_a_run_and_the_rest_are_the_whole(tmp_path, name):
 BALL = COARSE | dict(mesh_size=0.03, contact_mesh_size=0.015, accuracy=0.2, fields=2, end_time=1e-3, dt=2e-5, checkpoint_every=7)
 
 
+SOFT = {"law": "neohookean", "young": 2e6, "nu": 0.4, "density": 1000.0}
+# two balls of revolution on a surface of its own expression
+BALLS = {"dimension": "axisymmetric", "accuracy": 0.2, "end_time": 6e-3, "checkpoint_every": 4, "obstacle": [{"kind": "implicit", "distance": "y + 10*x^2"}],
+         "body": [SOFT | {"shape": "ball", "radius": 0.04, "mesh_size": 0.015, "contact_mesh_size": 0.006, "name": name, "position": [0.0, y], "velocity": [0.0, v]}
+                  for name, y, v in (("a", 0.0403, -3.0), ("b", 0.1205, -5.0))]}
+# a rigid disc on a pad that is moved from below, a ring with air in it beside it, and a roller that turns
+DRIVEN = SOFT | {"accuracy": 0.2, "end_time": 8e-3, "checkpoint_every": 4, "gravity": 9.81, "contact": {"friction_static": 0.4}, "body": [
+    {"shape": "disc", "radius": 0.03, "rigid": True, "position": [0.0, 0.0502], "velocity": [0.5, -1.0]},
+    {"shape": "rectangle", "width": 0.3, "height": 0.04, "position": [0.0, 0.0],
+     "support": [{"where": "bottom", "motion": [0, "0.002*sin(500*t)"]}]},
+    {"shape": "ring", "radius": 0.03, "inner_radius": 0.02, "position": [0.09, 0.0502], "velocity": [0.0, -1.0],
+     "load": [{"where": "inner", "gas": {"gauge_pressure": 2e4, "exponent": 1.4}}]}],
+    "obstacle": [{"kind": "circle", "centre": [-0.1, 0.0402], "radius": 0.02, "rotation": "-3000*t", "motion": [0, "-0.1*t"]}]}
+
+
 @pytest.mark.parametrize("script, flags", [
-    ("bodies-axisymmetric", {}), ("disc-block", COARSE | dict(radius=0.5, speed=10, accuracy=0.02, pairing="pairwise", checkpoint_every=10)),
+    ("bodies-axisymmetric", BALLS), ("bodies", DRIVEN), ("disc-block", COARSE | dict(radius=0.5, speed=10, accuracy=0.02, pairing="pairwise", checkpoint_every=10)),
     ("ball-plane", BALL), ("ball-plane", BALL | dict(angle=60, friction_static=0.5, friction_dynamic=0.4))])
 def test_bodies_go_on_to_the_last_bit(tmp_path, script, flags):
-    """Two balls of revolution on a surface of its own expression, a disc on a block by pairs of points, and balls in space: what steps have learnt of gaps and of the
-    contact's window goes on with the run."""
-    ball = {"shape": "ball", "radius": 0.04, "law": "neohookean", "young": 2e6, "nu": 0.4, "density": 1000.0, "mesh_size": 0.015, "contact_mesh_size": 0.006}
-    flags = flags or prepared(tmp_path, {
-        "dimension": "axisymmetric", "accuracy": 0.2, "end_time": 6e-3, "checkpoint_every": 4, "obstacle": [{"kind": "implicit", "distance": "y + 10*x^2"}],
-        "body": [ball | {"name": name, "position": [0.0, y], "velocity": [0.0, v]} for name, y, v in (("a", 0.0403, -3.0), ("b", 0.1205, -5.0))]})
+    """Bodies of revolution, bodies that are rigid, held, driven or filled with air, a disc on a block by pairs of points, and balls in
+    space: what steps have learnt of gaps and of the contact's window goes on with the run."""
+    flags = prepared(tmp_path, flags) if "body" in flags else flags
     out = tmp_path / "out"
     assert direct(flags, tmp_path / "straight", script).communicate(timeout=120)
     rows = len(results.read_history(tmp_path / "straight")["t"])

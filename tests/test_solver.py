@@ -94,6 +94,7 @@ def test_a_run_beside_that_fails_is_said_where_it_was(monkeypatch, tmp_path):
     assert found.summary["estimated_error"] is None and "the error is not estimated: the run with 1.4 times larger" in " ".join(found.summary["warnings"])
 
 
+@pytest.mark.robustness
 @pytest.mark.parametrize("lost", ["checkpoint", "coarser/checkpoint"])
 def test_each_goes_on_from_its_own_checkpoint(monkeypatch, tmp_path, lost):
     """Killed with a checkpoint of only one of the two, the same command makes the other anew, and the answer is the same."""
