@@ -279,6 +279,7 @@ def test_pairs_inherit_from_contact():
         [0, -1, 1e9, 0.3, 0.1], [0, 1, 2e9, 0.5, 0.5], [1, -1, 1e9, 0.2, 0.2]]
 
 
+@pytest.mark.few(5)
 @pytest.mark.parametrize("name", [name for name in built_in() if load(name).bodies])
 def test_the_scene_as_used_is_the_same_scene(name, tmp_path):
     """Every scene that comes with the program makes a sound mesh of its bodies; scene.toml, which has everything that was left open, makes the same mesh, data and

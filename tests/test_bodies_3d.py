@@ -158,6 +158,7 @@ def test_bodies_stand_apart_above_each_other():
     assert rows[6] == ["spheres", "1"]
 
 
+@pytest.mark.robustness
 def test_meshes_are_fine_where_bodies_touch():
     """Faces below the ball's lowest point and in the middle of the block's upper side, not elsewhere; turned along with the body."""
     scene = read(BALL, BLOCK, mesh_size=0.03, contact_mesh_size=0.006, symmetry="full")
@@ -240,6 +241,7 @@ def test_geometries_are_meshed_with_the_sizes_of_the_scene(files):
     assert lengths[middle[:, 1] < lowest + 0.006].max() < 0.014 and lengths[middle[:, 1] > 0.05].mean() > 0.016
 
 
+@pytest.mark.robustness
 def test_named_surfaces_may_touch(files):
     """Faces of the physical surface `contact` have the label 1, all others 4; without one all have
     1, those of a cavity where something reaches them."""
@@ -490,6 +492,7 @@ def test_a_ball_on_a_free_block(tmp_path):
     assert list(h) == found_columns(found) and found.scene["symmetry"] == "quarter"
 
 
+@pytest.mark.robustness
 def test_a_pair_is_that_of_the_other_dimension(tmp_path):
     """A ball on a free cylinder up to the largest force: impulse, velocities and force as of bodies of revolution, to the coarse meshes' error."""
     cylinder = {"name": "cylinder", "shape": "cylinder", "radius": 0.08, "height": 0.06}

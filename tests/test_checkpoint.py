@@ -131,6 +131,7 @@ DRIVEN = SOFT | {"accuracy": 0.2, "end_time": 8e-3, "checkpoint_every": 4, "grav
     "obstacle": [{"kind": "circle", "centre": [-0.1, 0.0402], "radius": 0.02, "rotation": "-3000*t", "motion": [0, "-0.1*t"]}]}
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("script, flags", [
     ("bodies-axisymmetric", BALLS), ("bodies", DRIVEN), ("disc-block", COARSE | dict(radius=0.5, speed=10, accuracy=0.02, pairing="pairwise", checkpoint_every=10)),
     ("ball-plane", BALL), ("ball-plane", BALL | dict(angle=60, friction_static=0.5, friction_dynamic=0.4))])
@@ -222,6 +223,7 @@ velocity = [0, 3]
 """
 
 
+@pytest.mark.robustness
 def test_killed_behind_the_run_that_estimates_the_error(tmp_path):
     """What that run has left is known as of this scene, its moving obstacle too: the same stated errors, and no needless finer run."""
     (tmp_path / "rising.toml").write_text(RISING)
@@ -290,6 +292,7 @@ def test_failed_run_leaves_no_checkpoint(tmp_path):
     assert not list(tmp_path.glob("out/checkpoint*")) and not list(tmp_path.glob("out.*"))
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("damage", ["empty", "text", "cut", "flipped"])
 def test_unreadable_checkpoint(out, damage):
     """A checkpoint that cannot be read ends with exit code 14 and a line that names it and says what to do; it stays."""

@@ -46,6 +46,7 @@ def test_forces_on_a_plane(ran, name, given):
     np.testing.assert_allclose(forces.shear[-1], there.friction_force, rtol=1e-6, atol=1e-6 * there.normal_force.max())
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("given", [{}, {"pairing": "pairwise"}, {"angle": 60, "friction_static": 0.4, "contact_mesh_size": 0.03}])
 def test_both_bodies_bear_the_force_between_them(ran, given):
     """Of two bodies each carries the normal load once (each takes both roles: to 10 % on coarse elements, shear on finer ones), both together twice of it exactly."""

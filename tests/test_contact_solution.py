@@ -34,6 +34,7 @@ def assert_same(found: dict, expected: dict) -> None:
     assert np.abs(found["balance"]).max() < 1e-9 * expected["kinetic"][0]
 
 
+@pytest.mark.robustness
 @pytest.mark.parametrize("flags", [SMOOTH, BALL | dict(angle=90)], ids=["friction", "normal"])
 def test_contact_is_solved_as_far_as_it_matters(tmp_path, flags):
     """To a share of the residual of the step or to round-off, by the kernels or by the scripts: the same answer."""
@@ -42,6 +43,7 @@ def test_contact_is_solved_as_far_as_it_matters(tmp_path, flags):
         assert_same(history(tmp_path / without, flags | {"without": without}), exactly)
 
 
+@pytest.mark.robustness
 def test_jump_of_the_coefficient(tmp_path):
     """With a jump of the coefficient a step may have two solutions, and which is found depends on the way: energy is balanced, and the impulse
     and the friction work agree to what one point's choice makes."""

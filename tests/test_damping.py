@@ -30,6 +30,7 @@ def test_a_mode_decays_as_theory_has_it(name):
     assert found["turned"] < 1e-12 and found["objective"] < 1e-12
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("name", ["extension", "shear", "midpoint"])
 @pytest.mark.parametrize("relaxation", [0.3, 1.0, 3.0])
 def test_a_mode_of_the_standard_linear_solid_is_the_exact_one(name, relaxation):
@@ -59,6 +60,7 @@ def test_loss_is_that_of_the_first_mode(nu):
     assert describe({"nu": nu, "loss": 0.1})["used"]["viscosity"] == pytest.approx(0.1 * radius * np.sqrt(mu * rho) / 2.35)
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("script, flags", [("disc-plane", {}), ("disc-plane", {"law": "svk"}), ("ball-axisymmetric", {"angle": None}),
                                            ("ball-plane", {"end_time": 5e-4})])
 @pytest.mark.parametrize("damping", [{"viscosity": 20, "bulk_viscosity": 10}, {"relaxation_modulus": 2e6, "relaxation_time": 1e-3}], ids=["viscous", "relaxing"])

@@ -22,6 +22,7 @@ def go(out, name: str, values: dict = {}, mesh_file=None) -> tuple[pd.Series, ru
     return pd.read_csv(found.folder / "contacts.csv").iloc[0], found
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name, speed, spin", [("disc-normal", 1, 100), ("ball", 3, 400)])
 def test_spin_has_no_part_in_restitution(tmp_path, name, speed, spin):
     """A round body without friction: approach and all three restitutions are the centre's, whatever its spin; the slip is that of the rim."""

@@ -40,6 +40,7 @@ def names(folder: Path) -> set[str]:
 RESULTS = {"scene.toml", "history.csv", "contacts.csv", "summary.json"}
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("name", [ODD, "-out", "-", "--", "a b/c d", "é", "a\nb"])
 def test_any_name_will_do(tmp_path, name):
     """Folders, meshes and checkpoints may be called what they want: the run works, and no command in a name is run."""
@@ -178,6 +179,7 @@ def test_failure_does_not_cost_an_earlier_result(tmp_path):
     assert names(tmp_path / "out") == {"scene.toml", "history.csv", "contacts.csv", "failure.json"} and (tmp_path / "out.1/history.csv").read_bytes() == before
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("size", [0, 200, 3000, 6000])
 def test_full_disk(tmp_path, size):
     """Where files cannot grow as they have to, the exit code is 14 with one line, nothing finished is there, and an earlier result stays."""
@@ -193,6 +195,7 @@ def test_full_disk(tmp_path, size):
         assert before == {name: (tmp_path / name).read_bytes() for name in names(tmp_path)} and not (tmp_path / "new").exists()
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("files", [2, 3, 4, 5, 6, 8, 10])
 def test_full_disk_of_its_own(tmp_path, files):
     """On a disk that takes so many files and no more, whichever of them is the first that does not fit: exit code 14 with one line, and

@@ -44,6 +44,7 @@ def test_explicit_steps_agree_with_the_conserving_ones(runs):
     conserves(runs["explicit"], 2e-4)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("change", [{"penalty": 1e11}, {"penalty": 1e12}, {"slip_velocity": 0.01}], ids=str)
 def test_penalty_and_slip_velocity_do_not_set_the_step(runs, explicit, change):
     """Ten and a hundred times the penalty, a tenth of slip_velocity take the parts that they took before."""
@@ -80,6 +81,7 @@ def test_a_step_that_is_given_is_parted(runs, tmp_path):
         assert found.summary[name] == pytest.approx(runs["explicit"].summary[name], rel=0.005, abs=1e-7), name
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("name, settings", [("two-discs", {}), ("disc-corner", {}), ("ball", {"end_time": 2e-3}), ("ball-axisymmetric", {})], ids=str)
 def test_every_kind_of_scene_conserves(tmp_path, name, settings):
     """Rows that turn with two bodies are iterated until momenta are exact; so they are at several obstacles, in space and of revolution."""

@@ -55,6 +55,7 @@ def measured(folder: Path, script: str, **flags) -> dict[str, float]:
     return json.loads(go(folder, sys.executable, "-c", call))
 
 
+@pytest.mark.robustness
 def test_obstacle_is_the_built_in_one(extended):
     """An ellipse of equal semi-axes is a circle: a disc that hits it off its centre leaves with the same velocity, impulse and vibration."""
     folder = extended("An obstacle")
@@ -86,6 +87,7 @@ def test_figure_is_drawn_and_encloses_what_translation_lost(extended):
     assert lost > 10 and float(go(folder, sys.executable, "-c", call)) == pytest.approx(lost, rel=1e-9)
 
 
+@pytest.mark.robustness
 def test_law_has_its_stress_its_tangent_and_its_energy(extended):
     """Homogeneous stress by the closed form, tangent by differences, and the balance of an impact closed to round-off, beside another law, too."""
     folder = extended("A constitutive law")

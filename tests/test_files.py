@@ -158,6 +158,7 @@ def plane(tmp_path_factory):
     return folder
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("key, value", [("mesh_size", 0.001), ("contact_mesh_size", 0.0005)])
 def test_element_sizes_of_a_mesh_from_a_file_are_its_own(plane, key, value):
     """Another size is refused, of the body, at the top where no other body takes it, and set later;
@@ -268,6 +269,7 @@ def test_what_sinks_is_named_and_meshes_of_files_are_not_to_be_resized(plane, tm
 
 # ---- what a result keeps
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", ["part.step", "all.msh", "merges.geo"])
 def test_a_result_has_the_files_of_its_bodies(plane, tmp_path, name):
     """scene.toml names no place on this machine; with its folder elsewhere and the file gone it makes
@@ -386,6 +388,7 @@ def rounded_box(radius: float) -> float:
     return 1e-9 * (a * b * c + 2 * radius * faces + math.pi * radius**2 * edges + corners)
 
 
+@pytest.mark.robustness
 def test_fillets_that_touch_nothing_cost_little(tmp_path):
     """A box with fillets of 2 mm on all edges, which its elements do not resolve, takes little
     more than the box (six times as many with elements of its curvature); the volume is kept to a quarter

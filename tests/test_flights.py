@@ -101,6 +101,7 @@ def test_a_steel_bead_bounces(tmp_path):
     assert any(one.startswith("touches again") and "t = 1.35" in one for one in found.summary["notes"])
 
 
+@pytest.mark.robustness
 def test_a_body_tumbles_for_long(tmp_path):
     """After 30 s of free tumbling, some seventy turns, the spin is that of Euler's equations in small steps, and angular momentum stays."""
     box = {"shape": "box", "width": 0.1, "height": 0.06, "depth": 0.03, "mesh_size": 0.015, "contact_mesh_size": 0.015, "position": [0, 100, 0],
@@ -132,6 +133,7 @@ def test_a_run_ends_when_all_that_follows_is_over(tmp_path):
     assert found.history["t"][-1] - s["contact_start"] - s["contact_time"] < 0.15 * s["contact_time"]
 
 
+@pytest.mark.robustness
 def test_a_body_that_vibrates_is_not_gone(tmp_path):
     """A slotted ring leaves the floor slowly after its first touch, most of its energy in vibration: others follow, and all are there that a run of
     twice the time has."""

@@ -138,6 +138,7 @@ def spent() -> float:
     return used.ru_utime + used.ru_stime
 
 
+@pytest.mark.few(14)
 @pytest.mark.parametrize("name", BAD)
 def test_bad_mesh_is_named_alike_on_both_ways(refused, fake, tmp_path, name):
     """What is wrong with a mesh, and where, is one line and exit code 10, from the script and from Python, which starts no run;
@@ -224,6 +225,7 @@ def agree(a: results.RunResult, b: results.RunResult, band: float,
         assert abs(a.history[name] - b.history[name]).max() < band * abs(a.history[name]).max(), name
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("draw, outline, size", [
     (ellipse, r"\d+ straight edges", math.pi * 0.06 * 0.04), (tilted_square, r"\d+ straight edges", 0.08**2),
     (ring, r"circle of radius 0\.0[25] about \(0\.1, 0\.1\), circle of radius 0\.0[25] about \(0\.1, 0\.1\)", math.pi * (RADIUS**2 - 0.02**2))])
@@ -246,6 +248,7 @@ def test_any_outline_falls_and_bounces(tmp_path, draw, outline, size):
     assert result.scene["radius"] == pytest.approx(half, rel=5e-3) and result.scene["symmetry"] == "full"
 
 
+@pytest.mark.robustness
 def test_place_in_the_file_does_not_matter(tmp_path):
     """The same disc elsewhere gives the same history, the centre of mass as far to the side as it is there: 1e-6, the solver's round-off."""
     m = mesh.disc(RADIUS, 0.015, 0.006, False)
@@ -286,6 +289,7 @@ def test_half_an_ellipse_is_the_ellipse(tmp_path):
     agree(go(tmp_path / "half", half), go(tmp_path / "whole", whole_of(half)), 1e-5, ("normal_force", "kinetic", "elastic", "contact", "y", "vy"))
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("half, values, words", [
     (True, {"angle": 60}, "mesh: is half a body (label 2 is its axis), which needs a normal impact without spin (angle = 90"),
     (True, {"spin": 1}, "mesh: is half a body"), (True, {"body_force_x": 1}, "mesh: is half a body"),
@@ -357,6 +361,7 @@ def test_another_mass_than_the_file_is_a_warning(tmp_path):
         assert len(warned) == said and ("mass:" in str(result.summary["warnings"])) == said
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("spin", [60, -200])
 def test_body_that_is_not_round_turns_on_its_way_down(tmp_path, spin):
     """An ellipse that falls turning lands when and as one does that is marched all the way down."""
@@ -428,6 +433,7 @@ def load(path: Path) -> mesh.Mesh:
     return mesh.read(made)
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("version, binary", [(2.2, False), (2.2, True), (4.1, False), (4.1, True)])
 @pytest.mark.parametrize("half, named", [(True, False), (False, True)])
 def test_gmsh_formats_are_our_own(tmp_path, version, binary, half, named):
@@ -492,6 +498,7 @@ def test_names_come_before_numbers(tmp_path):
     assert ((m.points[m.edges, 1].max(axis=1) == 0) == (m.labels == 1)).all() and set(m.labels) == {1, 3}
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("version", [2.2, 4.1])
 @pytest.mark.parametrize("names", [("contact", "bottom"), ("bottom", "contact"), ("contact", "symmetry")])
 def test_lines_in_two_groups(tmp_path, version, names):
@@ -517,6 +524,7 @@ HEAD = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"
 NODES = "$Nodes\n4\n1 0 0 0\n2 0.1 0 0\n3 0.1 0.1 {z}\n4 0 0.1 0\n$EndNodes\n"
 
 
+@pytest.mark.few(5)
 @pytest.mark.parametrize("text, words", [
     ("$MeshFormat\n", "gmsh cannot read it"), (HEAD, "it has no triangles"), ("$MeshFormat\n9.9 0 8\n$EndMeshFormat\n", "gmsh cannot read it: Unknown MSH file version 9.9"),
     (HEAD + NODES.format(z=0), "it has no triangles"),

@@ -67,6 +67,7 @@ def in_unit(given: dict, metre: int) -> dict:
     return {key: times(value, metre**POWERS[key]) if key in POWERS else value for key, value in given.items()}
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("shape", SHAPES, ids=[one["shape"] for one in SHAPES])
 def test_no_mesh_depends_on_the_unit_of_length(shape, tmp_path):
     """In metres, centimetres and millimetres a body has the same mesh, but for round-off."""

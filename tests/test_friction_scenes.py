@@ -79,6 +79,7 @@ def test_whole_body_without_friction(tmp_path):
     assert "slide" not in report.report(result).replace(str(result.folder), "") and "lost to friction" not in report.report(result)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("values", [{"height": 0.01, "speed": 0, "angle": 90, "gravity": 9.81, "symmetry": "full"},
                                     {"height": 0.01, "spin": 50, "gravity": 9.81}, {"end_time": 1e-3},
                                     {"regularization": "tanh", "friction_transition": "smooth"}, {"fields": 1}, {"fields": 0}])

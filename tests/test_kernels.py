@@ -24,6 +24,7 @@ def write(folder, name: str) -> None:
     (folder / "kernels.cpp").write_text(f'#include "ff++.hpp"\nstatic void {name}() {{}}\nLOADFUNC({name})\n')
 
 
+@pytest.mark.robustness
 def test_they_are_built_once_and_again_for_other_sources(copy, monkeypatch):
     """What loads the plugin names the one of these very sources; that of other sources takes its place. The folder may have any name."""
     monkeypatch.setattr(kernels, "SOURCES", copy.with_name("sources"))
@@ -59,6 +60,7 @@ FLAGS = [*({"law": law} for law in ("svk", "neohookean")), MOONEY, OGDEN, {"law"
          {"law": "neohookean", "nu": 0.46}, {"law": "svk", "nu": 0.46}, OGDEN | {"nu": 0.46}]
 
 
+@pytest.mark.few(10)
 @pytest.mark.parametrize("flags", FLAGS, ids=str)
 @pytest.mark.parametrize("body", COARSE)
 def test_forces_tangent_and_factor_are_those_of_the_scripts(body, flags):
@@ -95,6 +97,7 @@ MARCHES = {"disc": ("disc-plane", {}), "svk": ("disc-plane", {"law": "svk", "int
 WATCHED = ["t", "normal_force", "friction_force", "kinetic", "elastic", "vx", "vy", "min_jacobian", "min_stretch", "min_ellipticity"]
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("name", MARCHES)
 def test_marches_are_those_of_the_scripts(tmp_path, name):
     """The same history with kernels and without, up to round-off, with friction among test_kernels_contact.py's; the summary says which served."""

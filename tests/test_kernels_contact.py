@@ -16,6 +16,7 @@ CASES = {"plane": (DISC, {}), "plane-steady": (DISC, STEADY), "plane-jumping": (
          "space-jumping": (BALL, JUMPING), "many": (FINER, STEADY)}
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("case", CASES)
 def test_tractions_and_solutions_are_those_of_the_scripts(case):
     """Under all laws, anywhere in the step and with springs: tractions and their derivatives to round-off, solutions as far as the scripts take them, and each
@@ -33,6 +34,7 @@ COARSE = dict(fields=0, accuracy=0.2, tolerance=1e-13)   # what steps leave unso
 RUNS = {"disc-oblique": STEADY, "disc-rolling": STEADY | dict(end_time=0.02), "ball-oblique": STEADY, "two-discs": {}}
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", RUNS)
 def test_histories_are_those_of_the_scripts(tmp_path, name):
     """Where the coefficient of friction does not change with speed, whole runs agree to 1e-9 of the largest value, and energy is kept."""

@@ -154,6 +154,7 @@ def content(folder: Path) -> dict[str, bytes]:
             if path.is_file() and path.relative_to(folder).parts[0] != "unfinished" and not path.name.startswith("checkpoint")}
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("route, number, whom, point, before", kills())
 def test_kill(shelf, tmp_path, route, number, whom, point, before):
     """After the signal every process of the run is gone within seconds; a folder that looks finished is; the earlier result is whole,
@@ -220,6 +221,7 @@ def test_the_way_out_is_not_interrupted():
 DELAYS = [0.6 * k / 60 for k in range(60)]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("delay", [pytest.param(delay, marks=[] if k % 8 == 4 else [pytest.mark.robustness]) for k, delay in enumerate(DELAYS)])
 def test_sigterm_at_the_start(tmp_path, delay):
     """SIGTERM is obeyed while modules load and FreeFem++ starts as well: exit code 143 (of the shell), nothing said, nothing left."""

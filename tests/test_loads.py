@@ -191,6 +191,7 @@ def test_more_pressure_makes_a_contact_shorter(tmp_path):
     assert times[0] > 1.2 * times[1] and times[1] > 1.2 * times[2]
 
 
+@pytest.mark.robustness
 def test_half_a_run_with_a_gas_and_the_rest_are_the_whole(tmp_path):
     """Killed twice, a run with a gas, dead and follower loads goes on as if nothing had happened."""
     flags = prepared(tmp_path / "scene", PUSHED | {"end_time": 8e-3})

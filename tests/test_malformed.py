@@ -114,6 +114,7 @@ def test_value_in_a_scene(capsys, name, value):
         in_a_scene(capsys, f"scene.toml: {name}: ", f"{name} = {value}\n")
 
 
+@pytest.mark.few(10)
 @pytest.mark.parametrize("name, value", [value if k < len(NO_NUMBERS) or k % 3 == 0 else pytest.param(*value, marks=pytest.mark.robustness)
                                          for k, value in enumerate(VALUES)])
 def test_value_of_a_flag(name, value):
@@ -125,6 +126,7 @@ def test_value_of_a_flag(name, value):
         assert said == re.sub(r"; did you mean [^?]*\?", "", str(error.value)) and said.endswith(f"(accepted: {parameters.table()[name].accepted})")
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("name", NAMES)
 def test_name(capsys, name):
     """A parameter that there is not, over all three routes."""
@@ -134,6 +136,7 @@ def test_name(capsys, name):
     in_a_scene(capsys, f"scene.toml: {name}: no such parameter", f"{toml(name)} = 8\n")
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("words", SENSELESS)
 def test_values_that_do_not_go_together(capsys, words):
     """What contradicts itself, or asks for more than can be, over all three routes; the folders made for it are gone again."""
@@ -143,6 +146,7 @@ def test_values_that_do_not_go_together(capsys, words):
     in_a_scene(capsys, words, "".join(f"{name} = {toml(value)}\n" for name, value in given.items()))
 
 
+@pytest.mark.robustness
 def test_more_snapshots_than_memory(capsys):
     """Snapshots that do not fit into the memory are refused with the number that does."""
     bytes_there = next(int(line.split()[1]) * 1024 for line in Path("/proc/meminfo").read_text().splitlines() if line.startswith("MemAvailable"))
@@ -174,6 +178,7 @@ ENTRIES = ("title", "dimension", "young", "script", "body", "obstacle", "contact
 VALUES_TOO_LONG = ['"' + "8" * 5000 + '"', "[" + "88, " * 2000 + "]", "{a = '" + "8" * 5000 + "'}", "{" + "8" * 5000 + " = 1}", "[" * 90 + "8" * 400 + "]" * 90]
 
 
+@pytest.mark.few(8)
 @pytest.mark.parametrize("entry", ENTRIES)
 def test_a_message_repeats_two_hundred_characters_of_a_value(capsys, entry):
     """Whatever is in the place of an entry of a scene of bodies, the line that refuses it is short, by file and by --set."""
@@ -214,6 +219,7 @@ def test_path_of_a_scene(capsys, kind):
     by_python(capsys, re.escape(path), "sweep", path, "--out", "a/out")
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("kind", [*INPUTS, "file", "empty"])
 def test_path_of_a_mesh(capsys, kind):
     """A mesh that cannot be a file, or is none."""
@@ -222,6 +228,7 @@ def test_path_of_a_mesh(capsys, kind):
     directly("mesh: the file 'nowhere' cannot be read" if kind == "nowhere" else "mesh: ", "-mesh", path, "-out", "a/out")
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("kind", [*INPUTS[:-1], "file", "root", "proc"])
 def test_path_of_results(capsys, kind):
     """A folder that cannot be made, or is not one: exit code 14. An empty folder can be used, a dangling link cannot."""
@@ -233,6 +240,7 @@ def test_path_of_results(capsys, kind):
     directly("out: ", "-accuracy", "0.4", "-out", path, code=14)
 
 
+@pytest.mark.robustness
 def test_path_of_a_checkpoint():
     """A checkpoint that is not there, or is none: exit code 14, and the folders made for it are gone again."""
     for kind in ("pipe", "folder", "file", "nowhere", "loop", "device"):
@@ -250,6 +258,7 @@ FLAGS = {   # what FreeFem++ gets, what the line names
     ("-speed", "8", "-\x07", "8"): "no such"}
 
 
+@pytest.mark.few(6)
 @pytest.mark.parametrize("flags", FLAGS)
 def test_flags(flags):
     """Words that belong to no parameter, values that are missing, empty or given twice."""
@@ -291,6 +300,7 @@ def test_sweep_file(capsys, name):
 
 # ---- the same in processes of their own
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("arguments, words, code", [
     (("run", "disc-normal", "--set", "speed=8x"), r"speed: '8x' is not a number \(accepted: 0 to 1e\+09\)", 10), (("run", "disc-normal", "--set", b"speed=\xff"), "speed: ", 10),
     (("run", b"\xff"), "no such scene", 10), (("run", "disc-normal", "--out", "/"), "/ cannot be the folder", 14), (("run", "pipe"), "pipe: is no file", 10),

@@ -36,6 +36,7 @@ def test_settings_cover_what_is_compared(name):
     assert by_size["mesh_size"] < min(point["mesh_size"] for point in every if "mesh_size" in point)
 
 
+@pytest.mark.robustness
 def test_bench_on_coarse_runs(tmp_path, monkeypatch, capsys):
     """A row a setting with its time and errors, which fall with refinement; the page, the figure and the CSV are there."""
     monkeypatch.setattr(bench, "settings", lambda *_: {"adaptive, P2": [{"accuracy": 0.05}, {"accuracy": 0.005}], "bdf2": [{"accuracy": 0.05, "integrator": "bdf2"}]})
@@ -50,6 +51,7 @@ def test_bench_on_coarse_runs(tmp_path, monkeypatch, capsys):
     assert text.strip() in capsys.readouterr().out
 
 
+@pytest.mark.robustness
 def test_bench_of_the_ball(tmp_path, monkeypatch):
     """The ball in three dimensions against the body of revolution: small errors, and the same settings asked of the other program as of ours."""
     asked = []
@@ -93,6 +95,7 @@ def answers(folder, name="disc-normal", **settings) -> np.ndarray:
     return np.array([end["impulse"], end["rebound_vy"]])
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("instead", [{"symmetry": "full"}, *({"without": word} for word in ("flight", "friction", "body-force", "frozen-factorisation",
                                                                                            "contact-culling"))], ids=str)
 def test_what_is_saved_changes_no_answer(tmp_path_factory, instead):
@@ -127,6 +130,7 @@ def test_what_is_left_out_is_not_called_skipped(tmp_path, without, said):
 EFFORTS = {"disc-normal": 9, "disc-oblique": 10, "two-discs": 8}   # iterations a step; 13, 14 and 9 with matrices renewed later
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("name", EFFORTS)
 @pytest.mark.parametrize("without", ["none", "kernels"])
 def test_a_step_takes_few_iterations(tmp_path, name, without):

@@ -38,6 +38,7 @@ def said(found: run.RunResult, name: str) -> list[str]:
     return [one for one in found.summary["warnings"] if one.startswith(name + ": ")]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("change", [{}, {"velocity": [0, -0.08]}, {"shape": "disc", "radius": 0.05, "position": [0, 0.0501]}], ids=str)
 def test_the_peak_of_a_face_that_strikes_flat_is_named(tmp_path, change):
     """On a stiff penalty its points strike at once: the first steps have a force of the penalty's own, beside rho c v on the face, of plane waves, which the
@@ -70,6 +71,7 @@ def test_what_turns_strikes_by_its_spin(tmp_path):
     assert 0.15 * 50 < one.closing < 0.17 * 50 and one.time == pytest.approx(0.0051, abs=3e-4)
 
 
+@pytest.mark.robustness
 def test_two_discs_that_meet_head_on_part_so(tmp_path):
     """Soft rubber on steel: single points touch last, somewhere, and do not turn the angle of reflection."""
     rubber = {"name": "rubber", "shape": "disc", "radius": 0.05, "young": 1e6, "nu": 0.49, "position": [0, 0.101], "velocity": [0, -3]}

@@ -47,6 +47,7 @@ def preloaded(tmp_path_factory):
     return library
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", RUNS)
 def test_unwritten_memory_changes_nothing(tmp_path, preloaded, name):
     """Of a coarse run, on the block of the first half of the contact, every digit of the record is the same, whatever unwritten memory holds."""

@@ -133,6 +133,7 @@ def test_own_mesh_is_sound(own):
     assert m.points[:, 1].min() == 0 and np.hypot(*m.points.T).min() == 0
 
 
+@pytest.mark.few(3)
 def test_own_mesh_grows_from_the_contact_everywhere(own):
     """No edge of the scripts' own mesh, on circle, axis or inside, is longer than twice the size that belongs to its middle:
     contact_mesh_size on the arc that can touch, 0.3 per length of distance more beyond, mesh_size at most. Nor are there more than

@@ -95,6 +95,7 @@ def test_stopped_drawing_leaves_no_film(fake, ffmpeg, tmp_path, monkeypatch, cap
     assert (tmp_path / "out/summary.json").exists() and not list((tmp_path / "out").glob(f"*{form}*"))
 
 
+@pytest.mark.robustness
 def test_mp4_wherever_there_is_ffmpeg(fake, ffmpeg, tmp_path):
     """ffmpeg gets every frame, all of one size, even as H.264 wants it; --format gif does without it."""
     ffmpeg(FFMPEG)

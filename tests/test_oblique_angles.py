@@ -66,6 +66,7 @@ def test_what_theory_says_agrees():
     assert 5 < sticks < 30, "a ball that sticks is granted a share of the contact's radius over its own"
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("body, kind, angle, share, verdict", [
     ("disc", "stiff", SLIDES, 0.94, "DEVIATES"), ("disc", "stiff", SLIDES, 0.96, "agrees"), ("disc", "stiff", STICKS, 1.06, "DEVIATES"),
     ("ball", "stiff", STICKS, 1.06, "DEVIATES"), ("ball", "slow", SLIDES, 1.06, "DEVIATES"), ("ball", "slow", STICKS, 1.04, "agrees"), ("ball", "slow", STICKS, 1.1, "partly"),
@@ -103,6 +104,7 @@ def test_bad_input(tmp_path, capsys, words, said):
     assert error.count("\n") == 1 and said in error and not (tmp_path / "out").exists()
 
 
+@pytest.mark.robustness
 def test_real_impacts_of_a_stiff_disc(tmp_path, capsys):
     """It slides at 20 degrees and rolls at 60, as a rigid one; table, figure and page are there; what is finished is not run again."""
     call = ["oblique-angles", "--bodies", "disc", "--kinds", "stiff", "--angles", "60,20", "--friction", "0.2", "--out", str(tmp_path / "out"), "--page", str(tmp_path / "page.md")]

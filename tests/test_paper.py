@@ -282,6 +282,7 @@ OTHERS = {"friction_laws", "adopted", "monotone", "disc_time", "stepped", "refle
 EXACT = {"energy", "total_energy", "conserves", "accelerations"}                            # kept by every step, on any mesh
 
 
+@pytest.mark.few(8)
 @pytest.mark.parametrize("name", sorted(set(FIND) - OTHERS))
 def test_lost_ellipticity_is_judged_by_one_rule(tmp_path, name):
     """Where every SVK run has lost ellipticity, no change of the results makes a statement on it agree, unless it is of exact conservation."""
@@ -453,6 +454,7 @@ def test_a_missing_case_stops_it(tmp_path, capsys):
     assert "run: make disc-normal ball-comparison disc-oblique disc-rolling disc-block ball ball-axisymmetric calibrate calibrate-ball calibrate-ball-3d calibrate-oblique conservation" in err and "stick-slip friction-laws" in err
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("change", ["nothing", "code", "scene", "picture", "failed", "broken"])
 def test_only_results_of_the_present_scenes_and_code_count(fake, tmp_path, monkeypatch, change):
     """A case of other code, of another scene, without its picture, that ended by its time limit, or unreadable, is as good as missing."""

@@ -37,6 +37,7 @@ def at_the_same_times(result: RunResult) -> list[tuple[pd.DataFrame, pd.Series]]
     return [(points, history.iloc[(history.t - t).abs().argmin()]) for t, points in pd.DataFrame(contact.read(result.folder)).groupby("t")]
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("which", SCENES)
 def test_largest_pressure(ran, which):
     """max_pressure is the largest projected one of contact.csv at its instant, of every body; the summary's is the largest of the history, at that time; it

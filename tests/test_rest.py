@@ -96,6 +96,7 @@ def test_friction_stops_a_disc(tmp_path):
     assert np.interp(0.1, found.history["t"], found.history["x"]) == pytest.approx(0.5**2 / (2 * 0.5 * GRAVITY), rel=0.05)
 
 
+@pytest.mark.robustness
 def test_what_rolls_on_ends_the_run(tmp_path):
     """A soft disc that rolls loses a few percent of its energy a second: the run ends as it rolls, its weight on the plane, and says so; its outline is fine all around.
     With an end_time it goes on."""
@@ -213,6 +214,7 @@ def test_two_bodies_rest(tmp_path):
     assert found.history["y_2"][-1] - found.history["y_1"][-1] == pytest.approx(0.1, rel=0.02)
 
 
+@pytest.mark.robustness
 def test_nothing_rests_while_another_body_falls(tmp_path):
     """A slab lies still long before the disc above it lands: the run ends when both do, with the weight of each on what bears it."""
     slab = {"name": "slab", "shape": "rectangle", "width": 0.4, "height": 0.1, "position": [0, 0.05], "loss": 2.0, "mesh_size": 0.05, "contact_mesh_size": 0.05}

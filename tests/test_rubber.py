@@ -1,5 +1,6 @@
 """make rubber: the verdict can fail, and two runs make a row each and a figure."""
 
+import pytest
 import pandas as pd
 
 from verification.measurements import rubber
@@ -20,6 +21,7 @@ def test_the_verdict_can_fail():
     assert rubber.agrees([{"differ": 4e-3}]) and not rubber.agrees([{"differ": 6e-3}])
 
 
+@pytest.mark.robustness
 def test_runs_become_rows_and_a_figure(tmp_path, monkeypatch):
     """Both bodies, with the mean volume and plain where they differ; the report ends with the verdict."""
     monkeypatch.setattr(rubber, "BASE", rubber.BASE | {"accuracy": 0.1})

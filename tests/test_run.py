@@ -83,6 +83,7 @@ def test_run_without_python_is_not_reused(fake, tmp_path):
     assert not go(tmp_path / "out").reused
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("mode, code, words", [
     ("step", 11, "^step: no convergence at t = 1.2e-3 s"),
     ("material", 12, "^material: det F = -0.1"),

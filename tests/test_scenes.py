@@ -303,6 +303,7 @@ def inputs(tmp_path_factory):
     return folder
 
 
+@pytest.mark.few(10)
 @pytest.mark.parametrize("file, old, new, said", [
     ("scene.dat", "ffimpact-bodies 1", "ffimpact-bodies 2", "does not begin with 'ffimpact-bodies 1'"),
     ("scene.dat", "neohookean 7000000.0", "neohookean seven", "has a word where a number belongs"),
@@ -358,6 +359,7 @@ def _other_triangles(text: str, what: str, new) -> str:
     return "\n".join(lines) + "\n"
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("script, flags, said", [
     ("bodies", ("-accuracy", "0.4"), "bodies: -bodies FILE is missing"),
     ("bodies", ("-radius", "1"), "radius: bodies takes no such parameter (accepted: in disc-plane|disc-block|ball-plane|ball-axisymmetric)"),

@@ -96,6 +96,7 @@ def balanced(found, energy: float = 1e-9) -> None:
     assert not any(one.startswith(("overlap", "energy", "momentum", "angular")) for one in s["warnings"])
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("friction", [0, 0.4])
 def test_a_hairpin_closes_and_opens_again(tmp_path, friction):
     """Its free arm closes the slot of 10 mm at 6 m/s, no further than a hundredth of it, and comes back; energy with the work of friction is kept."""
@@ -108,6 +109,7 @@ def test_a_hairpin_closes_and_opens_again(tmp_path, friction):
     assert abs(slot[closed]) < 2e-4 and slot[0] > 0.0099 and slot[closed:].max() > 0.003 and found.summary["max_penetration"] < 2e-4
 
 
+@pytest.mark.robustness
 def test_with_and_without_kernels_it_is_the_same(tmp_path):
     """The scripts find what the compiled kernel does, until round-off grows."""
     one, other = (ran(tmp_path, SCENE | {"body": [PIN], "end_time": 1.5e-3, "without": without}, without).history for without in ("none", "kernels"))
@@ -133,6 +135,7 @@ def test_a_ring_hits_a_plane_so_hard_that_it_closes(tmp_path):
     assert abs(hole.min()) < 1e-3 and hole[hole.argmin():].max() > 0.003
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("friction", [0, 0.4])
 def test_a_free_hairpin_keeps_all_momenta(tmp_path, friction):
     """A disc closes the slot of a hairpin in empty space, off its centre: what the hairpin does to itself moves and turns nothing as a whole."""
@@ -157,6 +160,7 @@ def test_a_groove_of_revolution_closes(tmp_path):
     assert any(one.startswith("overlap") for one in free.summary["warnings"])
 
 
+@pytest.mark.robustness
 def test_a_hairpin_in_three_dimensions(tmp_path):
     """With linear elements it stays apart where without self_contact = "on" it passes through itself."""
     corners = [[0, 0], [0.1, 0], [0.1, 0.01], [0.01, 0.01], [0.01, 0.02], [0.1, 0.02], [0.1, 0.03], [0, 0.03]]
@@ -203,6 +207,7 @@ SHAPES = {"polygon": lambda folder: BOX, "file": box_file,
           "file with a group": lambda folder: box_file(folder, "all")}
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("shape", SHAPES)
 def test_walls_of_a_hole_stop_each_other(tmp_path, shape):
     """A peg closes the slot of 4 mm in a box. With self_contact = "auto" its walls stop each other
@@ -240,6 +245,7 @@ def test_walls_of_a_ring_are_watched(tmp_path):
     assert 0.044 < float(sentence.split("t = ")[1].split()[0]) <= 0.0465
 
 
+@pytest.mark.robustness
 def test_what_a_file_excludes_is_watched(tmp_path):
     """The curve `contact` of a file has the outer outline alone: the walls of its slot pass through
     each other whatever self_contact says, and the warning says so; a run that fails after that says
@@ -256,6 +262,7 @@ def test_what_a_file_excludes_is_watched(tmp_path):
     assert failed.value.code == 11
 
 
+@pytest.mark.robustness
 def test_a_body_in_a_hole_that_may_not_touch(tmp_path):
     """A disc that first comes to such a wall is refused. Where the box has touched something
     before, the warning names both as the disc goes through."""
@@ -275,6 +282,7 @@ def test_a_body_in_a_hole_that_may_not_touch(tmp_path):
     assert "box and disc pass through each other" in sentence
 
 
+@pytest.mark.robustness
 def test_which_inner_outlines_may_touch(tmp_path):
     """Those of a body that touches itself, or with a body or an obstacle inside; others need no
     contact points. What a file excludes stays out."""
@@ -310,6 +318,7 @@ def test_a_disc_stays_in_the_hole_of_a_file(tmp_path):
     assert found.summary["impulse"] > 0 and found.summary["max_penetration"] < 1e-4
 
 
+@pytest.mark.robustness
 def test_walls_of_a_cavity(tmp_path):
     """Likewise in three dimensions: on, the walls of a cavity of a file stop each other; by itself
     none is in contact, and the warning says that they pass through each other."""

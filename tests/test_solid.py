@@ -44,6 +44,7 @@ def area(skin: vtu.Skin, points: np.ndarray) -> float:
     return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("symmetry", ["quarter", "half", "full"])
 def test_surface_of_the_whole_and_of_the_cut_ball(ball, symmetry):
     """Whatever part was computed: 4 pi R^2 of the whole, nothing inside; of the cut one 3/4 of that and two half discs, or half and a disc. To 1 %."""

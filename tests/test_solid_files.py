@@ -55,6 +55,7 @@ def refused(folder, words: str) -> None:
     assert not (folder / "out").exists()
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("case", MESHES)
 def test_bad_meshes(tmp_path, case):
     change, words = MESHES[case]
@@ -71,6 +72,7 @@ def test_the_last_line_needs_no_end(tmp_path):
     refused(tmp_path, "mesh: region 0, body0, has its centre at y = ")
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("case", SCENES)
 def test_bad_scenes(tmp_path, case):
     (old, new), words = SCENES[case]

@@ -33,6 +33,7 @@ def test_rows_are_parameters_outcome_and_summary(fake, tmp_path):
     assert len(used) == 4 and all(scene["mesh_size"] == 0.02 for scene in used)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("sizes", [{"mesh_size": 0.02, "contact_mesh_size": 0.01}, {"accuracy": 0.04}], ids=["sizes", "accuracy"])
 @pytest.mark.parametrize("mode, again, code, words", [
     ("ok", 0, 0, ""), ("step", 0, 11, "step: no convergence"), ("crash", 4, 1, "killed by SIGABRT"),

@@ -128,6 +128,7 @@ def test_what_is_released_flies_freely(tmp_path):
 
 # ---- contact
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("elements, close", [(20, 0.03), (40, 0.015)])
 def test_a_clamped_rod_strikes_a_wall(tmp_path, elements, close):
     """V5: L = E = rho = 1, compressed evenly by its support and let go at one end, which the wall is a
@@ -153,6 +154,7 @@ def test_a_clamped_rod_strikes_a_wall(tmp_path, elements, close):
     assert back == pytest.approx(0.5, abs=2 * close)
 
 
+@pytest.mark.robustness
 def test_stacked_cantilevers_rub(tmp_path):
     """The scene of code_aster's V5.02.140: two beams of 1 x 0.1 m, E = 200 GPa, nu = 0, 7800 kg/m3, on
     each other with friction 0.2, clamped at x = 0, a force on the upper one from the start on (10 kN/m;
@@ -233,6 +235,7 @@ def test_a_support_across_a_flat_side_lets_it_slide(tmp_path):
     assert runs[0].summary["energy_final"] == pytest.approx(runs[0].summary["energy_initial"], rel=1e-9)
 
 
+@pytest.mark.robustness
 def test_the_kernels_hold_what_the_scripts_hold(tmp_path):
     """Compiled and by the scripts' own lines: the same run to round-off."""
     runs = [bodies(tmp_path / word, RUBBED | {"end_time": 2e-3, "without": word}) for word in ("none", "kernels")]
@@ -251,6 +254,7 @@ def cantilever(symmetry: str, **support) -> dict:
     return SOFT | {"dimension": "3d", "symmetry": symmetry, "accuracy": 0.3, "end_time": 3e-3, "body": [beam, ball]}
 
 
+@pytest.mark.robustness
 def test_symmetric_supports_keep_the_symmetry(tmp_path):
     """Half of a ball on a clamped beam gives the forces, moments and works of all of it, to what meshes
     as coarse as these differ by."""
@@ -265,6 +269,7 @@ def test_symmetric_supports_keep_the_symmetry(tmp_path):
 
 # ---- restart
 
+@pytest.mark.robustness
 def test_half_a_run_with_supports_and_the_rest_are_the_whole(tmp_path):
     """Killed before and after the release, a run goes on as if nothing had happened."""
     scene = RUBBED | {"body": [RUBBED["body"][0] | {"support": [RUBBED["body"][0]["support"][0] | {"release": 8e-3}]}, RUBBED["body"][1]]}

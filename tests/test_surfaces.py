@@ -81,6 +81,7 @@ def test_a_slab_is_a_plane(tmp_path):
     assert list((tmp_path / "scene" / "body-files").glob("*.stl"))
 
 
+@pytest.mark.robustness
 def test_a_ball_on_an_edge_keeps_energy(tmp_path):
     """Points go from the face over the edge to the side."""
     slab(tmp_path / "slab.stl", size=(0.02, 0.05, 0.02))
@@ -88,6 +89,7 @@ def test_a_ball_on_an_edge_keeps_energy(tmp_path):
     assert found["contact_intervals"] > 0 and found["energy_drift"] < 1e-9 and found["momentum_drift"] < 1e-7
 
 
+@pytest.mark.robustness
 def test_a_sphere_converges_with_its_triangles(tmp_path):
     """Gaps and impacts are those of kind = "sphere", by the square of the triangles' size."""
     exact = run(tmp_path, 'kind = "sphere"\ncentre = [0, -0.1, 0]\nradius = 0.1', name="exact")
@@ -100,6 +102,7 @@ def test_a_sphere_converges_with_its_triangles(tmp_path):
     assert off[1] < 0.02 and off[1] < max(off[0], 0.005)
 
 
+@pytest.mark.robustness
 def test_position_and_turn(tmp_path):
     """A box on its side is the same plane."""
     slab(tmp_path / "slab.stl", size=(0.2, 0.05, 0.2))

@@ -152,6 +152,7 @@ def test_table_and_figure(fake, tmp_path, capsys):
     assert all(results.read_scene(folder)["mesh_size"] == 0.02 for folder in (out / "runs").iterdir())
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("mode, code, returned", [("material", 12, 0), ("step", 11, 0), ("crash", 1, 1)])
 def test_failed_points_are_kept_with_their_reason(fake, tmp_path, capsys, mode, code, returned):
     """They do not stop the rest; what would fail again is not run again, what was killed is, and that is said on stderr."""
@@ -202,6 +203,7 @@ def test_a_full_disk_is_a_row(fake, tmp_path, monkeypatch):
     assert (rows.exit == 14).all() and rows.message.str.contains("No space left on device").all()
 
 
+@pytest.mark.robustness
 def test_another_sweep_does_not_come_in_between(fake, tmp_path, monkeypatch, capsys):
     """While a sweep runs, a driver with another sweep file on the same folder is refused; afterwards it is not."""
     path, out, other = write(tmp_path, SIX), tmp_path / "out", write(tmp_path / "other", SIX + "[[zip]]\ndt = [1e-5]\n")
@@ -270,6 +272,7 @@ def test_killed_freefem_costs_its_point_only(fake, tmp_path, monkeypatch):
     assert (table(out).exit == 0).all()
 
 
+@pytest.mark.robustness
 def test_two_drivers_share_a_folder(fake, tmp_path, monkeypatch):
     """Both end well with the same table, and no point is run twice."""
     path, out = write(tmp_path, DRAWN), tmp_path / "out"
@@ -281,6 +284,8 @@ def test_two_drivers_share_a_folder(fake, tmp_path, monkeypatch):
     assert fake.starts() == 6 and (table(out).exit == 0).all() and not orphans(out)
 
 
+@pytest.mark.robustness
+@pytest.mark.few(1)
 @pytest.mark.parametrize("dies", [False, True])
 def test_driver_waits_for_one_that_just_begins(fake, tmp_path, dies):
     """A driver that finds another between locking the folder and writing sweep.toml waits, then shares the folder; it has
@@ -366,6 +371,7 @@ def test_a_trend_is_the_course_of_the_curve(values, error, course):
     assert turned.course == (opposite | {other: one for one, other in opposite.items()}).get(course, course)
 
 
+@pytest.mark.robustness
 def test_table_and_figure_have_the_same_error_bars(fake, tmp_path, monkeypatch):
     """The error bars that are printed in the table are those that the figure draws, curve by curve."""
     text = DRAWN.replace("[figure]", "[refine]\naccuracy = 1e-3\n[figure]").replace("[product]", "accuracy = 5e-3\n[product]")

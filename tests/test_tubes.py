@@ -43,6 +43,7 @@ def test_a_tube_on_its_end_is_a_bar(tmp_path):
     assert found["energy_drift"] < 1e-8 and found["momentum_drift"] < 1e-10
 
 
+@pytest.mark.robustness
 def test_a_polygon_to_the_right_of_the_axis_is_the_same_tube(tmp_path):
     """Its vertices in either direction."""
     corners = [[0.02, 0], [0.03, 0], [0.03, 0.1], [0.02, 0.1]]

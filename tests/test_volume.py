@@ -16,6 +16,7 @@ SCENES = {"disc": ("disc-plane", RUBBED), "svk": ("disc-plane", {"law": "svk", "
           "space": ("ball-plane", RUBBED | {"end_time": 5e-4}), "two bodies": ("disc-block", RUBBED | {"end_time": 1e-3})}
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("name", SCENES)
 def test_an_impact_keeps_energy_and_momenta(tmp_path, name):
     """At nu = 0.4999 the balances close to 1e-9, with kernels as without; the summary says that volume is projected."""
@@ -28,6 +29,7 @@ def test_an_impact_keeps_energy_and_momenta(tmp_path, name):
         assert run.history[column] == pytest.approx(scripted.history[column], rel=0, abs=1e-8 * max(abs(run.history[column]))), column
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("script, size, tens", [("spinning", 0.03, 3), ("spinning-3d", 0.04, 4)])
 def test_a_spinning_body_keeps_energy_and_momenta(script, size, tens):
     """A free body that spins and vibrates a hundred turns at nu = 0.4999; a ball in 40 steps a turn (of 30 some fail, which a run would halve)."""
@@ -68,6 +70,7 @@ def test_linear_elements_are_refused(tmp_path):
 HELD = {"law": "incompressible", "nu": 0.5, "accuracy": 0.1, "speed": 4}
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("name", SCENES)
 def test_incompressible_bodies_keep_their_volume(tmp_path, name):
     """J = 1: the mean volume of every element stays to 1e-6, energy and momenta to 1e-9, with kernels as without."""
@@ -128,6 +131,7 @@ def test_laws_with_j_1(tmp_path, law, own, script):
         assert one["impulse"] == pytest.approx(named["impulse"], rel=1e-5) and one["contact_time"] == pytest.approx(named["contact_time"], rel=1e-4)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("flags", [{"nu": 0.4}, {"degree": 1}, {"volume": "plain"}, {"integrator": "newmark"}, {"integrator": "central-difference"}, {"law": "svk"}])
 def test_what_cannot_be_incompressible_is_refused(tmp_path, flags):
     """One line that says what is accepted: nu = 0.5, a law of J, quadratic elements whose mean volume is held, the energy-momentum step."""

@@ -66,6 +66,7 @@ def found(outcome: measure.Outcome, name: str, kind: str = "warnings") -> list[s
     return [sentence for sentence in outcome.summary[kind] if sentence.startswith(name + ": ")]
 
 
+@pytest.mark.few(10)
 @pytest.mark.parametrize("name, bad, good, number, limits", CASES)
 def test_each_warning_appears_where_it_should_and_only_there(disc, name, bad, good, number, limits):
     """One sentence that says what, how much, and what to do; none of that name where the condition does not hold. `message` is for failures."""
@@ -92,6 +93,7 @@ def test_what_is_always_so_of_a_number_is_a_note(disc, name, bad, good, number, 
 REAL = [(300, 1e9), (11, 3e6), (3, 1e4), (5, 5e4), (3500, 1.1e12), (1850, 2.9e11), (19300, 4.1e11), (1, 1)]
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("density, young", REAL)
 def test_real_materials_are_not_asked_about(disc, density, young):
     speed = 0.05 * (young / density)**0.5

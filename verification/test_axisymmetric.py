@@ -30,6 +30,7 @@ def test_impact_of_hertz(tmp_path):
         assert all(row.error < before.error for row, before in zip(slow, fast))
 
 
+@pytest.mark.robustness
 def test_two_balls_are_one_on_a_plane(disc, tmp_path):
     """Each at half the speed, their common tangent plane is at rest: one of them against it, with twice the penalty."""
     sizes = dict(mesh_size=3e-3, contact_mesh_size=3e-4)

@@ -30,6 +30,7 @@ def test_snapshot_has_the_stress_of_the_closed_form(measure, tmp_path, law, degr
     assert_stress(largest, tmp_path / "ball.vtu", cauchy(law, F), F)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("symmetry", ["quarter", "half", "full"])
 def test_mass_surface_and_contact_points_are_those_of_the_sphere(measure, symmetry):
     """Of all copies: mass 4/3 pi R^3 rho and surface to 2e-3 on a coarse mesh and to an eighth of that on one with half the size; points on the
@@ -41,6 +42,7 @@ def test_mass_surface_and_contact_points_are_those_of_the_sphere(measure, symmet
     assert coarse["sphere"] < 1e-14 and coarse["rows"] < 1e-3 and fine["rows"] < coarse["rows"] / 4
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("law", LAWS)
 def test_order_in_space(measure, law):
     """V1: the L2 error of a manufactured motion with sines falls with the cube of the element size on curved tetrahedra, the mass with its fourth power;
@@ -64,6 +66,7 @@ def test_spinning_ball_keeps_energy_and_momenta(measure, law, turns):
     assert found["rigid"] < 1e-11
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("nu", [0, 0.3, 0.45])
 def test_ellipticity_is_the_least_of_all_directions(measure, law, nu):
@@ -96,6 +99,7 @@ def test_impact_keeps_the_energy_and_its_impulse_is_the_change_of_momentum(disc,
     assert not h["momentum_x"].any() and not h["momentum_z"].any() and not h["z"].any()
 
 
+@pytest.mark.robustness
 def test_quarter_half_and_full_are_one_run(disc):
     """On meshes that are mirror images of each other, to what the iteration leaves open."""
     quarter, *others = (disc(script="ball-plane", symmetry=symmetry, end_time=0.001, **IMPACT).history for symmetry in ("quarter", "half", "full"))
@@ -122,6 +126,7 @@ def test_impact_is_that_of_a_body_of_revolution(disc, law, speed):
     assert np.linalg.norm(forces[0] - forces[1]) < 0.04 * np.linalg.norm(forces[1])
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("regularization", ["linear", "linear-printed", "sqrt", "tanh"])
 @pytest.mark.parametrize("transition", ["jump", "smooth"])
 def test_friction_in_space_is_the_law_in_every_direction(measure, regularization, transition):

@@ -13,6 +13,7 @@ def order(coarse: float, fine: float) -> float:
     return math.log2(coarse / fine)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("degree", [2, 1])
 def test_order_in_space(law, degree):
@@ -21,6 +22,7 @@ def test_order_in_space(law, degree):
     assert order(coarse.error, fine.error) == pytest.approx(fine.order, abs=0.15) and fine.order == degree + 1
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("integrator", manufactured.ORDERS)
 def test_order_in_time(integrator, law):
@@ -30,6 +32,7 @@ def test_order_in_time(integrator, law):
     assert order(coarse.error, fine.error) == pytest.approx(fine.order, abs=0.15) and fine.order == (1 if integrator == "backward-euler" else 2)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("body", ["disc", "axisymmetric"])
 def test_order_in_space_on_the_disc(law, body):

@@ -113,6 +113,7 @@ def test_oblique_impact_without_friction_keeps_the_tangential_motion(disc):
 
 # ---- what is skipped changes nothing
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("angle, turns", [(90, 0), (60, 0), (70, -1)], ids=["normal", "oblique", "one turn"])
 def test_flight_is_skipped_without_a_trace(disc, angle, turns):
     """Dropped from 0.3 m the disc does after touch what it does when started at touch with the speed of the fall."""
@@ -139,6 +140,7 @@ def test_contact_time_is_no_multiple_of_the_step(disc):
     assert abs(times[0] - times[1]) < 0.5 * steps[0] and abs(times[1] - times[2]) < 0.5 * steps[1]
 
 
+@pytest.mark.few(2)
 # Bands for rebound, contact time and the energy that is left, about three times the error of the scheme at this step.
 @pytest.mark.parametrize("law", ["svk", "neohookean"])
 @pytest.mark.parametrize("integrator, rebound, contact, energy", [
@@ -153,6 +155,7 @@ def test_integrators_agree_at_small_steps(disc, law, integrator, rebound, contac
     assert found["impulse"] == pytest.approx(MASS * (found["rebound_vy"] + 8), rel=1e-3)
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("accuracy", [0.3, 0.2, 0.1, 0.06, 0.04])
 def test_contact_starts_at_the_touch(disc, accuracy):
     """Started at touch, where round-off decides the sign of the gap, the first instant of contact is never missed."""

@@ -37,6 +37,7 @@ def states(found: dict) -> np.ndarray:
     return np.moveaxis(np.array([[a, c], [c, b]]), 2, 0)
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("law", ["svk", "neohookean"])
 @pytest.mark.parametrize("nu", [0, 0.1, 0.25, 0.3, 0.45, 0.499])
 def test_closed_form_is_the_least_of_all_directions(measure, law, nu):
@@ -52,6 +53,7 @@ def test_closed_form_is_the_least_of_all_directions(measure, law, nu):
     assert (closed < 0).any() or law == "neohookean"
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("law", ["svk", "neohookean"])
 @pytest.mark.parametrize("nu", [0.1, 0.45])
 @pytest.mark.parametrize("body", ["", "-axisymmetric"])

@@ -23,6 +23,7 @@ def test_a_flat_face_lands_when_the_closed_form_says(march, height, gravity, vel
     assert found.history["y"][1] == pytest.approx(0.05, abs=1e-9 * height)
 
 
+@pytest.mark.robustness
 def test_a_square_strikes_with_three_corners(march):
     """A square of 0.1 m dropped at 20 degrees at 2 m/s touches again and again until it is gone: impulse, rebound and spin of a run of 0.06 s at accuracy
     0.002. The energy stays to 1e-9; what the impulses do is momentum, and their moments about the centre the spin."""

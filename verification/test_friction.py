@@ -30,6 +30,7 @@ def check_balances(result):
     assert ((h["sliding_fraction"] >= 0) & (h["sliding_fraction"] <= 1 + 1e-12)).all()
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("law, speed, transition, regularization", [
     *(("neohookean", 12, transition, regularization) for transition in ("jump", "smooth") for regularization in ("linear", "linear-printed", "sqrt", "tanh")),
     ("svk", 6, "jump", "linear"), ("svk", 6, "smooth", "tanh")])
@@ -43,6 +44,7 @@ def test_energy_and_momentum_are_accounted_for(disc, law, speed, transition, reg
     assert s["sliding_time"] + s["sticking_time"] == pytest.approx(s["contact_time"], rel=0.05)
 
 
+@pytest.mark.robustness
 def test_balances_hold_at_a_finer_setting(disc):
     """The same at a better accuracy and a smaller slip velocity."""
     check_balances(disc(**OBLIQUE | dict(mesh_size=8e-3, contact_mesh_size=2.5e-3, accuracy=3e-3, slip_velocity=0.01)))
@@ -104,6 +106,7 @@ def test_nothing_rubs_where_nothing_slides(measure, tmp_path):
         assert abs(without[name] - rubbing[name]).max() < 1e-6 * abs(without[name]).max(), name
 
 
+@pytest.mark.few(2)
 # With the jump from static to dynamic the solver's round-off decides when a point that is about to slip does so: the
 # law itself leaves open what friction does then, so only the motion is compared there.
 @pytest.mark.parametrize("regularization, static, band", [("linear", 0.5, 1e-5), ("sqrt", 0.5, 1e-5), ("linear", 0.7, 2e-2)])
@@ -138,6 +141,7 @@ def test_two_ways_are_mirror_images(disc):
 
 # ---- integrators
 
+@pytest.mark.few(1)
 # Bands for the rebound along and across the plane and the spin, for the work of friction, and for the energy balance.
 # Backward Euler loses 7 % of the energy at this step, and 9 % of the friction work with it.
 @pytest.mark.parametrize("integrator, rebound, work, balance", [

@@ -17,6 +17,7 @@ def test_bar_on_a_wall(tmp_path):
     assert sum(fine) < sum(coarse), (coarse, fine)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("exponent", [1, 1.5, 2])
 @pytest.mark.parametrize("speed", [1, 2])
 def test_rigid_body_on_the_penalty(tmp_path, exponent, speed):

@@ -71,6 +71,7 @@ def test_bad_terms_are_refused(disc, numbers, said):
         disc(law="ogden", law_parameters=numbers, accuracy=0.2)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("own", [MOONEY, OGDEN], ids=lambda given: given["law"])
 @pytest.mark.parametrize("script", SCRIPTS)
 def test_impact_keeps_the_energy(disc, script, own):

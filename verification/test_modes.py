@@ -65,6 +65,7 @@ def test_spectrum_of_a_force(tmp_path):
     assert len(impacts.read_modes(found.folder)) == 12 and (figure := impacts.vibration(table, found.history, "/m")) and len(figure.axes) == 2
 
 
+@pytest.mark.robustness
 def test_modes_of_a_body_that_turns_about_any_axis(tmp_path):
     """In axes that turn with the body: a ball that spins about x as it falls has, to the mesh, the energies in its modes of one that spins about z, and no
     more than its vibration has."""

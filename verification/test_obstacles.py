@@ -17,6 +17,7 @@ def found(measure):
     return measure("obstacles")
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("shape", SHAPES)
 def test_gap_and_normal(found, shape):
     """The gap is the closed form, also deep inside; it is continuous, and the unit normal is its gradient."""
@@ -73,6 +74,7 @@ def test_rows_of_planes_are_built_once(measure):
         assert max(planes[name + shape] for name in ("gap", "begin", "end", "place", "slip")) < 1e-14 and planes[f"across{shape}"] < 1e-14
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("friction", [0, 1])
 def test_energy_of_particles_between_moving_obstacles(measure, friction):
     """Kinetic energy, potential and friction work less the work of the obstacles stay what they were, also across corners, to round-off."""

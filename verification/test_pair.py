@@ -50,6 +50,7 @@ def kernel_is_the_scripts(found: dict) -> None:
 CASES = [(2, 0.02, 0.05, 0), (1, 0.02, 0.05, 0.7), (2, 0.1, 0.1, 2.5), (1, 0.1, 0.1, 0.4), (2, 0, 0, 0)]
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("without", ["none", "kernels"])
 @pytest.mark.parametrize("degree, depth, noise, tilt", CASES)
 def test_rows_conserve(measure, degree, depth, noise, tilt, without):
@@ -66,6 +67,7 @@ def test_rows_conserve(measure, degree, depth, noise, tilt, without):
     assert not found["built"] or found["springs"] > 0 or noise == 0
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("degree, depth, noise, tilt", CASES)
 def test_gaps_are_those_of_an_exhaustive_search(measure, tmp_path_factory, degree, depth, noise, tilt):
     """Distance to every edge of the other body by the roots of its cubic; inside by the winding number."""
@@ -86,6 +88,7 @@ def test_gaps_are_those_of_an_exhaustive_search(measure, tmp_path_factory, degre
     assert near > 10
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("printed", [0, 1])
 @pytest.mark.parametrize("degree, depth, noise, tilt", CASES)
 def test_pairwise_rows_conserve(measure, degree, depth, noise, tilt, printed):

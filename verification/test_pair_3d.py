@@ -22,6 +22,7 @@ def march(tmp_path):
 
 # ---- rows
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("without", ["none", pytest.param("kernels", marks=pytest.mark.robustness)])   # whose rows are held against these
 @pytest.mark.parametrize("case", CASES)
 def test_rows_conserve(measure, case, without):
@@ -61,6 +62,7 @@ def closest(x: np.ndarray, nodes: np.ndarray, grid: int = 24, rounds: int = 12) 
     return best
 
 
+@pytest.mark.robustness
 def test_gaps_are_those_of_an_exhaustive_search(measure, tmp_path_factory):
     """Distance to every curved face of the other body; who is inside has a penetration."""
     path = tmp_path_factory.mktemp("pair") / "configuration"
@@ -103,6 +105,7 @@ def oblique(friction: float) -> Scene:
                  pairs=[(0, 1, 1e9, friction, 0.7 * friction)])
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("friction", [pytest.param(0.0, marks=pytest.mark.robustness), 0.4])
 def test_two_bodies_conserve(march, friction):
     """Linear momentum to 1e-13, angular momentum about all axes to 1e-9, energy with the work of friction to 1e-9 (1e-8), from the flight to the last row."""

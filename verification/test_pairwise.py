@@ -18,6 +18,7 @@ def drift(values: np.ndarray, scale: float) -> float:
     return abs(values - values[0]).max() / scale
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("given", [{}, {"law": "svk"}, {"angle": 60}, {"angle": 60, "law": "svk", "spin": 20}, {"degree": 1}, {"exponent": 2}], ids=str)
 def test_energy_and_momenta_are_conserved(block, given):
     """Total energy, both momenta and the angular momentum, all over an impact that does touch."""
@@ -29,6 +30,7 @@ def test_energy_and_momenta_are_conserved(block, given):
         assert drift(run.history[name], scale) < CONSERVED, name
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("law", ["neohookean", "svk"])
 def test_it_agrees_with_closest_points(block, law):
     """With a range of an element and of half of one: both rebound velocities to 1 % of the speed, the impulse to 1 %, the contact time to 4 %."""
@@ -61,6 +63,7 @@ def test_the_printed_form_keeps_energy_and_chatters(block):
     assert found.summary["contact_intervals"] > 2 and block().summary["contact_intervals"] == 1
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("given, words", [
     ({"friction_static": 0.3}, "pairing: pairwise has no slip, and so no friction (accepted: friction_static 0, or closest-point)"),
     ({"pairing": "pairwise-printed", "exponent": 2}, "pairing: pairwise-printed has a law of its own"),

@@ -19,6 +19,7 @@ TANGENTS = [*((body, {"law": law, "degree": degree, "integrator": integrator} | 
             ("disc", MOONEY | {"integrator": "newmark", "nu": 0.4999})]
 
 
+@pytest.mark.few(7)
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("integrator, exponent", [
     ("energy-momentum", 1), ("energy-momentum", 1.5), ("midpoint", 2), ("newmark", 1), ("newmark", 1.5),
@@ -37,6 +38,7 @@ def kernels_are_the_scripts(found: dict, factor: bool = True) -> None:
     assert not found["built"] or max(found[name] for name in names) < 1e-12 and (found["refused"] == 0 or not factor)
 
 
+@pytest.mark.few(12)
 @pytest.mark.parametrize("body, flags", TANGENTS, ids=str)
 def test_tangent_is_the_derivative_of_the_residual(measure, body, flags):
     """Moduli and mass give the derivative of the residual at large strain, on straight and curved elements in the plane, of revolution, hoops included, and in space, under
@@ -71,6 +73,7 @@ def test_contact_stiffness_is_the_derivative_of_the_traction(measure, exponent):
     assert abs(found["work"]) < 1e-13 and found["alone"] < 1e-10
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("integrator, transition, regularization", [
     ("energy-momentum", "jump", "linear"), ("newmark", "jump", "linear-printed"), ("midpoint", "jump", "sqrt"), ("energy-momentum", "jump", "tanh"),
     ("midpoint", "smooth", "linear"), ("energy-momentum", "smooth", "linear-printed"), ("newmark", "smooth", "sqrt"), ("midpoint", "smooth", "tanh")])
@@ -83,6 +86,7 @@ def test_friction_force_is_the_one_of_the_equations(measure, integrator, transit
     assert found["friction"] < 1e-10 and found["contact"] < 1e-10 and found["total"] < 1e-10
 
 
+@pytest.mark.few(6)
 @pytest.mark.parametrize("regularization", REGULARIZATIONS)
 @pytest.mark.parametrize("transition", TRANSITIONS)
 @pytest.mark.parametrize("coefficients", [(0.7, 0.5), (0.9, 0.2), (0.4, 0.4)])

@@ -31,6 +31,7 @@ def test_disc_that_slides_throughout(disc, law, regularization, friction, angle)
     assert found["sticking_time"] < 0.03 * found["contact_time"]
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("law", ["neohookean", "svk"])
 @pytest.mark.parametrize("angle", [45, 60, 75])
 def test_disc_that_rolls(disc, law, angle):

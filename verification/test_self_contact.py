@@ -6,6 +6,7 @@ ROUND_OFF = 1e-14
 CASES = [(2, 0.05, 0.02, 0), (1, 0.2, 0.02, 0.7), (2, 0.3, 0.05, 2.5)]
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("without", ["none", "kernels"])
 @pytest.mark.parametrize("degree, depth, noise, tilt", CASES)
 def test_rows_of_a_body_on_itself_conserve(measure, degree, depth, noise, tilt, without):

@@ -12,6 +12,7 @@ from .scenes import HITS, disc, plane, scene
 UNIFORM = {"mesh_size": 0.02, "contact_mesh_size": 0.02, "penalty": 1e10}      # the same meshes wherever the bodies touch
 
 
+@pytest.mark.few(5)
 @pytest.mark.parametrize("degree", [2, 1])
 @pytest.mark.parametrize("hit", HITS)
 def test_every_step_conserves(steps, hit, degree):
@@ -26,6 +27,7 @@ def test_every_step_conserves(steps, hit, degree):
     assert (found["friction"] > 1e-4) == (HITS[hit]["contact"]["friction_static"] > 0)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("hit", HITS)
 def test_march_conserves(march, hit):
     """The same of energy and momenta over a whole run with steps of its own, from the flight to the last row."""
@@ -66,6 +68,7 @@ def test_stiff_heavy_block_is_a_plane(march):
     assert free.summary["rebound_vy_1"] == pytest.approx(fixed.summary["rebound_vy"], rel=0.01)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("first, second", [("neohookean", "neohookean"), ("svk", "neohookean")])
 @pytest.mark.parametrize("friction", [0, 0.3])
 def test_order_of_the_bodies(march, first, second, friction):
@@ -76,6 +79,7 @@ def test_order_of_the_bodies(march, first, second, friction):
     assert there.summary["rebound_vy_1"] == pytest.approx(back.summary["rebound_vy_2"], rel=1e-4)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("kind, side", [("bowl", 1), ("circle", -1)])
 def test_obstacle_of_great_radius_is_a_plane(march, kind, side):
     """Ten thousand radii of the disc: the gaps differ by 1e-4 of those inside the contact, in opposite directions."""
@@ -84,6 +88,7 @@ def test_obstacle_of_great_radius_is_a_plane(march, kind, side):
     assert 1e-9 < differ(curved, flat, *MEASURES) < 1e-4
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("angle, friction, scatter", [(30, 0, 1e-3), pytest.param(137, 0, 1e-3, marks=pytest.mark.robustness), (137, 0.3, 5e-3)])
 def test_inclined_scene_is_the_level_one_turned(march, angle, friction, scatter):
     """Plane, motion, body and load turned together: to what the tolerance of the steps leaves, and with friction to the scatter it makes of that."""
@@ -129,6 +134,7 @@ def test_disc_between_two_others(march):
     assert run.summary["rebound_vx_1"] == pytest.approx(-run.summary["rebound_vx_3"], rel=0.01)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("friction", [pytest.param(0, marks=pytest.mark.robustness), 0.3])
 def test_disc_slides_over_many_elements(march, friction):
     """A small disc in a long touch passes over seven elements of a block: energy exact, and no step changes the force by a tenth of its peak."""
@@ -142,6 +148,7 @@ def test_disc_slides_over_many_elements(march, friction):
     assert np.abs(np.diff(force)).max() < 0.1 * force.max()
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("integrator, loss, growth", [("midpoint", 0.02, 0.02), ("newmark", 0.02, 0.02), ("bdf2", 0.1, 1e-3), ("backward-euler", 0.6, 1e-6)])
 def test_other_integrators(march, integrator, loss, growth):
     """They keep momentum exactly and energy as they can: damping ones do not gain any."""
@@ -153,6 +160,7 @@ def test_other_integrators(march, integrator, loss, growth):
 
 # ---- exact solutions
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("law", ["svk", "neohookean"])
 def test_two_bars_head_on(tmp_path, law):
     """V13 on 25 elements: stress to 1 %, contact time and exchanged velocities, which wait for a front of width h^(2/3), to 4 %."""

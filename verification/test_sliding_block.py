@@ -10,6 +10,7 @@ from .sliding_block import CREEP, GRAVITY, MASS, stop_time, stop_way
 BLOCK = sliding_block.BLOCK | dict(slip_velocity=1e-3, dt=1e-3)
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("law, static, dynamic", [
     ("linear", 0.5, 0.5), ("linear", 0.7, 0.5), ("sqrt", 0.7, 0.5), ("tanh", 0.5, 0.5), ("linear-printed", 0.7, 0.5)])
 def test_block_slides_to_a_stop(measure, law, static, dynamic):
@@ -24,6 +25,7 @@ def test_block_slides_to_a_stop(measure, law, static, dynamic):
     assert found["backwards"] == 0 and found["drift"] < 1e-9
 
 
+@pytest.mark.few(3)
 # The largest friction below slip_velocity: mu_e for linear; sqrt and tanh do not reach it, the printed phi reaches half.
 @pytest.mark.parametrize("law, transition, expected", [
     ("linear", "jump", 0.7), ("linear", "smooth", 0.7), ("sqrt", "jump", 0.7 / math.sqrt(2)), ("tanh", "jump", 0.7 * math.tanh(1)),
@@ -44,6 +46,7 @@ def test_block_starts_to_slide_on_an_incline(measure, law, transition, expected)
     assert found["backwards"] == 0 and found["drift"] < 1e-9
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("law, share", [("linear", 0.4), ("linear", 0.9), ("sqrt", 0.4), ("sqrt", 0.9), ("tanh", 0.4), ("tanh", 0.9), ("linear-printed", 0.4)])
 def test_block_creeps_on_an_incline(measure, law, share):
     """Below tan alpha = mu the block creeps at the speed at which phi of the regularization is tan alpha / mu."""

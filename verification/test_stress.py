@@ -52,6 +52,7 @@ def neo(C: np.ndarray) -> np.ndarray:
     return (C[0] + C[1] + C[3] - 3) / 2 - log / 2 + LAMBDA / MU * log**2 / 8
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("size", [1e-4, 1e-2, 0.2, 0.35])
 @pytest.mark.parametrize("body", ["", "-axisymmetric"])
 def test_work_of_a_step_against_extended_precision(measure, size, body):
