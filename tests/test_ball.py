@@ -43,6 +43,7 @@ def test_run_of_a_whole_ball(result):
     assert list(h) == scene.load("ball").columns and not h["vz"].any()
 
 
+@pytest.mark.robustness
 def test_units_and_pictures_are_those_of_a_ball(result, oblique):
     """Nothing is per metre; all pictures are drawn, of a quarter with its mirror image."""
     text = report.report(result)

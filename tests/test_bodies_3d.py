@@ -299,6 +299,7 @@ def found_in(path) -> list[tuple]:
     return [(len(one.axis) > 0, round(one.radius, 9), len(own) / len(m.faces)) for one, own in curved.surfaces(m.points, m.faces)]
 
 
+@pytest.mark.robustness
 def test_surfaces_are_round_by_the_angles_of_their_faces(tmp_path):
     """A hexagonal prism is one, though its vertices lie on a sphere; of 24 sides it is a cylinder. A shaft with flats keeps them, a ball with a flat is no ball
     but has the sphere's surface."""
@@ -422,6 +423,7 @@ def falls(tmp_path_factory):
     return found
 
 
+@pytest.mark.robustness
 def test_parts_stand_for_the_whole(falls):
     """Mass, momentum and energy of the whole ball, whatever was computed; the rebounds and impulses agree to what the meshes differ. A part has the angular
     momentum that contact gives it about the axes about which the whole may turn: of a quarter none is stated."""

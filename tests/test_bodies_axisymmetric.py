@@ -203,6 +203,7 @@ def test_two_balls_of_hertz(slow):
     assert {path.stem for path in (slow.folder / "figures").iterdir()} == {"energies", "force", "velocity", "shapes", "contact"}
 
 
+@pytest.mark.robustness
 def test_the_scene_as_used_makes_the_same_run(slow, tmp_path):
     """scene.toml names the dimension, has only parameters that the script takes, and makes the same data file and mesh again; the very same
     history comes from the script alone."""

@@ -74,6 +74,7 @@ def test_a_run_needs_no_matplotlib(fake, tmp_path, monkeypatch, capsys):
     assert "finished earlier" in capsys.readouterr().out and fake.starts() == starts
 
 
+@pytest.mark.robustness
 def test_what_a_run_does_not_load():
     """A run that is there is told of without matplotlib; one is drawn without pandas, which takes longer to load than a tenth of the run, and without the docstrings
     that take a third of loading matplotlib."""
@@ -116,6 +117,7 @@ def test_interrupted_run_leaves_nothing(fake, tmp_path, number, code):
     assert not list(tmp_path.glob("out*"))
 
 
+@pytest.mark.robustness
 def test_two_runs_do_not_share_a_folder(fake, tmp_path):
     """A second run into the same folder is refused while the first one is at work."""
     fake("slow")

@@ -85,6 +85,7 @@ def test_restitution_falls_with_viscosity(tmp_path):
     assert "viscous_work" not in runs[0].summary and "viscous_work" not in runs[0].history and "damping" in runs[0].summary["skipped"]
 
 
+@pytest.mark.robustness
 def test_a_branch_is_a_viscosity_where_it_is_fast_and_a_spring_where_it_is_slow(tmp_path):
     """Restitution and viscous work with G, tau are those of viscosity G tau where tau is short beside the contact; where it is long little is taken, and the branch
     stiffens the body: the contact is shorter."""

@@ -112,6 +112,7 @@ def test_a_head_on_hit_has_no_tangential_restitution(tmp_path):
     assert of(tmp_path, "".join(discs))[1].summary["impulse_ratio"] == 0
 
 
+@pytest.mark.robustness
 def test_what_rolls_has_no_restitution(tmp_path):
     """A disc that is let go on the wall of a bowl hardly approaches it: what presses it on is its weight. The speeds of a scene are those that it reaches."""
     found = run.run(scene.load("disc-bowl"), {"accuracy": 0.4, "fields": 0, "end_time": 0.07, "contact.slip_velocity": 0.015}, tmp_path / "out", estimate=False)

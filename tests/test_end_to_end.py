@@ -230,6 +230,7 @@ def test_a_step_far_too_large_for_friction_ends_early(tmp_path):
     assert process.stderr.count("\n") == 1 and json.loads((tmp_path / "out/failure.json").read_text())["steps"] < 6
 
 
+@pytest.mark.robustness
 def test_a_step_longer_than_the_contact_ends_in_its_first_try(tmp_path):
     """In three dimensions, too, a step of ten contact times under friction is given up after the usual work of one step, without a second try."""
     with pytest.raises(Failure, match=r"smallest step tried 0\.05 s.* dt = 0\.05 s is too long for its friction"):
@@ -241,6 +242,7 @@ def test_a_step_longer_than_the_contact_ends_in_its_first_try(tmp_path):
 COARSE = {"speed": "1.84", "accuracy": "0.01", "degree": "1", "mesh_size": "0.025", "contact_mesh_size": "0.0079"}
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("how", ["stop", "continue"])
 def test_chatter_is_11_or_a_warning(tmp_path, how):
     """A single node of a coarse mesh on a far too stiff penalty, at steps that follow it, bounces without end: exit code 11, or with
@@ -260,12 +262,14 @@ def test_chatter_is_11_or_a_warning(tmp_path, how):
         assert "warning   chatter: " in process.stdout and "warning           chatter: " in plain.stdout
 
 
+@pytest.mark.robustness
 def test_a_sensible_penalty_does_not_chatter(tmp_path):
     """The same coarse disc at the default penalty ends without a word of chatter."""
     process = call(*(f"{name}={value}" for name, value in COARSE.items()), out=tmp_path / "out")
     assert process.returncode == 0 and not any("chatter" in each for each in results.read_summary(tmp_path / "out")["warnings"])
 
 
+@pytest.mark.robustness
 def test_hopping_is_no_chatter(tmp_path):
     """A disc that hops on the plane under gravity is back within a wave's transit many times, but not in a row: no failure, no warning."""
     process = direct("-law", "neohookean", "-speed", "0", "-height", "1e-5", "-gravity", "9.81", "-end_time", "0.7", "-accuracy", "0.4", "-degree", "1",

@@ -54,6 +54,7 @@ def test_penalty_and_slip_velocity_do_not_set_the_step(runs, explicit, change):
     conserves(found, 2e-3)
 
 
+@pytest.mark.robustness
 def test_no_node_bounces_alone(runs, explicit, tmp_path):
     """However stiff the penalty, rebound and spin stay within 0.5 % of the speed of the implicit run at 1e11, friction work within 1 % of the energy, and
     the run says on which one nodes do not bounce."""
@@ -74,6 +75,7 @@ def test_records_follow_the_accuracy(runs):
     assert (found.history["dt"] * found.history["normal_force"]).sum() == pytest.approx(found.summary["impulse"], rel=1e-12)
 
 
+@pytest.mark.robustness
 def test_a_step_that_is_given_is_parted(runs, tmp_path):
     """`dt` is the step that is recorded; contact instants are those of its parts, and hardly change with it."""
     found = disc(tmp_path, **OBLIQUE | EXPLICIT | {"dt": 2e-5})
@@ -88,6 +90,7 @@ def test_every_kind_of_scene_conserves(tmp_path, name, settings):
     conserves(run.run(scene.load(name), settings | EXPLICIT | {"accuracy": 0.2}, tmp_path / "out", estimate=False), 5e-3)
 
 
+@pytest.mark.robustness
 def test_kernels_do_what_the_scripts_say(tmp_path):
     """Friction in parts, with kernels and without, up to round-off: on a plane, and on a circle, which no point of the window touches when a part begins."""
     few = OBLIQUE | EXPLICIT | {"end_time": 2e-4}

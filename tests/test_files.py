@@ -249,6 +249,7 @@ def test_a_disc_from_a_file_is_not_turned(tmp_path):
         prepared(tables(body | {"angle": -90}, obstacles=[wall]), tmp_path, tmp_path / "2")
 
 
+@pytest.mark.robustness
 def test_what_sinks_is_named_and_meshes_of_files_are_not_to_be_resized(plane, tmp_path):
     """A block of which only the upper side may touch falls through a peg: the warning `sinks` with
     body, obstacle and place. Where the lower side touches it there is none. No warning advises to change
@@ -401,6 +402,7 @@ def test_fillets_that_touch_nothing_cost_little(tmp_path):
     assert 0 < 1 - m.volumes.sum() / rounded_box(2) < 0.25 * 0.02
 
 
+@pytest.mark.robustness
 def test_a_fillet_that_touches_is_resolved(tmp_path):
     """On its edge the box meets the floor with a fillet: elements there are those of its curvature,
     on other fillets they are not, as the volume does not ask for it."""
@@ -414,6 +416,7 @@ def test_a_fillet_that_touches_is_resolved(tmp_path):
     assert lengths[low].max() < 2.5 * fine and np.median(lengths[~low]) > 2 * fine
 
 
+@pytest.mark.robustness
 def test_a_geometry_is_as_fine_as_the_shape(tmp_path):
     """The contact of a box on its edge gets the element size of the built-in box, to a tenth: samples
     of a mesh are counted by the area they stand for."""

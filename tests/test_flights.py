@@ -82,6 +82,7 @@ def test_long_flights_end_at_the_touch(tmp_path, case):
     assert found.summary["contact_time"] < 0.01 * expected and rows.restitution[0] > 0.9
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("distance, told", [
     ("y + x^2", []), ("exp(y/0.02) - 1", ["touches again: it is not known whether "])])
 def test_what_leaves_an_expression_that_is_no_distance(tmp_path, distance, told):

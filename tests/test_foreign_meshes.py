@@ -266,6 +266,7 @@ def test_half_a_body_elsewhere(tmp_path):
     assert "half a body with its axis at x = 0.3" in (there.folder / "log.txt").read_text()
 
 
+@pytest.mark.robustness
 def test_whole_mesh_counts_once(tmp_path):
     """A whole disc with symmetry=auto is a whole disc: history, impulse and contact time of the half disc's run, and it neither drifts nor turns."""
     half = mesh.disc(RADIUS, 0.015, 0.006, True)
@@ -276,6 +277,7 @@ def test_whole_mesh_counts_once(tmp_path):
     assert (one.scene["symmetry"], two.scene["symmetry"]) == ("half", "full")
 
 
+@pytest.mark.robustness
 def test_half_an_ellipse_is_the_ellipse(tmp_path):
     """Half a body of straight edges and the whole of it give the same history."""
     def half_ellipse(occ):

@@ -175,6 +175,7 @@ def test_study_of_another_scene(fake, tmp_path):
     assert used["speed=4.0"]["friction_static"] == 0.7 and used["speed=5.0"]["friction_static"] == 0
 
 
+@pytest.mark.robustness
 def test_the_pictures_of_the_readme_are_drawn_again(oblique, tmp_path):
     """make pictures draws them by the present program, whatever pictures the folders of the runs have."""
     for name in ("disc-normal", "disc-oblique"):

@@ -40,6 +40,7 @@ def test_the_count_of_parts_is_that_of_the_run(tmp_path):
         assert int(said.split("takes ")[1].split()[0]) == pytest.approx(parts, abs=1), script
 
 
+@pytest.mark.robustness
 def test_a_stated_error_covers_an_explicit_answer(tmp_path):
     """The run beside it, which estimates the error, takes the same integrator; the answers of the default's finer run are within what is stated, and the energy's
     error is no less than its drift."""

@@ -113,6 +113,7 @@ def test_marches_are_those_of_the_scripts(tmp_path, name):
         assert runs["with"].summary[number] == pytest.approx(runs["without"].summary[number], rel=1e-9)
 
 
+@pytest.mark.robustness
 def test_answers_are_the_same_with_any_number_of_threads(tmp_path, monkeypatch):
     """Two threads write the history that one writes, byte by byte; what is no number of threads is refused."""
     histories = []

@@ -74,6 +74,7 @@ def test_a_push_on_a_free_body(tmp_path, dimension):
     assert np.ptp(history["angular_momentum"][later]) < 1e-8 * abs(history["angular_momentum"]).max() > 0
 
 
+@pytest.mark.robustness
 def test_a_follower_turns_with_its_body(tmp_path):
     """A pressure on one side of a stiff bar that turns half a turn pushes back in the end: the force on the
     bar, by the change of its momentum, is -p A n with the normal of the state. A dead load keeps its direction."""
@@ -178,6 +179,7 @@ def test_a_gas_begins_in_equilibrium(tmp_path):
     assert np.ptp(history["vx"]) < 1e-9 and history["vx"][0] == pytest.approx(3, rel=1e-12)
 
 
+@pytest.mark.robustness
 def test_more_pressure_makes_a_contact_shorter(tmp_path):
     """A hollow disc falls on a plane: the stiffer its gas, the sooner it leaves."""
     times = []

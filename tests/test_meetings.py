@@ -168,6 +168,7 @@ def test_elements_follow_the_radius_of_an_obstacle(dimension, kind):
     assert sizes[2] == pytest.approx(sizes[3], rel=0.05)
 
 
+@pytest.mark.robustness
 def test_an_obstacle_that_is_met_twice_has_one_table():
     """A disc that comes down on two crests of a wave has one table of contact with it in the scene as used, which is read again as it was written."""
     tables = scene(DISC | {"position": [0, 0.0551]}, {"name": "waves", "kind": "implicit", "distance": "y - 0.002*sin(200*x)"})
@@ -239,6 +240,7 @@ def test_a_body_that_is_pressed_through_a_thin_obstacle_is_named(tmp_path, thick
         assert "points went through plate" in said(found, "through")[0]
 
 
+@pytest.mark.robustness
 def test_points_at_a_vertex_know_both_its_edges(tmp_path):
     """A point beyond the end of an edge near the search's reach is outside of the body there: no force appears between two steps, and energy is kept
     (40 m/s on a plate that is 100 times as stiff)."""
@@ -248,6 +250,7 @@ def test_points_at_a_vertex_know_both_its_edges(tmp_path):
     assert found.summary["energy_drift"] < 1e-9
 
 
+@pytest.mark.robustness
 def test_the_bottom_of_a_bowl_may_lie_where_its_expression_has_no_slope(tmp_path):
     """A root has none at 0, which the top of the disc passes as it falls: the first touch is found as in the bowl that is meant."""
     disc = {"name": "disc", "shape": "disc", "radius": 0.05, "position": [0, 0.051], "velocity": [0, -4]}

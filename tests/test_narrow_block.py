@@ -14,6 +14,7 @@ def narrow(width: float, height: float, x: float, off: float, speed: float, fric
                      disc | {"position": [x, off], "velocity": [speed, 0]}]}
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("case", [dict(width=0.06, height=0.1, x=0.081, off=0, speed=0, friction=0.3), dict(width=0.1, height=0.06, x=0.102, off=0.04, speed=-5, friction=0)],
                          ids=["struck, with friction", "pressed at its corners"])
 def test_vertices_cost_no_steps(case, tmp_path):
@@ -29,6 +30,7 @@ def test_vertices_cost_no_steps(case, tmp_path):
     assert s["impulse_x_1"] + s["impulse_x_2"] + s["impulse_x_3"] == pytest.approx(0, abs=1e-7 * abs(s["impulse_x_1"]))
 
 
+@pytest.mark.robustness
 def test_three_in_a_row_takes_no_small_steps(tmp_path):
     """The scene's block is narrower than what strikes it; no step of it is refused."""
     s = run.run(scene.load("three-in-a-row"), {"accuracy": 0.1, "fields": 0}, tmp_path / "run", estimate=False).summary

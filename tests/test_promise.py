@@ -168,6 +168,7 @@ def test_stated_errors_at_coarse_accuracies_are_to_hold_of_each_answer_and_accur
     assert ("DO NOT HOLD" in said) == bool(code) and "promised, accuracy 0.03" in said and f"{1 - missed / 30:.1%}" in said
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("scene, point", [
     ("disc-normal", {"law": "svk", "young": 1e6, "density": 100.0, "nu": 0.0, "radius": 0.05, "speed": 0.138, "angle": 60.0, "friction_static": 0.1,
                      "friction_dynamic": 0.07}),

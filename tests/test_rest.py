@@ -187,6 +187,7 @@ def test_what_never_rests_is_refused(tmp_path, change, said):
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.robustness
 def test_a_scene_says_it_in_toml_and_python(tmp_path):
     """The built-in scene, coarser: the picture of its height is drawn; a word that is none is refused; a block that is free has nothing to rest on."""
     coarse = {"mesh_size": 0.02, "contact_mesh_size": 0.005, "loss": 2, "penalty": 1e10, "height": 0.05, "accuracy": 0.2}

@@ -177,6 +177,7 @@ def test_an_obstacle_works_exactly_what_the_body_gains(tmp_path):
     assert summary["energy_drift"] < 1e-9 and summary["momentum_drift"] < 1e-8 and summary["angular_momentum_drift"] < 1e-8
 
 
+@pytest.mark.robustness
 def test_a_constant_motion_is_a_velocity(tmp_path):
     """The way -2 t is the velocity -2."""
     drive, _ = run(tmp_path, ROLLER.format('motion = [0, "-2*t"]'), "drive")

@@ -106,6 +106,7 @@ def test_entries_are_set_on_the_command_line(mine, capsys):
     assert json.loads((path.parent / "direct/summary.json").read_text())["impulse"] == pytest.approx(other["impulse"], rel=1e-9)
 
 
+@pytest.mark.robustness
 def test_a_killed_run_goes_on(mine, monkeypatch):
     """A run of bodies that ends at a checkpoint goes on from there when asked again, to the same answer."""
     found, path = mine
@@ -126,6 +127,7 @@ def test_a_killed_run_goes_on(mine, monkeypatch):
     assert result.summary["impulse"] == pytest.approx(found.summary["impulse"], rel=1e-9)
 
 
+@pytest.mark.robustness
 def test_a_sweep_reaches_every_entry(mine):
     """Axes named by dotted names, in quotes or not; the table has the numbers of each body."""
     path = mine[1].with_name("sweep.toml")

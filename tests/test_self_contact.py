@@ -118,6 +118,7 @@ def test_with_and_without_kernels_it_is_the_same(tmp_path):
         assert one[column] == pytest.approx(other[column], rel=1e-6, abs=1e-6 * abs(one[column]).max())
 
 
+@pytest.mark.robustness
 def test_a_ring_is_squeezed_flat(tmp_path):
     """A plane comes down on a thin ring until less than a sixth of the hole is left: its inner sides lie on each other, folds and all, and nothing is lost."""
     press = {"name": "press", "kind": "plane", "point": [0, 0.1002], "normal": [0, -1], "velocity": [0, -8]}
@@ -306,6 +307,7 @@ def test_which_inner_outlines_may_touch(tmp_path):
     assert inner(box_file(tmp_path, "outer"), "on") == {mesh.Mesh.NEVER}
 
 
+@pytest.mark.robustness
 def test_a_disc_stays_in_the_hole_of_a_file(tmp_path):
     """A disc flies against the wall of the slot from inside and pushes the box along."""
     fine = {"mesh_size": 5e-4, "contact_mesh_size": 5e-4}

@@ -126,6 +126,7 @@ def test_a_crash_of_the_renderer_is_said_and_harms_nothing(ball, monkeypatch, ca
     assert "PyVista cannot render here" in capfd.readouterr().err
 
 
+@pytest.mark.robustness
 def test_a_run_says_nothing_of_it(ball, no_pyvista, tmp_path, capfd):
     """`make ball` without PyVista: its figures, nothing on stderr."""
     given = [f"{name}={value}" for name, value in COARSE.items()]

@@ -306,6 +306,7 @@ def test_driver_waits_for_one_that_just_begins(fake, tmp_path, dies):
     assert process.returncode == 0 and "6 of 6 points finished" in said, err
 
 
+@pytest.mark.robustness
 def test_one_run_of_the_list(fake, tmp_path, capsys):
     """--list names the runs, --run does one of them; the sweep then takes it as done."""
     path, out = write(tmp_path, SIX), tmp_path / "out"
@@ -427,6 +428,7 @@ def test_distance_of_histories():
     assert sweep_figures.distance(a, b) == pytest.approx(0.1, rel=1e-3) and sweep_figures.distance(a, a) == 0
 
 
+@pytest.mark.robustness
 @pytest.mark.parametrize("figure, words", [
     ('kind = "map"\nx = "nu"\ny = "speed"\ncolour = "contact_time"\nlevel = 4.67e-3\nband = 1e-5', "4.67 ± 0.01 ms is met"),
     ('kind = "histories"\ny = "normal_force"\npanel = "speed"\nby = "nu"', "speed = 4 m/s: relative L2 difference of normal force, ν = 0.3 and ν = 0.4: 0.0 %"),

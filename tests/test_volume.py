@@ -29,7 +29,7 @@ def test_an_impact_keeps_energy_and_momenta(tmp_path, name):
         assert run.history[column] == pytest.approx(scripted.history[column], rel=0, abs=1e-8 * max(abs(run.history[column]))), column
 
 
-@pytest.mark.few(1)
+@pytest.mark.robustness
 @pytest.mark.parametrize("script, size, tens", [("spinning", 0.03, 3), ("spinning-3d", 0.04, 4)])
 def test_a_spinning_body_keeps_energy_and_momenta(script, size, tens):
     """A free body that spins and vibrates a hundred turns at nu = 0.4999; a ball in 40 steps a turn (of 30 some fail, which a run would halve)."""
@@ -94,6 +94,7 @@ def test_snapshots_have_their_own_pressures(tmp_path):
     assert largest[0] < 1e-6 * max(largest) and max(shot["pressure"].max() for shot in shots[1:]) > 1e5
 
 
+@pytest.mark.robustness
 def test_the_history_has_their_pressure(tmp_path):
     """Its last row: the mean pressure is that of the last snapshot's field, over its deformed area, to 2 %; the largest is above all there, which are means around
     corners, by less than a half. The picture is drawn. A plain body has no such columns, and the scene knows which has."""

@@ -89,8 +89,8 @@ def test_what_is_always_so_of_a_number_is_a_note(disc, name, bad, good, number, 
     assert found(disc(bad), name) == [] == found(disc(good), name, "notes") and disc(bad).summary[notes.number(sentence)] > 0
 
 
-# metal foam, expanded polystyrene, aerogel, metallic microlattice, diamond, beryllium, tungsten, a soft gel in units of its own
-REAL = [(300, 1e9), (11, 3e6), (3, 1e4), (5, 5e4), (3500, 1.1e12), (1850, 2.9e11), (19300, 4.1e11), (1, 1)]
+# metal foam, expanded polystyrene, aerogel, metallic microlattice, diamond, beryllium, a soft gel in units of its own, tungsten
+REAL = [(300, 1e9), (11, 3e6), (3, 1e4), (5, 5e4), (3500, 1.1e12), (1850, 2.9e11), (1, 1), (19300, 4.1e11)]
 
 
 @pytest.mark.few(3)

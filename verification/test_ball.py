@@ -42,7 +42,7 @@ def test_mass_surface_and_contact_points_are_those_of_the_sphere(measure, symmet
     assert coarse["sphere"] < 1e-14 and coarse["rows"] < 1e-3 and fine["rows"] < coarse["rows"] / 4
 
 
-@pytest.mark.few(1)
+@pytest.mark.robustness
 @pytest.mark.parametrize("law", LAWS)
 def test_order_in_space(measure, law):
     """V1: the L2 error of a manufactured motion with sines falls with the cube of the element size on curved tetrahedra, the mass with its fourth power;
@@ -156,6 +156,7 @@ def test_half_and_full_are_one_run_with_friction(disc):
     assert abs(full.history["vz"]).max() < 1e-8
 
 
+@pytest.mark.robustness
 def test_gross_slip_is_that_of_the_rigid_ball(disc):
     """V10: a slow grazing ball slides throughout: the impulse along the plane is mu times the normal one, but for what the outward spreading of the
     contact turns aside; the spin is 5/2 mu (1 + e) v_n/R, but for the approach by which the lever is shorter: 3 %."""

@@ -6,6 +6,7 @@ from .oblique_ball import INERTIA, NU, RADIUS, lost_slip, rigid, slides_througho
 from .rigid_disc import leaves
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("angle, slides", [(20, True), (60, False)])
 def test_rigid_ball(tmp_path, angle, slides):
     """Beyond v_t/v_n = 7/2 mu (1 + e) it slides throughout: loses mu (1 + e) v_n along the plane and turns forward with 5/2 mu (1 + e) v_n/R; below that it leaves

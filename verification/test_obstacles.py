@@ -112,6 +112,7 @@ def test_a_disc_on_a_wavy_floor_keeps_energy_and_momentum(march, tmp_path):
         assert momentum[-1] - momentum[0] == pytest.approx(impulse[f"impulse_{axis}"].sum(), abs=1e-8 * abs(momentum).max())
 
 
+@pytest.mark.robustness
 def test_a_dish_of_revolution_is_the_same_in_space(tmp_path):
     """A ball in a paraboloid, of revolution and a quarter of it in three dimensions: impulse within 1 %, energy to 1e-9."""
     ball = {"law": "neohookean", "young": 7e6, "nu": 0.4, "density": 1722, "accuracy": 0.1}

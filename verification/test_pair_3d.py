@@ -132,6 +132,7 @@ def head_on(count, obstacles=()) -> Scene:
 FLOOR = ("plane", (0, 0, 0, 0, 1, 0), (0, 0, 0))
 
 
+@pytest.mark.robustness
 def test_two_equal_balls_are_a_ball_on_a_plane_of_doubled_penalty(march):
     """Head-on, to 0.5 %: contact time, peak force, rebound; and Hertz' T = 2.943 delta / v, F = 4/3 E* R*^1/2 delta^3/2 to 10 % on two cubes across the contact."""
     two, one = march(head_on((4, 3, 4)), "two").summary, march(head_on((4, 3, 4), (FLOOR,)), "one").summary

@@ -173,6 +173,7 @@ def test_bouncing_bar(tmp_path):
     assert max(row.error for row in bouncing_bar(tmp_path, 12)) < 0.03
 
 
+@pytest.mark.robustness
 def test_relaxing_bar(tmp_path):
     """V19 on 25 and 50 elements: restitution and contact time, which wait for a front of width h^(2/3), to 2 and 1.1 %; the balance closes to 1e-9."""
     coarse, fine = ({row.what: row.error for row in relaxing_bar(tmp_path / f"{n}", n, 0.5, 10)} for n in (25, 50))
