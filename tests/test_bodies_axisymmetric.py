@@ -130,7 +130,7 @@ BAD = [
     ({"velocity": "fast"}, {}, "body.1.velocity: 'fast' is not a number"),
     ({"spin": 3}, {}, "body.1.spin: no such entry, set to '3'"),
     ({"angle": 30}, {}, "body.1.angle: no such entry, set to '30'"),
-    ({"shape": "disc"}, {}, "body.1.shape: 'disc' is not known (accepted: ball|ellipsoid|cylinder|polygon|tube|torus|mesh)"),
+    ({"shape": "disc"}, {}, "body.1.shape: 'disc' is not known (accepted: ball|shell|ellipsoid|cylinder|polygon|tube|torus|mesh)"),
     ({"shape": "polygon", "vertices": [[0, 0], [1, 0], [1, 1]]}, {}, "body.1.vertices: do not go from the axis to the axis"),
     ({}, {"body_force_x": 1}, "body_force_x: bodies-axisymmetric takes no such parameter"),
     ({}, {"contact": {"pairing": "pairwise"}}, "pairing: bodies-axisymmetric takes no such parameter"),

@@ -84,6 +84,7 @@ def test_a_mesh_file_beside_the_axis(tmp_path):
 
 
 @pytest.mark.parametrize("entries, named", [
+    ('shape = "shell"\nradius = 0.03\ninner_radius = 0.04', "body.1.inner_radius"),
     ('shape = "tube"\nradius = 0.03\ninner_radius = 0.03\nheight = 0.1', "body.1.inner_radius"),
     ('shape = "torus"\nradius = 0.03\nsection = 0.03', "body.1.section"),
     ('shape = "polygon"\nvertices = [[0.0, 0], [0.03, 0], [0.03, 0.1], [0.02, 0.1]]', "body.1.vertices"),

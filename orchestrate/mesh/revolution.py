@@ -15,7 +15,7 @@ from ..failure import BadInput
 from ..geometry.outlines import Loop, Outline, TubeOutline, circle_loop, cross, ellipse_loop, signed_area
 from ..input.tables import LONGEST, Table
 
-SHAPES = {"ball": ("radius",), "ellipsoid": ("semi_axes",), "cylinder": ("radius", "height"), "polygon": ("vertices",),
+SHAPES = {"ball": ("radius",), "shell": ("radius", "inner_radius"), "ellipsoid": ("semi_axes",), "cylinder": ("radius", "height"), "polygon": ("vertices",),
           "tube": ("radius", "inner_radius", "height"), "torus": ("radius", "section"),
           "mesh": ("file", "scale")}
 LOOPS = {"ball": circle_loop, "ellipsoid": lambda semi_axes: ellipse_loop(*semi_axes),
@@ -33,6 +33,9 @@ def shape(table: Table, folder: Path) -> tuple[Outline, mesh.Mesh | None]:
         centre = np.array([0.0, _centre_of_volume(half.points[half.triangles])])
         half = half.moved(-centre)
         return flat.mesh_outline(whole(half)), half
+    if table.given["shape"] == "shell":
+        radius, inner = _radii(table)
+        return Outline((circle_loop(radius), circle_loop(inner))), None
     loop = _tube_loop(table) or _loop(table)
     if loop.polygon[:, 0].min() > 0:
         centre = np.array([0.0, _loop_centre(loop)])
@@ -63,6 +66,14 @@ def _loop(table: Table) -> Loop:
     return LOOPS[kind](*table.lengths(SHAPES[kind]))
 
 
+def _radii(table: Table) -> tuple[float, float]:
+    """Outer and inner radius [m] of a hollow body."""
+    radius, inner = table.number("radius"), table.number("inner_radius")
+    if not inner < radius:
+        raise BadInput(f"{table.at('inner_radius')}: {inner:g} m is no smaller than radius (accepted: below {radius:g} m)")
+    return radius, inner
+
+
 def _tube_loop(table: Table) -> Loop | None:
     """The loop of a section to the right of the axis, that does not reach it; None of another body."""
     kind = table.given["shape"]
@@ -72,9 +83,7 @@ def _tube_loop(table: Table) -> Loop | None:
             raise BadInput(f"{table.at('section')}: {section:g} m reaches the axis (accepted: below radius, {radius:g} m)")
         return circle_loop(section).placed(np.array([radius, 0.0]), 0.0)
     if kind == "tube":
-        radius, inner, height = table.lengths(SHAPES[kind])
-        if not inner < radius:
-            raise BadInput(f"{table.at('inner_radius')}: {inner:g} m is no smaller than radius (accepted: below {radius:g} m)")
+        (radius, inner), height = _radii(table), table.number("height")
         return Loop(np.array([[inner, -height / 2], [radius, -height / 2], [radius, height / 2], [inner, height / 2]]))
     if kind == "polygon" and (right := table.points("vertices"))[:, 0].min() > 0:
         flat.check_simple(f"{table.path}.vertices", right)
@@ -122,11 +131,26 @@ def right_half(loop: Loop) -> list[int]:
     return [(lower + k) % len(loop.corners) for k in range((upper - lower) % len(loop.corners))]
 
 
-def boundary(loop: Loop) -> list[Callable[[np.ndarray], np.ndarray]]:
-    """The boundary of the half x >= 0, counter-clockwise, as curves over [0, 1]; the last one is the axis, downwards."""
-    pieces = right_half(loop)
-    lower, upper = loop.corners[pieces[0]], loop.corners[(pieces[-1] + 1) % len(loop.corners)]
-    return [*(partial(loop.at, k) for k in pieces), lambda s: upper + s[:, None] * (lower - upper)]
+def boundary(outline: Outline) -> list[tuple[Callable[[np.ndarray], np.ndarray], Loop | None]]:
+    """The boundary of the half x >= 0, counter-clockwise, as curves over [0, 1], each with the loop that it is part of, None on the
+    axis: the outer surface upwards, down the axis, where there is a cavity down its surface, and down the axis."""
+    curves, ends = [], []
+    for k, loop in enumerate(outline.loops):
+        pieces = right_half(loop)
+        lower, upper = loop.corners[pieces[0]], loop.corners[(pieces[-1] + 1) % len(loop.corners)]
+        if k == 0:
+            curves += [(partial(loop.at, piece), loop) for piece in pieces]
+            ends = [lower, upper]
+        else:
+            curves += [(_straight(ends[1], upper), None)]
+            curves += [((lambda s, piece=piece: loop.at(piece, 1 - s)), loop) for piece in pieces[::-1]]
+            ends[1] = lower
+    return [*curves, (_straight(ends[1], ends[0]), None)]
+
+
+def _straight(start: np.ndarray, end: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+    """A straight curve over [0, 1]."""
+    return lambda s: start + s[:, None] * (end - start)
 
 
 def _loop_centre(loop: Loop) -> float:

@@ -334,8 +334,8 @@ def _boundary(scene: Scene, k: int) -> list[list[tuple[Curve, float, int]]]:
     if scene.dimension is AXISYMMETRIC:
         if isinstance(scene.bodies[k].outline, TubeOutline):
             return [[(partial(loops[0].at, piece), _largest(loops[0]), FREE) for piece in range(len(loops[0].corners))]]
-        *surface, axis = revolution.boundary(loops[0])
-        return [[*((piece, _largest(loops[0]), FREE) for piece in surface), (axis, np.inf, AXIS)]]
+        return [[(piece, _largest(loop), FREE) if loop else (piece, np.inf, AXIS)
+                 for piece, loop in revolution.boundary(scene.bodies[k].outline)]]
     return [[(partial(loop.at, piece), _largest(loop), FREE) for piece in range(len(loop.corners))]
             for loop in loops]
 
