@@ -15,8 +15,8 @@ from ..failure import BadInput
 from ..geometry.outlines import Loop, Outline, TubeOutline, circle_loop, cross, ellipse_loop, signed_area
 from ..input.tables import LONGEST, Table
 
-SHAPES = {"ball": ("radius",), "shell": ("radius", "inner_radius"), "ellipsoid": ("semi_axes",), "cylinder": ("radius", "height"), "polygon": ("vertices",),
-          "tube": ("radius", "inner_radius", "height"), "torus": ("radius", "section"),
+SHAPES = {"ball": ("radius",), "shell": ("radius", "inner_radius"), "ellipsoid": ("semi_axes",),
+          "cylinder": ("radius", "height"), "polygon": ("vertices",), "tube": ("radius", "inner_radius", "height"), "torus": ("radius", "section"),
           "mesh": ("file", "scale")}
 LOOPS = {"ball": circle_loop, "ellipsoid": lambda semi_axes: ellipse_loop(*semi_axes),
          "cylinder": lambda r, height: Loop(np.array([r, height / 2]) * [[0, -1], [1, -1], [1, 1], [0, 1], [-1, 1], [-1, -1]])}
