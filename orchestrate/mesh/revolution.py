@@ -16,7 +16,8 @@ from ..geometry.outlines import Loop, Outline, TubeOutline, circle_loop, cross, 
 from ..input.tables import LONGEST, Table
 
 SHAPES = {"ball": ("radius",), "shell": ("radius", "inner_radius"), "ellipsoid": ("semi_axes",),
-          "cylinder": ("radius", "height"), "polygon": ("vertices",), "tube": ("radius", "inner_radius", "height"), "torus": ("radius", "section"),
+          "cylinder": ("radius", "height"), "polygon": ("vertices",), "tube": ("radius", "inner_radius", "height"),
+          "torus": ("radius", "section"),
           "mesh": ("file", "scale")}
 LOOPS = {"ball": circle_loop, "ellipsoid": lambda semi_axes: ellipse_loop(*semi_axes),
          "cylinder": lambda r, height: Loop(np.array([r, height / 2]) * [[0, -1], [1, -1], [1, 1], [0, 1], [-1, 1], [-1, -1]])}
