@@ -1,4 +1,4 @@
-# The front door. Parameters live in edp/core/input/parameters.idp, scenes in orchestrate/scenes/*.toml.
+# The front door. Parameters live in edp/core/input/parameters.idp, scenes in orchestrate/ffimpact/scenes/*.toml.
 # ARGS is handed on:  make disc-normal ARGS="--set speed=4 --out results/slow"
 PYTHON := .venv/bin/python
 READY := .venv/.ready
@@ -17,36 +17,36 @@ $(READY): requirements.lock orchestrate/setup.sh edp/describe.edp
 	@touch $@
 
 disc-normal: $(READY) ## a disc falls normally on a rigid plane (paper, sections 3.1 and 3.3)
-	@$(PYTHON) -m orchestrate run $@ $(ARGS)
+	@$(PYTHON) -m ffimpact run $@ $(ARGS)
 
 disc-oblique: $(READY) ## a disc hits the plane at 60 degrees, with friction: as the paper may have run it, and converged (section 3.1)
-	@$(PYTHON) -m orchestrate compare disc-oblique-svk disc-oblique $(ARGS)
+	@$(PYTHON) -m ffimpact compare disc-oblique-svk disc-oblique $(ARGS)
 
 disc-rolling: $(READY) ## a disc is set down on the plane, slides and comes to roll (section 3.1)
-	@$(PYTHON) -m orchestrate run $@ $(ARGS)
+	@$(PYTHON) -m ffimpact run $@ $(ARGS)
 
 ball-axisymmetric: $(READY) ## a ball falls normally on a rigid plane, as a body of revolution: as the paper may have run it, and converged (section 3.3)
-	@$(PYTHON) -m orchestrate compare ball-axisymmetric-svk ball-axisymmetric $(ARGS)
+	@$(PYTHON) -m ffimpact compare ball-axisymmetric-svk ball-axisymmetric $(ARGS)
 
 ball: $(READY) ## the same ball in three dimensions, a quarter of it by symmetry (section 3.3)
-	@$(PYTHON) -m orchestrate run $@ $(ARGS)
+	@$(PYTHON) -m ffimpact run $@ $(ARGS)
 
 ball-oblique: $(READY) ## a ball hits the plane at 60 degrees, with friction, in three dimensions
-	@$(PYTHON) -m orchestrate run $@ $(ARGS)
+	@$(PYTHON) -m ffimpact run $@ $(ARGS)
 
 ball-comparison: $(READY) ## accelerations of the centre of mass: disc with both laws, ball with both laws (figure 11); again with the same penalty
-	@$(PYTHON) -m orchestrate run disc-normal-incompressible $(ARGS)
-	@$(PYTHON) -m orchestrate compare disc-normal disc-normal-neohookean ball-axisymmetric-svk ball-axisymmetric $(ARGS)
-	@$(PYTHON) -m orchestrate compare disc-normal disc-normal-neohookean ball-axisymmetric-svk ball-axisymmetric --set penalty=1e10 --out results/same-penalty $(ARGS)
+	@$(PYTHON) -m ffimpact run disc-normal-incompressible $(ARGS)
+	@$(PYTHON) -m ffimpact compare disc-normal disc-normal-neohookean ball-axisymmetric-svk ball-axisymmetric $(ARGS)
+	@$(PYTHON) -m ffimpact compare disc-normal disc-normal-neohookean ball-axisymmetric-svk ball-axisymmetric --set penalty=1e10 --out results/same-penalty $(ARGS)
 
 disc-block: $(READY) ## a disc falls on a free block of the same material: with the paper's law, and neo-Hookean (section 3.2)
-	@$(PYTHON) -m orchestrate compare disc-block disc-block-neohookean $(ARGS)
+	@$(PYTHON) -m ffimpact compare disc-block disc-block-neohookean $(ARGS)
 
 friction-laws: $(READY) ## draw the friction laws (figure 3)
-	@$(PYTHON) -m orchestrate $@ $(ARGS)
+	@$(PYTHON) -m ffimpact $@ $(ARGS)
 
 $(SWEEPS): $(READY)
-	@$(PYTHON) -m orchestrate sweep $@ $(ARGS)
+	@$(PYTHON) -m ffimpact sweep $@ $(ARGS)
 oblique: ## the oblique impact over nu, with error bars (section 3.1)
 friction-jump: ## the oblique impact with both laws, and with equal friction coefficients as its control (figures 5, 6a)
 friction-steps: ## the friction force with two steps: whether the acceleration jumps (figure 5b)
@@ -62,26 +62,26 @@ calibrate-ball-3d: ## the same in three dimensions
 conservation: ## the energy's drift over the step, with BDF2 and energy-momentum
 
 stick-slip: $(READY) ## search for the paper's order of sliding and sticking over epsilon, k and nu
-	@$(PYTHON) -m orchestrate $@ $(ARGS)
+	@$(PYTHON) -m examples.paper.stick_slip $(ARGS)
 
 verify: $(READY) ## exact solutions with convergence: bar, rod, Hertz, rigid bodies, friction, manufactured motions
-	@$(PYTHON) -m orchestrate $@ $(ARGS)
+	@$(PYTHON) -m verification $(ARGS)
 
 PAPER := disc-normal disc-oblique disc-rolling disc-block ball-axisymmetric ball friction-laws $(SWEEPS) stick-slip verify ball-comparison
 paper: $(READY) ## all of the above, and results/paper/report.html
-	@$(PYTHON) -m orchestrate $@ --make $(PAPER)
+	@$(PYTHON) -m examples.paper --make $(PAPER)
 
 movie: CASE := disc-oblique
 movie: $(READY) ## a film of a scene, built in or a file: make movie CASE=disc-oblique
-	@$(PYTHON) -m orchestrate $@ "$(CASE)" $(ARGS)
+	@$(PYTHON) -m ffimpact $@ "$(CASE)" $(ARGS)
 
 docs: $(READY) ## a site of README and docs/: results/site/html (installs MkDocs with its theme)
 	@$(PYTHON) -m pip install -q --disable-pip-version-check "mkdocs>=1.6,<2" "mkdocs-material>=9.5,<10"
-	@$(PYTHON) -m orchestrate pages --site results/site/docs
+	@$(PYTHON) docs/pages.py --site results/site/docs
 	@NO_MKDOCS_2_WARNING=1 $(PYTHON) -m mkdocs build -q -s && echo "results/site/html/index.html"
 
 pictures: disc-normal disc-oblique ## the README's pictures, drawn again from the present runs
-	@$(PYTHON) -c "from PIL import Image; from pathlib import Path; from orchestrate.report import drawing; \
+	@$(PYTHON) -c "from PIL import Image; from pathlib import Path; from ffimpact.report import drawing; \
 	runs = {'disc-normal': ('shapes', 'picture.png'), 'disc-oblique': ('flight', 'picture-oblique.png')}; \
 	[(drawing.draw(run := Path('results', name)), \
 	Image.open(run / f'figures/{figure}.png').convert('RGB').quantize(256).save(picture, optimize=True)) for name, (figure, picture) in runs.items()]"
@@ -91,10 +91,10 @@ test: $(READY) ## run all tests, on two cores: some eight minutes
 
 robustness: $(READY) ## the tests that make test leaves out, malformed input and kills; hard runs drawn at random, and every combination of hard parameters: nothing is silently wrong, lost or left behind
 	@$(PYTHON) -m pytest -q -n 2 --dist worksteal -m robustness
-	@$(PYTHON) -m orchestrate promise --hard --scenes 200 --seed 201 --out results/robustness --page docs/robustness.md $(ARGS)
-	@$(PYTHON) -m orchestrate promise --hard --of disc-block --scenes 20 --seed 202 --out results/robustness-block --page docs/robustness-block.md $(ARGS)
-	@$(PYTHON) -m orchestrate promise --hard --of ball-axisymmetric --scenes 20 --seed 203 --out results/robustness-ball --page docs/robustness-ball.md $(ARGS)
-	@$(PYTHON) -m orchestrate stress
+	@$(PYTHON) -m benchmarks promise --hard --scenes 200 --seed 201 --out results/robustness --page docs/robustness.md $(ARGS)
+	@$(PYTHON) -m benchmarks promise --hard --of disc-block --scenes 20 --seed 202 --out results/robustness-block --page docs/robustness-block.md $(ARGS)
+	@$(PYTHON) -m benchmarks promise --hard --of ball-axisymmetric --scenes 20 --seed 203 --out results/robustness-ball --page docs/robustness-ball.md $(ARGS)
+	@$(PYTHON) -m benchmarks stress
 
 disc-block-errors: override ARGS += --page docs/disc-block.md
 pairing-comparison: override ARGS += --page docs/pairing.md
@@ -102,19 +102,19 @@ rubber: override ARGS += --page docs/rubber.md
 equal-errors: override ARGS += --page docs/bench.md
 promise scaling: override ARGS += --page docs/$@.md
 bench scaling equal-errors promise disc-block-errors pairing-comparison rubber: $(READY)
-	@$(PYTHON) -m orchestrate $@ $(ARGS)
+	@$(PYTHON) -m benchmarks $@ $(ARGS)
 bench: ## run time against error: meshes, steps, integrators, and other programs where installed
 bench-quick: $(READY) ## the same for one case, coarse
-	@$(PYTHON) -m orchestrate bench --quick $(ARGS)
+	@$(PYTHON) -m benchmarks bench --quick $(ARGS)
 scaling: ## what a step costs over the number of unknowns, by phase, and memory: exponents (docs/scaling.md)
 equal-errors: ## who takes how long for 1, 0.5 and 0.1 %, other programs where installed (docs/bench.md)
 promise: ## whether accuracy means what it says, and stated errors hold, over 240 scenes drawn at random
 disc-block-errors: ## the disc on the free block (section 3.2) over law, nu, stiffness and mesh, with error bars; NGSolve beside it
 pairing-comparison: ## closest point against pairs of points (14), (15): rebound, energy and time over epsilon and k
 oblique-angles: $(READY) ## disc and ball over the angle of incidence, beside rigid and elastic theory (ARGS="--friction 0.2 --angles 20,40,60")
-	@$(PYTHON) -m orchestrate $@ $(or $(ARGS),--page docs/$@.md)
+	@$(PYTHON) -m benchmarks $@ $(or $(ARGS),--page docs/$@.md)
 viscoelastic: $(READY) ## damped impacts: a slow ball against quasi-static theory, a disc over loss factor and relaxation time
-	@$(PYTHON) -m orchestrate $@ $(or $(ARGS),--page docs/$@.md)
+	@$(PYTHON) -m benchmarks $@ $(or $(ARGS),--page docs/$@.md)
 rubber: ## disc and ball as nu -> 0.5: answers and cost, with the mean volume of elements and at points, NGSolve where installed
 
 clean: ## remove all results (keeps .venv)

@@ -58,7 +58,7 @@ install() {   # packages; 1 without root, sudo or apt-get
 }
 if [ ${#missing[@]} -gt 0 ]; then install "${missing[@]}" || stop "cannot install without apt-get and root or sudo; as root run: apt-get install ${missing[*]}"; fi
 
-# What the kernels are compiled with (orchestrate/freefem/kernels.py): nobody has to have it.
+# What the kernels are compiled with (orchestrate/ffimpact/freefem/kernels.py): nobody has to have it.
 installed() { dpkg -s "$1" >/dev/null 2>&1; }
 tools=()
 for package in g++ libsuitesparse-dev; do installed $package || tools+=("$package"); done
@@ -80,7 +80,8 @@ fi
 
 [ -x .venv/bin/python ] || "$(find_python)" -m venv .venv || stop "no python >= 3.11 with venv found; apt-get install python3 python3-venv"
 .venv/bin/python -m pip install -q --disable-pip-version-check -r requirements.lock
+.venv/bin/python -m pip install -q --disable-pip-version-check --no-deps -e .   # import ffimpact, and the command
 .venv/bin/python -c 'import gmsh, matplotlib.pyplot'   # they load, and matplotlib's font list is made now, not in the first run
 .venv/bin/python -m compileall -q orchestrate           # now, not in the first run, or in every one where nothing may be written
-.venv/bin/python -c 'from orchestrate.freefem import freefem; freefem.find()'   # builds edp/libclock.so and the kernels where there is a compiler
+.venv/bin/python -c 'from ffimpact.freefem import freefem; freefem.find()'   # builds edp/libclock.so and the kernels where there is a compiler
 say "ready"

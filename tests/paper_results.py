@@ -5,8 +5,8 @@ from copy import deepcopy
 import numpy as np
 import pandas as pd
 
-from orchestrate.paper import judging as paper_judging
-from orchestrate.report.friction_laws import VALUES
+from examples.paper import judging as paper_judging
+from ffimpact.report.friction_laws import VALUES
 
 # An impact of eleven steps of contact and a flight after it: two maxima of the force, everything slides in its first two steps
 IMPACT = {"t": np.arange(14) * 4e-4, "dt": np.full(14, 4e-4), "normal_force": [0, 2, 5, 3, 6, 5, 6, 7, 6, 4, 2, 1, 0, 0],

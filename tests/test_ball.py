@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from orchestrate import run, scene
-from orchestrate.input import parameters
-from orchestrate.output import estimate, vtu
-from orchestrate.failure import BadInput
-from orchestrate.report import contact, figures, report
+from ffimpact import run, scene
+from ffimpact.input import parameters
+from ffimpact.output import estimate, vtu
+from ffimpact.failure import BadInput
+from ffimpact.report import contact, figures, report
 from test_direct import call
 from triangles import areas
 

@@ -6,14 +6,14 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from orchestrate import run, scene
-from orchestrate.freefem import freefem
-from orchestrate.input import parameters
-from orchestrate.mesh import mesh
-from orchestrate.output import estimate, results, vtu
-from orchestrate.freefem.describe import describe
-from orchestrate.failure import BadInput
-from orchestrate.report import compare, contact, figures, report
+from ffimpact import run, scene
+from ffimpact.freefem import freefem
+from ffimpact.input import parameters
+from ffimpact.mesh import mesh
+from ffimpact.output import estimate, results, vtu
+from ffimpact.freefem.describe import describe
+from ffimpact.failure import BadInput
+from ffimpact.report import compare, contact, figures, report
 from test_direct import COARSE, call
 
 SCRIPT = "ball-axisymmetric"

@@ -6,16 +6,16 @@ import time
 import numpy as np
 import pytest
 
-from orchestrate import run
-from orchestrate.freefem import freefem
-from orchestrate.geometry import tumbling
-from orchestrate.input import parameters
-from orchestrate.mesh import curved, mesh, solid_file, solid_mesh, solids
-from orchestrate.scenes import approach, assembly, mirror
-from orchestrate.failure import BadInput
-from orchestrate.report import bodies, drawing, figures, report
-from orchestrate.scene import SCENES, Scene, load, read as read_scene
-from orchestrate.input.tables import to_toml
+from ffimpact import run
+from ffimpact.freefem import freefem
+from ffimpact.geometry import tumbling
+from ffimpact.input import parameters
+from ffimpact.mesh import curved, mesh, solid_file, solid_mesh, solids
+from ffimpact.scenes import approach, assembly, mirror
+from ffimpact.failure import BadInput
+from ffimpact.report import bodies, drawing, figures, report
+from ffimpact.scene import SCENES, Scene, load, read as read_scene
+from ffimpact.input.tables import to_toml
 from test_direct import call
 
 SCRIPT = "bodies-3d"

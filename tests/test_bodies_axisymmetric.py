@@ -5,15 +5,15 @@ import math
 import numpy as np
 import pytest
 
-from orchestrate import run
-from orchestrate.freefem import freefem
-from orchestrate.input import parameters
-from orchestrate.mesh import mesh
-from orchestrate.scenes import assembly
-from orchestrate.failure import BadInput
-from orchestrate.report import report
-from orchestrate.scene import SCENES, Scene, load, read as read_scene
-from orchestrate.input.tables import to_toml
+from ffimpact import run
+from ffimpact.freefem import freefem
+from ffimpact.input import parameters
+from ffimpact.mesh import mesh
+from ffimpact.scenes import assembly
+from ffimpact.failure import BadInput
+from ffimpact.report import report
+from ffimpact.scene import SCENES, Scene, load, read as read_scene
+from ffimpact.input.tables import to_toml
 from test_direct import call
 from triangles import areas
 

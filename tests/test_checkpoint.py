@@ -12,11 +12,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from orchestrate import run, scene
-from orchestrate.freefem import freefem
-from orchestrate.input import parameters
-from orchestrate.output import results
-from orchestrate.failure import Failure, Unreadable
+from ffimpact import run, scene
+from ffimpact.freefem import freefem
+from ffimpact.input import parameters
+from ffimpact.output import results
+from ffimpact.failure import Failure, Unreadable
 from verification.measure import prepared
 from test_cli import call, is_alive, start, wait_for
 

@@ -14,10 +14,10 @@ from pathlib import Path
 
 import pytest
 
-from orchestrate import run
-from orchestrate.input import parameters
-from orchestrate.__main__ import OWN_MAIN, main
-from orchestrate.failure import Unreadable
+from ffimpact import run
+from ffimpact.input import parameters
+from ffimpact.__main__ import main
+from ffimpact.failure import Unreadable
 
 ROOT = parameters.ROOT
 
@@ -27,8 +27,8 @@ def hear_interrupts() -> None:
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
-def start(*arguments: str, **options) -> subprocess.Popen:
-    return subprocess.Popen([sys.executable, "-m", "orchestrate", *arguments], cwd=ROOT, text=True, preexec_fn=hear_interrupts,
+def start(*arguments: str, module: str = "ffimpact", **options) -> subprocess.Popen:
+    return subprocess.Popen([sys.executable, "-m", module, *arguments], cwd=ROOT, text=True, preexec_fn=hear_interrupts,
                             **dict(stdout=subprocess.PIPE, stderr=subprocess.PIPE) | options)
 
 
@@ -65,8 +65,8 @@ def test_run_reports_beside_the_published_numbers(fake, tmp_path):
 def test_a_run_needs_no_matplotlib(fake, tmp_path, monkeypatch, capsys):
     """Where nothing can be drawn one line says so, and the run is finished and reported all the same; drawn once it can be."""
     with monkeypatch.context() as without:
-        without.setitem(sys.modules, "orchestrate.report.drawing", None)
-        without.delattr("orchestrate.report.drawing", raising=False)
+        without.setitem(sys.modules, "ffimpact.report.drawing", None)
+        without.delattr("ffimpact.report.drawing", raising=False)
         assert main(["run", "disc-normal", "--out", str(tmp_path / "out")]) == 0
     said, starts = capsys.readouterr(), fake.starts()
     assert said.err.startswith("ffimpact: the figures could not be drawn: ") and said.err.count("\n") == 1 and "contact time" in said.out
@@ -78,8 +78,8 @@ def test_a_run_needs_no_matplotlib(fake, tmp_path, monkeypatch, capsys):
 def test_what_a_run_does_not_load():
     """A run that is there is told of without matplotlib; one is drawn without pandas, which takes longer to load than a tenth of the run, and without the docstrings
     that take a third of loading matplotlib."""
-    drawing = "from orchestrate.report import bodies, contact, drawing, figures, impacts, solid; from matplotlib.lines import Line2D; print(Line2D.set.__doc__)"
-    for loads, heavy, said in (("import orchestrate.run", {"matplotlib", "pandas"}, "set()\n"), (drawing, {"pandas"}, "None\nset()\n")):
+    drawing = "from ffimpact.report import bodies, contact, drawing, figures, impacts, solid; from matplotlib.lines import Line2D; print(Line2D.set.__doc__)"
+    for loads, heavy, said in (("import ffimpact.run", {"matplotlib", "pandas"}, "set()\n"), (drawing, {"pandas"}, "None\nset()\n")):
         known = subprocess.run([sys.executable, "-c", f"{loads}; import sys; print({heavy} & set(sys.modules))"], cwd=ROOT, capture_output=True, text=True)
         assert known.stdout == said, known.stderr
 
@@ -173,11 +173,12 @@ def test_a_full_disk_is_one_line(tmp_path, monkeypatch, capsys):
     assert code == 14 and error.count("\n") == 1 and "No space left on device" in error and "--out" in error
 
 
-@pytest.mark.parametrize("command", ["promise", "bench", "stress", "verify", "stick-slip", "oblique-angles", "disc-block-errors", "equal-errors", "scaling", "rubber"])
-def test_a_loop_of_links_is_no_folder(tmp_path, command):
+@pytest.mark.parametrize("module", ["verification.verify", "examples.paper.stick_slip", *(f"benchmarks.{name}" for name in (
+    "promise", "bench", "stress", "oblique_angles", "disc_block_errors", "equal_errors", "scaling", "rubber"))])
+def test_a_loop_of_links_is_no_folder(tmp_path, module):
     """A result folder behind a loop of links is exit code 14 in one line, for every study."""
     (tmp_path / "loop").symlink_to(tmp_path / "pool")
     (tmp_path / "pool").symlink_to(tmp_path / "loop")
     with pytest.raises(Unreadable, match="cannot be made") as error:
-        importlib.import_module(OWN_MAIN[command]).main(["--out", str(tmp_path / "loop/out")])
+        importlib.import_module(module).main(["--out", str(tmp_path / "loop/out")])
     assert error.value.code == 14

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from orchestrate.freefem import freefem
+from ffimpact.freefem import freefem
 
 
 @pytest.fixture

@@ -4,11 +4,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from orchestrate import run, scene
-from orchestrate.report import contact, report
-from orchestrate.scene import read as read_scene
-from orchestrate.report.figures import plt
-from orchestrate.output.results import RunResult
+from ffimpact import run, scene
+from ffimpact.report import contact, report
+from ffimpact.scene import read as read_scene
+from ffimpact.report.figures import plt
+from ffimpact.output.results import RunResult
 from verification import measure as runs
 
 PLANE = {"kind": "plane", "point": [0, 0]}

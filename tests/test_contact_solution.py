@@ -5,9 +5,9 @@ import shutil
 import numpy as np
 import pytest
 
-from orchestrate.freefem import freefem
-from orchestrate.input import parameters
-from orchestrate.output import results
+from ffimpact.freefem import freefem
+from ffimpact.input import parameters
+from ffimpact.output import results
 
 EXACTLY = ("core/step/project.idp", "enough = exact ? 0 : (last ? 1e-10 * contactForce.l2 : 2e-3 * residual.l2);", "enough = 0;")
 BALL = dict(law="neohookean", speed=12, angle=60, slip_velocity=0.1, accuracy=0.2, mesh_size=0.03, contact_mesh_size=0.015, end_time=3e-3)

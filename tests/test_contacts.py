@@ -4,9 +4,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from orchestrate import run, scene
-from orchestrate.failure import Unreadable
-from orchestrate.report import compare, impacts
+from ffimpact import run, scene
+from ffimpact.failure import Unreadable
+from ffimpact.report import compare, impacts
 
 COARSE = {"law": "neohookean", "accuracy": 0.1, "fields": 0}
 OBLIQUE = COARSE | {"speed": 12, "angle": 60, "friction_static": 0.7, "friction_dynamic": 0.5, "slip_velocity": 0.1}

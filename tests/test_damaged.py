@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from orchestrate import __main__ as program, run, scene
-from orchestrate.report import report
+from ffimpact import __main__ as program, run, scene
+from ffimpact.report import report
 
 SET = ("--set", "accuracy=0.4", "fields=3", "modes=4")
 FILES = ("scene.toml", "history.csv", "contacts.csv", "modes.csv", "fields/contact.csv", "fields.pvd", "fields/0001.vtu", "summary.json")

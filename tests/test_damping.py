@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from orchestrate.failure import BadInput
-from orchestrate.freefem.describe import describe
-from orchestrate.places import ROOT
-from orchestrate.scene import read
-from orchestrate.scenes import assembly
+from ffimpact.failure import BadInput
+from ffimpact.freefem.describe import describe
+from ffimpact.places import ROOT
+from ffimpact.scene import read
+from ffimpact.scenes import assembly
 from verification.measure import bodies, disc, measure
 
 IMPACT = {"law": "neohookean", "nu": 0.4, "speed": 4, "angle": 60, "friction_static": 0.3, "accuracy": 0.1}

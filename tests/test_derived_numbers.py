@@ -7,11 +7,11 @@ from dataclasses import replace
 import pandas as pd
 import pytest
 
-from orchestrate import run, scene
-from orchestrate.freefem import freefem
-from orchestrate.mesh import gmsh_file, mesh
-from orchestrate.scene import read as read_scene
-from orchestrate.input.parameters import ROOT
+from ffimpact import run, scene
+from ffimpact.freefem import freefem
+from ffimpact.mesh import gmsh_file, mesh
+from ffimpact.scene import read as read_scene
+from ffimpact.input.parameters import ROOT
 
 COARSE = {"law": "neohookean", "accuracy": 0.1, "fields": 0}
 RADIUS = 0.05
@@ -36,7 +36,7 @@ def test_spin_has_no_part_in_restitution(tmp_path, name, speed, spin):
 
 def test_spin_of_two_discs(tmp_path):
     """Two discs that meet off their centres and spin: the approach is that of their centres along the line between them at the touch."""
-    text = (ROOT / "orchestrate/scenes/two-discs.toml").read_text().replace("friction_static = 0.3", "friction_static = 0")
+    text = (ROOT / "orchestrate/ffimpact/scenes/two-discs.toml").read_text().replace("friction_static = 0.3", "friction_static = 0")
     path = tmp_path / "spinning.toml"
     path.write_text("accuracy = 0.1\n" + text.replace("velocity = [3, 0]", "velocity = [3, 0]\nspin = 200").replace("velocity = [-3, 0]", "velocity = [-3, 0]\nspin = 150"))
     row, found = go(tmp_path / "out", str(path), {"fields": 0})

@@ -10,12 +10,12 @@ from pathlib import Path
 
 import pytest
 
-from orchestrate import run, scene
-from orchestrate.freefem import freefem
-from orchestrate.input import parameters
-from orchestrate.mesh import mesh
-from orchestrate.output import folder, results
-from orchestrate.failure import Busy, Unreadable
+from ffimpact import run, scene
+from ffimpact.freefem import freefem
+from ffimpact.input import parameters
+from ffimpact.mesh import mesh
+from ffimpact.output import folder, results
+from ffimpact.failure import Busy, Unreadable
 
 COARSE = ("-law", "neohookean", "-nu", "0.4", "-accuracy", "0.4")
 ODD = "it's; touch pwned #$(touch pwned)`touch pwned`\"\\ *"     # a name that a shell would make something of

@@ -11,13 +11,13 @@ import sys
 import numpy as np
 import pytest
 
-from orchestrate import run, scene
-from orchestrate.freefem import freefem
-from orchestrate.input import parameters
-from orchestrate.output import results, vtu
-from orchestrate.freefem.describe import describe, describe_results
-from orchestrate.failure import Failure, NotInstalled
-from orchestrate.report import literature, report
+from ffimpact import run, scene
+from ffimpact.freefem import freefem
+from ffimpact.input import parameters
+from ffimpact.output import results, vtu
+from ffimpact.freefem.describe import describe, describe_results
+from ffimpact.failure import Failure, NotInstalled
+from ffimpact.report import literature, report
 
 @pytest.fixture(scope="module")
 def result(tmp_path_factory):
@@ -107,7 +107,7 @@ def said(process: subprocess.CompletedProcess) -> list[str]:
 
 def call(*settings: str, out, environment: dict | None = None) -> subprocess.CompletedProcess:
     arguments = [word for setting in settings for word in ("--set", setting)]
-    return subprocess.run([sys.executable, "-m", "orchestrate", "run", "disc-normal", "--out", str(out), "--set", "fields=0", *arguments],
+    return subprocess.run([sys.executable, "-m", "ffimpact", "run", "disc-normal", "--out", str(out), "--set", "fields=0", *arguments],
                           cwd=parameters.ROOT, env=os.environ | (environment or {}), capture_output=True, text=True,
                           stdin=subprocess.DEVNULL, timeout=120)
 
@@ -141,7 +141,7 @@ def test_material_breakdown_is_12(tmp_path):
 
 def test_files_that_may_not_grow_are_14(tmp_path):
     """Where no file may be larger than 8 kB the run is one line with exit code 14, and leaves nothing."""
-    command = [sys.executable, "-m", "orchestrate", "run", "disc-normal", "--set", "accuracy=0.1", "--out", str(tmp_path / "out")]
+    command = [sys.executable, "-m", "ffimpact", "run", "disc-normal", "--set", "accuracy=0.1", "--out", str(tmp_path / "out")]
     ended = subprocess.run(command, cwd=run.ROOT, capture_output=True, text=True, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (8192, 8192)))
     assert (ended.returncode, ended.stderr.count("\n")) == (14, 1) and "ulimit -f" in ended.stderr and not list(tmp_path.iterdir())
 

@@ -5,7 +5,7 @@ import math
 import pandas as pd
 import pytest
 
-from verification.measurements import equal_errors as equal
+from benchmarks import equal_errors as equal
 
 CASE = equal.CASES["normal"]
 FINE = {equal.OURS: [{"impulse": 208.1, "vy": 7.39}, {"impulse": 208.22, "vy": 7.394}, {"impulse": 208.2, "vy": 7.394}],
@@ -80,6 +80,6 @@ def test_page(monkeypatch, tmp_path, capsys, installed, code):
     monkeypatch.setattr(equal, "once", once)
     assert equal.main(["normal", "--out", str(tmp_path / "out"), "--page", str(tmp_path / "bench.md")]) == code
     page = (tmp_path / "bench.md").read_text()
-    assert "Written by `python -m orchestrate equal-errors normal" in page and "at commit" in page and "1.00 / 1.30 (accuracy 0.1)" in page
+    assert "Written by `python -m benchmarks equal-errors normal" in page and "at commit" in page and "1.00 / 1.30 (accuracy 0.1)" in page
     assert "- getfem, tuned, h 16 mm, dt 150 us: getfem, tuned is not installed (pip)" in page and ("References" in page) == installed
     assert f"agree within their bars in {int(installed)} of 1 cases" in page and len(pd.read_csv(tmp_path / "out/equal-errors.csv")) == (21 if installed else 16)

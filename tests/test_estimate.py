@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from orchestrate.input import parameters
-from orchestrate.output import estimate, notes
-from orchestrate.failure import Failure
-from orchestrate.output.results import Answers
+from ffimpact.input import parameters
+from ffimpact.output import estimate, notes
+from ffimpact.failure import Failure
+from ffimpact.output.results import Answers
 
 ANSWERS = {"impulse": 2.0, "rebound_vx": 1.0, "rebound_vy": 3.0, "rebound_spin": -8.0, "energy_initial": 5.0, "energy_final": 4.5, "vibration_energy": 1.0,
            "friction_work": 0.5, "thresholded_contact_time": 3.9e-3, "contact_time": 4e-3, "peak_force": 7e4}

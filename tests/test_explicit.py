@@ -4,7 +4,7 @@ from functools import cache
 
 import pytest
 
-from orchestrate import run, scene
+from ffimpact import run, scene
 from verification.measure import bodies, disc
 
 EXPLICIT = {"integrator": "central-difference"}

@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from orchestrate.output import results, vtu
-from orchestrate.places import ROOT
+from ffimpact.output import results, vtu
+from ffimpact.places import ROOT
 
 NEW = re.compile(r"`([\w./-]+)`, new\b[^`]*?(?:`[^`]+`[^`]*?)?:\n```\w*\n(.*?)```", re.DOTALL)
 YOUNG, NU = 7e6, 0.3
@@ -38,14 +38,14 @@ def extended(tmp_path):
 
 def go(folder: Path, *words: str, given: str | None = None) -> str:
     """What a command prints that is run there, and must not fail."""
-    ended = subprocess.run(words, cwd=folder, input=given, capture_output=True, text=True, env=os.environ | {"GIT_CEILING_DIRECTORIES": str(folder.parent)})
+    ended = subprocess.run(words, cwd=folder, input=given, capture_output=True, text=True, env=os.environ | {"GIT_CEILING_DIRECTORIES": str(folder.parent), "PYTHONPATH": str(folder / "orchestrate")})
     assert ended.returncode == 0, ended.stderr
     return ended.stdout
 
 
 def run(folder: Path, *words: str) -> dict:
     """The summary of a run there, into out/."""
-    go(folder, sys.executable, "-m", "orchestrate", "run", *words, "--out", "out", "--force", "--quiet")
+    go(folder, sys.executable, "-m", "ffimpact", "run", *words, "--out", "out", "--force", "--quiet")
     return results.read_summary(folder / "out")
 
 
@@ -82,7 +82,7 @@ def test_figure_is_drawn_and_encloses_what_translation_lost(extended):
     folder = extended("A figure")
     summary = run(folder, "disc-normal", "--set", "accuracy=0.05")
     assert (folder / "out/figures/loop.png").stat().st_size > 10_000
-    call = "from orchestrate.report.loop import lost; from orchestrate.output.results import read_history; from pathlib import Path; print(lost(read_history(Path('out'))))"
+    call = "from ffimpact.report.loop import lost; from ffimpact.output.results import read_history; from pathlib import Path; print(lost(read_history(Path('out'))))"
     lost = summary["energy_initial"] - summary["translation_energy"]
     assert lost > 10 and float(go(folder, sys.executable, "-c", call)) == pytest.approx(lost, rel=1e-9)
 

@@ -5,9 +5,9 @@ import xml.etree.ElementTree as xml
 import numpy as np
 import pytest
 
-from orchestrate.output import vtu
-from orchestrate.failure import Unreadable
-from orchestrate.report import bodies, drawing, figures
+from ffimpact.output import vtu
+from ffimpact.failure import Unreadable
+from ffimpact.report import bodies, drawing, figures
 from triangles import areas
 
 

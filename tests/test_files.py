@@ -10,13 +10,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from orchestrate import run, scene
-from orchestrate.failure import BadInput
-from orchestrate.freefem.describe import describe
-from orchestrate.mesh import mesh, rounding, solid_file, solid_mesh
-from orchestrate.scenes import approach, assembly
-from orchestrate.scenes.scene import read
-from orchestrate.sweeps import sweep
+from ffimpact import run, scene
+from ffimpact.failure import BadInput
+from ffimpact.freefem.describe import describe
+from ffimpact.mesh import mesh, rounding, solid_file, solid_mesh
+from ffimpact.scenes import approach, assembly
+from ffimpact.scenes.scene import read
+from ffimpact.sweeps import sweep
 
 MATERIAL = {"law": "neohookean", "young": 7e6, "nu": 0.3, "density": 1000, "accuracy": 0.1}
 FLOOR = {"name": "floor", "kind": "plane", "point": [0, 0], "normal": [0, 1]}

@@ -8,10 +8,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from orchestrate import run, scene
-from orchestrate.scenes import approach
-from orchestrate.failure import BadInput
-from orchestrate.scene import Scene, read as read_scene
+from ffimpact import run, scene
+from ffimpact.scenes import approach
+from ffimpact.failure import BadInput
+from ffimpact.scene import Scene, read as read_scene
 
 RUBBER = {"young": 7e6, "nu": 0.3, "density": 1722, "law": "neohookean", "accuracy": 0.1}
 STEEL = RUBBER | {"young": 2e11, "density": 7800}

@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from orchestrate import run, scene
-from orchestrate.freefem import freefem
-from orchestrate.mesh import gmsh_file, mesh
-from orchestrate.output import results
-from orchestrate.freefem.describe import describe
-from orchestrate.failure import BadInput
+from ffimpact import run, scene
+from ffimpact.freefem import freefem
+from ffimpact.mesh import gmsh_file, mesh
+from ffimpact.output import results
+from ffimpact.freefem.describe import describe
+from ffimpact.failure import BadInput
 from triangles import areas, whole_of
 
 RADIUS, DENSITY = 0.05, 1722.0
@@ -556,7 +556,7 @@ def _converted(folder: Path) -> str:
 def test_script_alone_names_a_gmsh_file(refused, tmp_path):
     """The script reads FreeFEM's format only, and says who reads gmsh's."""
     in_gmsh(tmp_path / "m.msh", mesh.disc(RADIUS, 0.03, 0.02, True), 4.1, True)
-    assert "a file of gmsh, which `python -m orchestrate run SCENE --mesh FILE` reads" in refused(tmp_path / "m.msh", tmp_path / "out")
+    assert "a file of gmsh, which `python -m ffimpact run SCENE --mesh FILE` reads" in refused(tmp_path / "m.msh", tmp_path / "out")
 
 
 def test_other_files_are_not_executed(fake, tmp_path):

@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from orchestrate import scene
-from orchestrate.scene import read
-from orchestrate.run import run
+from ffimpact import scene
+from ffimpact.scene import read
+from ffimpact.run import run
 
 ANSWERS = ("impulse", "contact_time", "thresholded_contact_time", "peak_force", "friction_work", "vibration_energy", "max_pressure", "max_von_mises", "dofs", "steps")
 MATERIAL = {"law": "neohookean", "young": 7e6, "nu": 0.4, "density": 1722.0, "accuracy": 0.1}
@@ -46,7 +46,7 @@ def test_no_answer_and_no_stated_error_depends_on_the_frame(given, tmp_path):
 
 def test_a_disc_is_meshed_finely_where_it_touches_whatever_its_angle(tmp_path):
     """It touches with what is its lowest point when it is not turned; what the scene says of its angle does not matter."""
-    from orchestrate.scenes import approach
+    from ffimpact.scenes import approach
     for angle in (0.0, 50.0):
         found = approach.turned(read(seen(scene.load("two-discs").given | {"body": [one | {"angle": angle} for one in scene.load("two-discs").given["body"]]}), tmp_path, "x"))
         met, = approach.meetings(found)
@@ -71,7 +71,7 @@ def in_unit(given: dict, metre: int) -> dict:
 @pytest.mark.parametrize("shape", SHAPES, ids=[one["shape"] for one in SHAPES])
 def test_no_mesh_depends_on_the_unit_of_length(shape, tmp_path):
     """In metres, centimetres and millimetres a body has the same mesh, but for round-off."""
-    from orchestrate.scenes import approach, assembly
+    from ffimpact.scenes import approach, assembly
     solid, found = shape["shape"] in ("box", "cylinder"), []
     body = shape | {"position": [0.0, 0.07, 0.0][:3 if solid else 2], "velocity": [0.3, -2.0, 0.0][:3 if solid else 2]}
     floor = {"kind": "plane", "point": [0.0, 0.0, 0.0][:len(body["position"])], "normal": [0.0, 1.0, 0.0][:len(body["position"])]}

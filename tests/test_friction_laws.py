@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from orchestrate.__main__ import main
-from orchestrate.failure import Failure
-from orchestrate.report import friction_laws
+from ffimpact.__main__ import main
+from ffimpact.failure import Failure
+from ffimpact.report import friction_laws
 
 STATIC, DYNAMIC, EPSILON = 0.7, 0.5, 0.02
 CLOSED_FORMS = {"sqrt": lambda s: s / np.sqrt(s**2 + 1), "tanh": np.tanh, "linear": lambda s: np.clip(s, -1, 1),

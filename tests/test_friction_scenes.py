@@ -9,13 +9,13 @@ import sys
 import numpy as np
 import pytest
 
-from orchestrate import run, scene
-from orchestrate.input import parameters
-from orchestrate.output import results, vtu
-from orchestrate.__main__ import main
-from orchestrate.report import compare, drawing, figures, report
-from orchestrate.sweeps import study
-from orchestrate.scenes.scene import RUN
+from ffimpact import run, scene
+from ffimpact.input import parameters
+from ffimpact.output import results, vtu
+from ffimpact.__main__ import main
+from ffimpact.report import compare, drawing, figures, report
+from ffimpact.sweeps import study
+from ffimpact.scenes.scene import RUN
 
 COARSE = {"degree": 1, "mesh_size": 0.0125, "contact_mesh_size": 0.0125, "fields": 3}
 FRICTIONLESS = {"contact", "energies", "force", "shapes", "velocity"}

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from orchestrate import scene
-from orchestrate.scenes import assembly, finer, front
-from orchestrate.scenes.approach import meetings
+from ffimpact import scene
+from ffimpact.scenes import assembly, finer, front
+from ffimpact.scenes.approach import meetings
 
 BLOCK = """
 accuracy = 0.02

@@ -2,8 +2,8 @@
 
 import pytest
 
-from orchestrate import run, scene
-from orchestrate.output import results
+from ffimpact import run, scene
+from ffimpact.output import results
 from verification.measure import disc
 
 BALL = {"law": "neohookean", "nu": 0.4, "accuracy": 0.1, "integrator": "auto"}

@@ -4,9 +4,9 @@ import os
 
 import pytest
 
-from orchestrate import run, scene
-from orchestrate.failure import BadInput
-from orchestrate.freefem import freefem, kernels
+from ffimpact import run, scene
+from ffimpact.failure import BadInput
+from ffimpact.freefem import freefem, kernels
 from verification.measure import disc, measure, prepared
 from verification.test_residual_and_tangent import COARSE, MOONEY, OGDEN, kernels_are_the_scripts
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from orchestrate import run, scene
+from ffimpact import run, scene
 from verification.measure import measure
 
 DISC = ("kernels-contact", dict(accuracy=0.1))

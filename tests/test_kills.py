@@ -14,8 +14,8 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from orchestrate.freefem import freefem
-from orchestrate.input import parameters
+from ffimpact.freefem import freefem
+from ffimpact.input import parameters
 from test_cli import hear_interrupts
 
 COARSE = {"law": "neohookean", "nu": "0.4", "accuracy": "0.2", "fields": "5"}
@@ -48,10 +48,10 @@ def command(route: str, out: Path, speed: str = "8", **changed: str) -> list[str
     if route == "sweep":
         file = out.parent / "case.toml"
         file.write_text(SWEEP if speed == "8" else SWEEP.replace("0.4", "0.3"))
-        return [sys.executable, "-m", "orchestrate", "sweep", str(file), "--out", str(out)]
+        return [sys.executable, "-m", "ffimpact", "sweep", str(file), "--out", str(out)]
     if route.startswith("direct"):
         return freefem.find().words("edp/disc-plane.edp", *freefem.words_of(given | {"out": out}))
-    return [sys.executable, "-m", "orchestrate", "run", "disc-normal", "--quiet", "--set", *(f"{name}={value}" for name, value in given.items()), "--out", str(out)]
+    return [sys.executable, "-m", "ffimpact", "run", "disc-normal", "--quiet", "--set", *(f"{name}={value}" for name, value in given.items()), "--out", str(out)]
 
 
 def start(words: list[str]) -> subprocess.Popen:
@@ -194,7 +194,7 @@ def test_kill(shelf, tmp_path, route, number, whom, point, before):
 
 TIDIES = """
 import time
-from orchestrate import stopping
+from ffimpact import stopping
 stopping.obey()
 try:
     print("up", flush=True)

@@ -9,12 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from orchestrate.failure import BadInput
-from orchestrate.freefem import freefem
-from orchestrate.input import parameters
-from orchestrate.scenes.entries import set_entry, toml_value
-from orchestrate.__main__ import main
-from orchestrate.input.tables import to_toml
+from ffimpact.failure import BadInput
+from ffimpact.freefem import freefem
+from ffimpact.input import parameters
+from ffimpact.scenes.entries import set_entry, toml_value
+from ffimpact.__main__ import main
+from ffimpact.input.tables import to_toml
 
 LONG = "x" * 300                        # longer than a name may be
 NO_NUMBERS = ["x", "8x", "--8", "+-8", "1e", "e5", "1e+", ".", "-", "8.", "0x10", "nan", "inf", "-inf", "1,5", "1 2", "1_000", "８", "٣.٥", "½",
@@ -73,7 +73,7 @@ def by_python(capsys, words: str, *arguments: str, code: int = 10) -> None:
 def by_process(words: str, *arguments: str | bytes, code: int = 10) -> None:
     """The command line, in a process of its own."""
     before = tree(Path.cwd())
-    process = subprocess.run([sys.executable, "-m", "orchestrate", *arguments], stdin=subprocess.DEVNULL, capture_output=True, timeout=20,
+    process = subprocess.run([sys.executable, "-m", "ffimpact", *arguments], stdin=subprocess.DEVNULL, capture_output=True, timeout=20,
                              env=os.environ | {"PYTHONPATH": str(parameters.ROOT)})
     check(process.returncode, process.stderr.decode(errors="replace"), words, code, before)
 

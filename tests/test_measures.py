@@ -4,9 +4,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from orchestrate import run, scene
-from orchestrate.output import results
-from verification.measurements import bench
+from ffimpact import run, scene
+from ffimpact.output import results
+from benchmarks import bench
 
 
 def rows(**columns) -> pd.DataFrame:

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from orchestrate import run
-from orchestrate.scenes import approach, assembly
-from orchestrate.freefem.describe import describe
-from orchestrate.input.tables import to_toml
-from orchestrate.scene import Scene, read as read_scene
+from ffimpact import run
+from ffimpact.scenes import approach, assembly
+from ffimpact.freefem.describe import describe
+from ffimpact.input.tables import to_toml
+from ffimpact.scene import Scene, read as read_scene
 
 DISC = {"name": "disc", "shape": "disc", "radius": 0.05, "position": [0, 0.0651], "velocity": [0, -3]}
 RUBBER = {"law": "neohookean", "young": 7e6, "nu": 0.3, "density": 1722, "accuracy": 0.1}

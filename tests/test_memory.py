@@ -6,7 +6,7 @@ import subprocess
 
 import pytest
 
-from orchestrate.freefem import freefem
+from ffimpact.freefem import freefem
 
 # new memory, and a zone behind it, hold FILL in every byte: of 127 a real is 1.4e306, of 0 it is zero
 MALLOC = r"""

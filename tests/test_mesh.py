@@ -4,10 +4,10 @@
 import numpy as np
 import pytest
 
-from orchestrate.freefem import freefem
-from orchestrate.input import parameters
-from orchestrate.mesh import mesh
-from orchestrate.freefem.describe import describe
+from ffimpact.freefem import freefem
+from ffimpact.input import parameters
+from ffimpact.mesh import mesh
+from ffimpact.freefem.describe import describe
 from triangles import areas, smallest_angle
 
 CASES = [

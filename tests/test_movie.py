@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from orchestrate.output import results, vtu
-from orchestrate.__main__ import main
-from orchestrate.report import figures, movie
+from ffimpact.output import results, vtu
+from ffimpact.__main__ import main
+from ffimpact.report import figures, movie
 
 FFMPEG = """#!/bin/sh
 # keeps the raw frames that it gets, in the file that the last argument names

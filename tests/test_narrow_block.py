@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from orchestrate import run, scene
-from orchestrate.scene import read as read_scene
+from ffimpact import run, scene
+from ffimpact.scene import read as read_scene
 
 def narrow(width: float, height: float, x: float, off: float, speed: float, friction: float) -> dict:
     """A block between two discs."""

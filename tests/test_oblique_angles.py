@@ -6,8 +6,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from orchestrate.__main__ import main
-from verification.measurements import oblique_angles as angles
+from ffimpact.__main__ import guarded
+from benchmarks import __main__ as measurements
+from benchmarks import oblique_angles as angles
 from verification.oblique_ball import NU, slides_throughout, springs
 
 SLIDES, STICKS = 20.0, 60.0      # degrees, at a friction of 0.3
@@ -99,7 +100,7 @@ def test_a_failed_run_is_no_agreement():
     (["--kinds", "soft"], "--kinds: 'soft' is not known (accepted: stiff, paper, slow")])
 def test_bad_input(tmp_path, capsys, words, said):
     """Exit code 10, one line that names the option, the value and what is accepted; nothing is run or made."""
-    assert main(["oblique-angles", *words, "--out", str(tmp_path / "out")]) == 10
+    assert guarded(measurements.main, ["oblique-angles", *words, "--out", str(tmp_path / "out")]) == 10
     error = capsys.readouterr().err
     assert error.count("\n") == 1 and said in error and not (tmp_path / "out").exists()
 
@@ -108,11 +109,11 @@ def test_bad_input(tmp_path, capsys, words, said):
 def test_real_impacts_of_a_stiff_disc(tmp_path, capsys):
     """It slides at 20 degrees and rolls at 60, as a rigid one; table, figure and page are there; what is finished is not run again."""
     call = ["oblique-angles", "--bodies", "disc", "--kinds", "stiff", "--angles", "60,20", "--friction", "0.2", "--out", str(tmp_path / "out"), "--page", str(tmp_path / "page.md")]
-    assert main(call) == 0
+    assert guarded(measurements.main, call) == 0
     out = capsys.readouterr().out
     table = pd.read_csv(tmp_path / "out/oblique-angles.csv")
     assert table.angle.tolist() == [20, 60] and table.verdict.tolist() == ["agrees"] * 2 and table.psi_2[0] > 4 and abs(table.psi_2[1]) < 0.05
     assert (table.psi_2_error < 0.05).all() and (tmp_path / "out/oblique-angles.png").stat().st_size > 5000
-    assert "2 of 2 that a theory is asked of agree," in out and "python -m orchestrate oblique-angles --bodies disc" in (tmp_path / "page.md").read_text()
+    assert "2 of 2 that a theory is asked of agree," in out and "python -m benchmarks oblique-angles --bodies disc" in (tmp_path / "page.md").read_text()
     made = {path: path.stat().st_mtime_ns for path in (tmp_path / "out").rglob("summary.json")}
-    assert len(made) == 4 and main(call) == 0 and made == {path: path.stat().st_mtime_ns for path in (tmp_path / "out").rglob("summary.json")}
+    assert len(made) == 4 and guarded(measurements.main, call) == 0 and made == {path: path.stat().st_mtime_ns for path in (tmp_path / "out").rglob("summary.json")}

@@ -13,13 +13,12 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-import orchestrate
-from orchestrate import run
-from orchestrate.failure import Unreadable
-from orchestrate.input.parameters import ROOT
+import ffimpact
+from ffimpact import run
+from ffimpact.failure import Unreadable
+from ffimpact.input.parameters import ROOT
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
-NOT_INSTALLED = {"orchestrate/setup.sh"}        # it makes the source folder's .venv
 
 
 def packed() -> dict[str, Path]:
@@ -49,9 +48,9 @@ def call(site: Path, cwd: Path, *words: str, **environment: str) -> subprocess.C
 
 
 def test_the_package_holds_every_file_of_the_program():
-    """Nothing of orchestrate/ and edp/ is forgotten, nothing else comes along, and no other name lands in site-packages."""
-    there = {path for place in ("orchestrate", "edp") for path in (ROOT / place).rglob("*") if path.is_file() and path.suffix != ".pyc" and "libclock.so" not in path.name and path.parent.name != "dev"}
-    assert {str(path.relative_to(ROOT)) for path in there - set(packed().values())} == NOT_INSTALLED
+    """Nothing of orchestrate/ffimpact/ and edp/ is forgotten, nothing else comes along, and no other name lands in site-packages."""
+    there = {path for place in ("orchestrate/ffimpact", "edp") for path in (ROOT / place).rglob("*") if path.is_file() and path.suffix != ".pyc" and "libclock.so" not in path.name and path.parent.name != "dev"}
+    assert {str(path.relative_to(ROOT)) for path in there - set(packed().values())} == set()
     assert set(packed().values()) <= there and {name.split("/")[0] for name in packed()} == {"ffimpact"}
 
 
@@ -60,22 +59,21 @@ def test_it_runs_in_any_folder(fake, site, tmp_path):
     done = call(site, tmp_path, "-c", "from ffimpact import run, scene; run.run(scene.load('disc-normal'), {'fields': 0}, estimate=False)")
     assert done.returncode == 0, done.stderr
     said = json.loads((tmp_path / "results/disc-normal/summary.json").read_text())["provenance"]
-    assert said["code"] == run.code_hash() and said["version"] == orchestrate.__version__ and said["git"] == "unknown"
+    assert said["code"] == run.code_hash() and said["version"] == ffimpact.__version__ and said["git"] == "unknown"
     assert call(site, tmp_path, "-m", "ffimpact", "run", "--help").stdout.startswith("usage: ffimpact run ")
 
 
 def test_what_is_not_there_is_one_line(fake, site, tmp_path):
-    """A command that needs the source folder, and a run without FreeFem++, end with exit code 13 and a line that says where to get it."""
-    for words, line in ((["verify"], "ffimpact: verify: needs the program's source folder .*pip install -e"),
-                        (["run", "disc-normal"], "ffimpact: /none not found; install it: apt-get install freefem.*conda-forge.*FreeFem-sources/releases")):
-        done = call(site, tmp_path, "-m", "ffimpact", *words, FREEFEM="/none")
-        assert done.returncode == 13 and re.fullmatch(f"{line}.*\n", done.stderr), done.stderr
+    """A run without FreeFem++ ends with exit code 13 and a line that says where to get it."""
+    line = "ffimpact: /none not found; install it: apt-get install freefem.*conda-forge.*FreeFem-sources/releases"
+    done = call(site, tmp_path, "-m", "ffimpact", "run", "disc-normal", FREEFEM="/none")
+    assert done.returncode == 13 and re.fullmatch(f"{line}.*\n", done.stderr), done.stderr
 
 
 def test_one_version(site, tmp_path):
     """--version, the summaries and the newest heading of CHANGELOG.md say the same; importing the package takes no pandas."""
-    assert call(site, tmp_path, "-m", "ffimpact", "--version").stdout == f"ffimpact {orchestrate.__version__}\n"
-    assert re.search(r"^## (.*)$", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)[1] == orchestrate.__version__
+    assert call(site, tmp_path, "-m", "ffimpact", "--version").stdout == f"ffimpact {ffimpact.__version__}\n"
+    assert re.search(r"^## (.*)$", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)[1] == ffimpact.__version__
     assert call(site, tmp_path, "-c", "import ffimpact, sys; print({'pandas', 'numpy'} & set(sys.modules))").stdout == "set()\n"
 
 
@@ -93,12 +91,12 @@ def test_a_run_as_pandas_objects(finished_folder):
     """load_run gives scene, summary and history; nested entries by dotted names; one line where there is no run."""
     (finished_folder / "summary.json").write_text('{"status": "ok", "contact_time": 0.004, "phase_seconds": {"contact": 0.1}, "breakdown_time": null}')
     (finished_folder / "scene.toml").write_text('title = "two"\n[[body]]\nyoung = 1e6\nvelocity = [0.0, -1.0]\n[[body]]\nyoung = 2e6\n[contact]\npenalty = 1e9\n')
-    found = orchestrate.load_run(str(finished_folder))
+    found = ffimpact.load_run(str(finished_folder))
     assert found.scene["body.2.young"] == 2e6 and found.scene["body.1.velocity"] == [0.0, -1.0] and found.scene["contact.penalty"] == 1e9
     assert found.summary["phase_seconds.contact"] == 0.1 and found.summary["breakdown_time"] is None
     assert isinstance(found.history, pd.DataFrame) and len(found.history) == 200 and found.history.normal_force.max() > 0
     with pytest.raises(Unreadable, match="nowhere/scene.toml cannot be read"):
-        orchestrate.load_run("nowhere")
+        ffimpact.load_run("nowhere")
 
 
 @pytest.mark.robustness
@@ -108,7 +106,7 @@ def test_pip_installs_it(how, tmp_path):
     tree = shutil.copytree(ROOT, tmp_path / "tree", ignore=shutil.ignore_patterns(".venv", ".git", "results", "build", "libclock.so", "dev"))
     venv.create(tmp_path / "venv", with_pip=True)
     subprocess.run([tmp_path / "venv/bin/pip", "install", "-q", *how, tree], check=True, timeout=600)
-    assert subprocess.run([tmp_path / "venv/bin/ffimpact", "--version"], cwd=tmp_path, capture_output=True, text=True).stdout == f"ffimpact {orchestrate.__version__}\n"
+    assert subprocess.run([tmp_path / "venv/bin/ffimpact", "--version"], cwd=tmp_path, capture_output=True, text=True).stdout == f"ffimpact {ffimpact.__version__}\n"
     done = subprocess.run([tmp_path / "venv/bin/ffimpact", "run", "disc-normal", "--set", "accuracy=0.1"], cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 0 and (tmp_path / "results/disc-normal/summary.json").exists(), done.stderr
     site = next((tmp_path / "venv/lib").glob("python*/site-packages"))

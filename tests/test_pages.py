@@ -4,16 +4,16 @@ import re
 
 import pytest
 
-from orchestrate import scene
-from orchestrate.report import pages
-from orchestrate.freefem.describe import describe_results
-from orchestrate.places import ROOT
+from ffimpact import scene
+import pages
+from ffimpact.freefem.describe import describe_results
+from ffimpact.places import ROOT
 
 
 @pytest.mark.parametrize("path", pages.pages(), ids=lambda path: path.name)
 def test_pages_are_as_the_scripts_have_it(path):
-    """What python -m orchestrate pages would write is what is there."""
-    assert path.read_text() == pages.pages()[path], "python -m orchestrate pages"
+    """What python docs/pages.py would write is what is there."""
+    assert path.read_text() == pages.pages()[path], "python docs/pages.py"
 
 
 @pytest.mark.parametrize("script", pages.SCRIPTS)
@@ -70,5 +70,5 @@ def test_files_that_a_page_names_are_there(path):
     """Every script and module in code type; those that a worked example makes are announced as new."""
     text = path.read_text()
     named = set(re.findall(r"`([\w./-]+\.(?:idp|edp|hpp|py))`", text)) - set(re.findall(r"`(\S+)`, new\b", text))
-    there = [str(file) for folder in ("edp", "orchestrate", "verification", "tests") for file in (ROOT / folder).rglob("*.*")]
+    there = [str(file) for folder in ("edp", "orchestrate", "verification", "benchmarks", "examples", "tests") for file in (ROOT / folder).rglob("*.*")]
     assert not [name for name in named if not any(file.endswith(f"/{name}") for file in there)]

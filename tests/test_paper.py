@@ -8,15 +8,15 @@ import pandas as pd
 import pytest
 
 import fake_freefem
-from orchestrate import __version__, run, scene
-from orchestrate.__main__ import main
-from orchestrate.failure import Failure
-from orchestrate.paper import paper, bodies as paper_bodies, friction as paper_friction, judging as paper_judging, page as paper_page
-from orchestrate.report import figures, report
-from orchestrate.paper.judging import AGREES, DIFFERS, OPEN, PARTLY, STATEMENTS, Finding, maxima
-from orchestrate.input.parameters import ROOT
-from orchestrate.paper import stick_slip
-from orchestrate.sweeps import sweep, sweep_figures
+from ffimpact import __version__, run, scene
+from ffimpact.__main__ import guarded
+from ffimpact.failure import Failure
+from examples.paper import paper, bodies as paper_bodies, friction as paper_friction, judging as paper_judging, page as paper_page
+from ffimpact.report import figures, report
+from examples.paper.judging import AGREES, DIFFERS, OPEN, PARTLY, STATEMENTS, Finding, maxima
+from ffimpact.input.parameters import ROOT
+from examples.paper import stick_slip
+from ffimpact.sweeps import sweep, sweep_figures
 from paper_results import BLOCK, BLOCK_END, CHATTERS, END, IMPACT, JUMPS, KEPT, LEAKS, Memory, NEAR, PUSH, SLIDES, SMOOTH, base, forces, jump, pairs, speeds, steps, waves
 
 FIND = {find.__name__: find for _, _, find in STATEMENTS}
@@ -348,7 +348,7 @@ def test_load_changes_are_weighted_with_the_load():
 
 def test_no_statement_says_how_the_paper_ran_it():
     """It states neither mesh nor step: only how it may have been run."""
-    files = [ROOT / name for name in ("README.md", "Makefile")] + [*(ROOT / "orchestrate").rglob("*.py"), *(ROOT / "orchestrate").rglob("*.toml")]
+    files = [ROOT / name for name in ("README.md", "Makefile")] + [*(ROOT / "orchestrate/ffimpact").rglob("*.py"), *(ROOT / "orchestrate").rglob("*.toml")]
     assert not [path for path in files if "as the paper ran it" in path.read_text()]
 
 
@@ -433,7 +433,7 @@ def test_the_page_of_all_statements(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(paper.judging, "Results", lambda folder: given)
     monkeypatch.setattr(paper, "require", lambda results: None)
     monkeypatch.setattr(paper, "verification", lambda folder: '<h2 id="verification">Verification</h2>')
-    assert main(["paper", "--results", str(tmp_path)]) == 0
+    assert guarded(paper.main, ["--results", str(tmp_path)]) == 0
     text, said = (tmp_path / "paper/report.html").read_text(), capsys.readouterr().out
     assert all(f'id="s{k}"' in text for k in range(len(STATEMENTS))) and 'href="#verification"' in text
     assert sum(int(number) for number, _ in re.findall(f"([0-9]+) ({'|'.join(paper.COLOURS)})", said.splitlines()[-2])) == len(STATEMENTS)
@@ -448,7 +448,7 @@ def test_the_pictures_of_the_page_are_asked_for(tmp_path):
 
 def test_a_missing_case_stops_it(tmp_path, capsys):
     """One line names every make target that is missing, exit code 14, and no page is written."""
-    assert main(["paper", "--results", str(tmp_path)]) == 14
+    assert guarded(paper.main, ["--results", str(tmp_path)]) == 14
     err = capsys.readouterr().err
     assert err.count("\n") == 1 and not (tmp_path / "paper").exists()
     assert "run: make disc-normal ball-comparison disc-oblique disc-rolling disc-block ball ball-axisymmetric calibrate calibrate-ball calibrate-ball-3d calibrate-oblique conservation" in err and "stick-slip friction-laws" in err

@@ -4,10 +4,10 @@ import re
 
 import pytest
 
-from orchestrate import scene
-from orchestrate.input import parameters
-from orchestrate.freefem.describe import describe
-from orchestrate.failure import BadInput
+from ffimpact import scene
+from ffimpact.input import parameters
+from ffimpact.freefem.describe import describe
+from ffimpact.failure import BadInput
 
 
 def test_every_row_of_the_table_is_read():

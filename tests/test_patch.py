@@ -8,10 +8,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from orchestrate import run, scene
-from orchestrate.output import vtu
-from orchestrate.report import bodies, contact, figures
-from orchestrate.output.results import RunResult, body_names
+from ffimpact import run, scene
+from ffimpact.output import vtu
+from ffimpact.report import bodies, contact, figures
+from ffimpact.output.results import RunResult, body_names
 
 SCENES = {"disc": ("disc-normal", {}), "whole disc": ("disc-oblique", {}), "revolution": ("ball-axisymmetric", {"accuracy": 0.1}),
           "ball": ("ball", {"accuracy": 0.2}), "oblique ball": ("ball-oblique", {}),

@@ -2,15 +2,15 @@
 
 import pytest
 
-from orchestrate import run, scene
-from orchestrate.input.parameters import ROOT
+from ffimpact import run, scene
+from ffimpact.input.parameters import ROOT
 from verification import measure
-from verification.measurements import bench, equal_errors, peers
+from benchmarks import bench, equal_errors, peers
 
 
 def test_every_scene_has_its_script():
     """NGSolve has all bodies, GetFEM the disc; whoever is asked in the bench is there."""
-    there = {path.stem for path in (ROOT / "verification/peers").glob("*.py")}
+    there = {path.stem for path in (ROOT / "benchmarks/programs").glob("*.py")}
     assert {f"ngsolve_{body}" for body in peers.BODIES.values()} | {"getfem_disc"} <= there
     assert {"ngsolve_two_bodies", "ffimpact_run"} <= there
     for asked in (bench.PEERS, bench.PEERS_QUICK):

@@ -8,14 +8,13 @@ import types
 import numpy as np
 import pytest
 
-from orchestrate import __main__ as program
-from orchestrate import progress, scene
-from orchestrate.freefem import freefem
-from orchestrate.running import solver as told
-from orchestrate.failure import BadInput
-from orchestrate.input.parameters import ROOT
-from orchestrate.paper import paper as paper_making
-from orchestrate.sweeps import study
+from ffimpact import progress, scene
+from ffimpact.freefem import freefem
+from ffimpact.running import solver as told
+from ffimpact.failure import BadInput
+from ffimpact.input.parameters import ROOT
+from examples.paper import paper as paper_making
+from ffimpact.sweeps import study
 
 
 class Bar:
@@ -160,12 +159,13 @@ def test_scripts_report_the_share_of_their_steps(tmp_path, script, flags, apart)
 def test_paper_counts_its_parts(shown, monkeypatch, capsys):
     """make paper runs what make's targets run, in their order, in one line with the time left; the first that fails ends it."""
     ran = []
-    monkeypatch.setattr(program, "main", lambda words: ran.append(words) or (1 if "oblique" in words else 0))
+    monkeypatch.setattr(paper_making, "called", lambda module, words: ran.append([module, *words]) or (1 if "oblique" in words else 0))
     recipe = subprocess.run(["make", "-n", "paper"], cwd=ROOT, capture_output=True, text=True).stdout   # a make within a make adds lines of its own
     targets = re.search(r"--make (.*)$", recipe, re.MULTILINE)[1].split()
     assert targets[:2] == ["disc-normal", "disc-oblique"] and {"stick-slip", "verify", "contact-time-svk"} < set(targets)
-    assert paper_making.make(targets) == 1 and ran[:3] == [["run", "disc-normal"], ["compare", "disc-oblique-svk", "disc-oblique"], ["run", "disc-rolling"]]
-    assert ran[-1] == ["sweep", "oblique"] and any(words == f"paper: 2 of {len(targets)}" for _, words in shown[0].seen)
-    assert [words[0] for words in paper_making.commands("ball-comparison")] == ["run", "compare", "compare"]     # every line of a recipe
+    assert paper_making.make(targets) == 1 and ran[:3] == [
+        ["ffimpact", "run", "disc-normal"], ["ffimpact", "compare", "disc-oblique-svk", "disc-oblique"], ["ffimpact", "run", "disc-rolling"]]
+    assert ran[-1] == ["ffimpact", "sweep", "oblique"] and any(words == f"paper: 2 of {len(targets)}" for _, words in shown[0].seen)
+    assert [words[0] for _, words in paper_making.commands("ball-comparison")] == ["run", "compare", "compare"]     # every line of a recipe
     with pytest.raises(BadInput, match="--make: 'clean' is no target"):
         paper_making.make(["clean"])

@@ -10,11 +10,11 @@ import pandas as pd
 import pytest
 from matplotlib.transforms import Bbox
 
-from orchestrate.input.parameters import ROOT
-from orchestrate.output import results, vtu
-from orchestrate.report import bodies, compare, figures, impacts
-from orchestrate.report.figures import plt
-from orchestrate.sweeps import sweep, sweep_figures
+from ffimpact.input.parameters import ROOT
+from ffimpact.output import results, vtu
+from ffimpact.report import bodies, compare, figures, impacts
+from ffimpact.report.figures import plt
+from ffimpact.sweeps import sweep, sweep_figures
 from triangles import areas
 
 SCENE = dict(script="disc-plane", law="svk", young=7e6, nu=0.45, density=1722, radius=0.05, speed=8, angle=90, spin=0, gravity=0, body_force_x=0,
@@ -236,7 +236,7 @@ def test_no_legend_without_names(recwarn, restitution, drawn):
 
 def test_a_legend_takes_what_has_a_name():
     """Pictures call no legend of a panel but by figures.legend(), which leaves it out where nothing has a name, or with its own artists."""
-    calls = [line.strip() for path in (ROOT / "orchestrate").rglob("*.py") for line in path.read_text().splitlines()
+    calls = [line.strip() for path in (ROOT / "orchestrate/ffimpact").rglob("*.py") for line in path.read_text().splitlines()
              if re.search(r"\.legend\(", line)]
     assert len(calls) > 3 and all(re.search(r"legend\((\*|handles=|shown\()", call) for call in calls), calls
     figure, axes = plt.subplots()

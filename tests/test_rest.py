@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from orchestrate import run, scene
-from orchestrate.failure import BadInput, Failure
-from orchestrate.output.results import Contents
-from orchestrate.report import drawing, impacts
+from ffimpact import run, scene
+from ffimpact.failure import BadInput, Failure
+from ffimpact.output.results import Contents
+from ffimpact.report import drawing, impacts
 from verification.measure import bodies, disc
 
 RADIUS, YOUNG, NU, DENSITY, GRAVITY, ACCURACY = 0.05, 7e6, 0.4, 1722, 9.81, 0.1

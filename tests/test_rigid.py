@@ -7,8 +7,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from orchestrate.__main__ import main
-from orchestrate.output import vtu
+from ffimpact.__main__ import main
+from ffimpact.output import vtu
 
 DISC = """
 density = 1000

@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-from orchestrate.places import ROOT
+from ffimpact.places import ROOT
 
 CORE = ROOT / "edp/core"
 MOST = 430

@@ -3,7 +3,7 @@
 import pytest
 import pandas as pd
 
-from verification.measurements import rubber
+from benchmarks import rubber
 
 
 def table(**changed) -> pd.DataFrame:

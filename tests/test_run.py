@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from orchestrate import run, scene
-from orchestrate.freefem import freefem
-from orchestrate.mesh import mesh
-from orchestrate.output import folder, results
-from orchestrate.freefem.describe import describe
-from orchestrate.report import figures
-from orchestrate.failure import Failure, NotInstalled, Unreadable
+from ffimpact import run, scene
+from ffimpact.freefem import freefem
+from ffimpact.mesh import mesh
+from ffimpact.output import folder, results
+from ffimpact.freefem.describe import describe
+from ffimpact.report import figures
+from ffimpact.failure import Failure, NotInstalled, Unreadable
 
 
 def go(out: Path, overrides: dict | None = None, **options) -> results.RunResult:

@@ -8,19 +8,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from orchestrate import run, scene
-from orchestrate.__main__ import main
-from orchestrate.freefem import freefem
-from orchestrate.input import parameters
-from orchestrate.input.tables import to_toml
-from orchestrate.mesh import mesh
-from orchestrate.output import estimate, vtu
-from orchestrate.scenes import assembly, finer
-from orchestrate.freefem.describe import describe
-from orchestrate.failure import BadInput, Failure
-from orchestrate.report import bodies, drawing, figures, impacts, report
-from orchestrate.sweeps import sweep
-from orchestrate.scene import read as read_scene
+from ffimpact import run, scene
+from ffimpact.__main__ import main
+from ffimpact.freefem import freefem
+from ffimpact.input import parameters
+from ffimpact.input.tables import to_toml
+from ffimpact.mesh import mesh
+from ffimpact.output import estimate, vtu
+from ffimpact.scenes import assembly, finer
+from ffimpact.freefem.describe import describe
+from ffimpact.failure import BadInput, Failure
+from ffimpact.report import bodies, drawing, figures, impacts, report
+from ffimpact.sweeps import sweep
+from ffimpact.scene import read as read_scene
 
 MINE = {"title": "A disc meets a soft one and a moving post", "law": "neohookean", "young": 7e6, "nu": 0.4, "density": 1722, "accuracy": 0.4, "fields": 3,
         "body": [{"name": "striker", "shape": "disc", "radius": 0.05, "position": [-0.052, 0], "velocity": [4, 0]},

@@ -5,12 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from orchestrate import run
-from orchestrate.output import vtu
-from orchestrate.failure import BadInput, Failure
-from orchestrate.mesh import mesh
-from orchestrate.scene import read as read_scene
-from orchestrate.scenes import assembly
+from ffimpact import run
+from ffimpact.output import vtu
+from ffimpact.failure import BadInput, Failure
+from ffimpact.mesh import mesh
+from ffimpact.scene import read as read_scene
+from ffimpact.scenes import assembly
 
 FLOOR = {"name": "floor", "kind": "plane", "point": [0, 0], "normal": [0, 1]}
 SCENE = {"law": "neohookean", "young": 7e6, "nu": 0.3, "density": 1722, "accuracy": 0.1, "obstacle": [FLOOR]}

@@ -7,11 +7,11 @@ from importlib.util import find_spec
 import numpy as np
 import pytest
 
-from orchestrate import run, scene
-from orchestrate.output import vtu
-from orchestrate.__main__ import main
-from orchestrate.input.parameters import ROOT
-from orchestrate.report import contact, drawing, figures, movie, solid
+from ffimpact import run, scene
+from ffimpact.output import vtu
+from ffimpact.__main__ import main
+from ffimpact.input.parameters import ROOT
+from ffimpact.report import contact, drawing, figures, movie, solid
 from triangles import areas
 
 COARSE = {"mesh_size": 0.025, "contact_mesh_size": 0.012, "accuracy": 0.1, "fields": 5}

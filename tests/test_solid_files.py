@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from orchestrate.freefem import freefem
+from ffimpact.freefem import freefem
 from verification.solids import Scene, ball, brick, write
 
 TWO = Scene([ball((0, 0, 0), 0.05, 1, shift=(0, 0.06, 0), velocity=(0, -2, 0)), brick((-0.1, -0.3, -0.1), (0.1, -0.2, 0.1), (2, 1, 2), shift=(0, 0.2, 0))],

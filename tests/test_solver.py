@@ -5,11 +5,11 @@ from contextlib import contextmanager
 
 import pytest
 
-from orchestrate import run, scene
-from orchestrate.freefem import freefem
-from orchestrate.output import estimate, results
-from orchestrate.running import solver
-from orchestrate.failure import Failure
+from ffimpact import run, scene
+from ffimpact.freefem import freefem
+from ffimpact.output import estimate, results
+from ffimpact.running import solver
+from ffimpact.failure import Failure
 from test_checkpoint import EFFORT
 from test_kills import at_work
 

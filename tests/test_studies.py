@@ -8,11 +8,11 @@ import sys
 import pandas as pd
 import pytest
 
-from orchestrate import run
-from orchestrate.output import results
+from ffimpact import run
+from ffimpact.output import results
 from verification import commands
-from verification.measurements import pairing_comparison, stress
-from orchestrate.sweeps import study
+from benchmarks import pairing_comparison, stress
+from ffimpact.sweeps import study
 from test_cli import is_alive, start, wait_for
 
 POINTS = [{"speed": speed, "dt": dt} for speed in (4.0, 8.0) for dt in (0.0, 1e-4)]
@@ -73,7 +73,7 @@ def test_lost_process_is_a_row(fake, tmp_path, monkeypatch):
 def test_interruption_is_clean(fake, tmp_path, number, code):
     """One FreeFem++ a core at most; Ctrl-C ends them all, leaves no half-finished folder and no traceback."""
     fake("slow")
-    process = start("stress", "--quick", "7", "--out", str(tmp_path / "out"), start_new_session=True)
+    process = start("stress", "--quick", "7", "--out", str(tmp_path / "out"), module="benchmarks", start_new_session=True)
     wait_for(lambda: fake.starts() >= study.CORES)
     process.send_signal(number)
     _, err = process.communicate(timeout=20)
@@ -85,8 +85,9 @@ def test_interruption_is_clean(fake, tmp_path, number, code):
 def test_missing_freefem_is_said_once(tmp_path, monkeypatch, capsys):
     """Without FreeFem++ a study does not fail point by point."""
     monkeypatch.setenv("FREEFEM", str(tmp_path / "nothing"))
-    from orchestrate.__main__ import main
-    assert main(["stress", "--quick", "3", "--out", str(tmp_path)]) == 13
+    from ffimpact.__main__ import guarded
+    from benchmarks import __main__ as measurements
+    assert guarded(measurements.main, ["stress", "--quick", "3", "--out", str(tmp_path)]) == 13
     assert capsys.readouterr().err.count("make setup") == 1
 
 

@@ -4,10 +4,10 @@ import re
 
 import pytest
 
-from orchestrate import scene
-from orchestrate.__main__ import main
-from orchestrate.failure import BadInput, suggestion
-from orchestrate.input import parameters
+from ffimpact import scene
+from ffimpact.__main__ import main
+from ffimpact.failure import BadInput, suggestion
+from ffimpact.input import parameters
 
 MESSAGES = [   # arguments, entry, value, what the message suggests
     (("run", "disk-normal"), "disk-normal", "no such scene", "did you mean disc-normal?"),

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from orchestrate.__main__ import main
-from orchestrate.mesh import surface_file
+from ffimpact.__main__ import main
+from ffimpact.mesh import surface_file
 
 SCENE = """
 dimension = "3d"

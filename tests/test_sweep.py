@@ -14,15 +14,15 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from orchestrate import run
-from orchestrate.input import parameters
-from orchestrate.output import results
-from orchestrate.__main__ import main
-from orchestrate.freefem.describe import describe_results
-from orchestrate.failure import BadInput
-from orchestrate.report.figures import plt
-from orchestrate.sweeps import study
-from orchestrate.sweeps import sweep, sweep_figures
+from ffimpact import run
+from ffimpact.input import parameters
+from ffimpact.output import results
+from ffimpact.__main__ import main
+from ffimpact.freefem.describe import describe_results
+from ffimpact.failure import BadInput
+from ffimpact.report.figures import plt
+from ffimpact.sweeps import study
+from ffimpact.sweeps import sweep, sweep_figures
 from test_cli import call, is_alive, start, wait_for
 
 COARSE = "[set]\nmesh_size = 0.02\ncontact_mesh_size = 0.01\n"
@@ -323,7 +323,7 @@ def test_snakemake_gives_the_same_table(fake, tmp_path):
     pytest.importorskip("snakemake", reason="the optional snakemake is not installed")
     path, out, calm = write(tmp_path, DRAWN), tmp_path / "out", tmp_path / "calm"
     assert call("sweep", str(path), "--out", str(calm))[0] == 0
-    done = subprocess.run([sys.executable, "-m", "snakemake", "-s", str(parameters.ROOT / "orchestrate/Snakefile"), "--cores", "2",
+    done = subprocess.run([sys.executable, "-m", "snakemake", "-s", str(parameters.ROOT / "orchestrate/ffimpact/Snakefile"), "--cores", "2",
                            "--config", f"sweep={path}", f"out={out}"], cwd=tmp_path, capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr
     assert fake.starts() == 12 and "7 of 7 steps (100%) done" in done.stderr
@@ -457,7 +457,7 @@ def test_the_sweep_of_the_docs_is_sound(tmp_path):
 
 def test_a_refused_point_keeps_no_other(fake, tmp_path, capsys):
     """A point that the scene refuses, the first one too, is a row with exit code 10 that is named; the others run, and --open lists it no more."""
-    shutil.copy(parameters.ROOT / "orchestrate/scenes/two-discs.toml", tmp_path / "two.toml")
+    shutil.copy(parameters.ROOT / "orchestrate/ffimpact/scenes/two-discs.toml", tmp_path / "two.toml")
     path = write(tmp_path, 'scene = "two.toml"\ncollect = ["impulse"]\n[product]\n"body.1.position.1" = [0.05, -0.06]\n')
     wanted = sweep.load(str(path))
     place = study.place(tmp_path / "out", wanted.points[0])

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from orchestrate.__main__ import main
+from ffimpact.__main__ import main
 
 HEAD = """
 dimension = "axisymmetric"

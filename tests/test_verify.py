@@ -10,9 +10,9 @@ import pandas as pd
 import pytest
 
 from verification import verify
-from orchestrate.__main__ import main
-from orchestrate.failure import Failure
-from orchestrate.paper import page as paper
+from ffimpact.__main__ import guarded
+from ffimpact.failure import Failure
+from examples.paper import page as paper
 from verification.case import Case, Row
 
 
@@ -70,7 +70,7 @@ def test_all_pass(cases, tmp_path, capsys):
         axes.plot([0, 1], [1, 0])
     cases(case(FINE, name="V1 space", beside=beside),
           case([("e", 2, 0.4, 0, 2), ("e", 1, 0.1, 0, 2)], name="V2", by_order=True, tolerance=0.15))
-    assert main(["verify", "--out", str(tmp_path)]) == 0
+    assert guarded(verify.main, ["--out", str(tmp_path)]) == 0
     out = capsys.readouterr().out
     assert "all pass" in out and "NOT" not in out and out.count(" pass |") == 2 and "half: a" in out and "order of e" in out
     frame = pd.read_csv(tmp_path / "verify.csv")
@@ -84,7 +84,7 @@ def test_all_pass(cases, tmp_path, capsys):
 def test_a_case_that_fails_is_named(cases, tmp_path, capsys):
     """Exit code 1; its number, what was expected, and the tolerance; the page says so too."""
     cases(case(FINE), case([("depth", 2, 1.3, 1), ("depth", 1, 1.2, 1)], name="V9"))
-    assert main(["verify", "--out", str(tmp_path)]) == 1
+    assert guarded(verify.main, ["--out", str(tmp_path)]) == 1
     out = capsys.readouterr().out
     assert "NOT all pass" in out and "FAILED  V9, depth: 1.2, expected 1, error 0.2 > 0.01" in out
     assert " FAIL |" in out and " pass |" in out
@@ -97,7 +97,7 @@ def test_a_case_that_does_not_run_fails(cases, tmp_path, capsys):
         yield Row("a", 1, 1, 1)
         raise Failure("rod.edp: exit code 8")
     cases(case([], name="V5", rows=broken), case(FINE))
-    assert main(["verify", "--out", str(tmp_path)]) == 1
+    assert guarded(verify.main, ["--out", str(tmp_path)]) == 1
     out = capsys.readouterr().out
     assert "FAILED  V5, rod.edp: exit code 8" in out and " pass |" in out and not (tmp_path / "v5.png").exists()
 
@@ -105,15 +105,15 @@ def test_a_case_that_does_not_run_fails(cases, tmp_path, capsys):
 def test_a_run_that_was_cut_short_leaves_no_verdict(cases, tmp_path):
     """summary.json is of a finished verification only: the report then asks for it again."""
     cases(case(FINE))
-    assert main(["verify", "--out", str(tmp_path)]) == 0
+    assert guarded(verify.main, ["--out", str(tmp_path)]) == 0
     cases(case([], rows=lambda folder: 1 / 0))
-    assert main(["verify", "--out", str(tmp_path)]) == 0, "what the same code has left is taken as it is"
+    assert guarded(verify.main, ["--out", str(tmp_path)]) == 0, "what the same code has left is taken as it is"
     def stopped(folder):
         os.kill(os.getppid(), signal.SIGINT)   # Ctrl-C, while the case runs
         time.sleep(60)
         yield
     cases(case([], rows=stopped))
-    assert main(["verify", "--force", "--out", str(tmp_path)]) == 130 and not (tmp_path / "summary.json").exists()
+    assert guarded(verify.main, ["--force", "--out", str(tmp_path)]) == 130 and not (tmp_path / "summary.json").exists()
 
 
 def test_parts_run_side_by_side_in_one_order(cases, tmp_path):
@@ -128,7 +128,7 @@ def test_parts_run_side_by_side_in_one_order(cases, tmp_path):
     written = []
     for cores, wait in ((2, "b"), (1, "a")):
         cases(case([], name="V5", rows=(part("a", wait, 100), part("b", "b", 101))), case(FINE, name="V6"))
-        assert main(["verify", "--force", "--cores", f"{cores}", "--out", str(tmp_path)]) == 0
+        assert guarded(verify.main, ["--force", "--cores", f"{cores}", "--out", str(tmp_path)]) == 0
         written.append((tmp_path / "verify.csv").read_bytes())
     assert written[0] == written[1] and written[0].index(b",a,") < written[0].index(b",b,") < written[0].index(b"V6")
 
@@ -136,14 +136,14 @@ def test_parts_run_side_by_side_in_one_order(cases, tmp_path):
 def test_a_case_that_crashes_fails(cases, tmp_path, capfd):
     """A process that is lost costs its case alone, which fails."""
     cases(case([], name="V5", rows=lambda folder: os._exit(9)), case(FINE))
-    assert main(["verify", "--out", str(tmp_path)]) == 1
+    assert guarded(verify.main, ["--out", str(tmp_path)]) == 1
     out = capfd.readouterr().out
     assert "FAILED  V5, its process ended with exit code 9" in out and " pass |" in out
 
 
 def test_no_cores_are_refused(tmp_path, capsys):
     """In one line, with exit code 10, before anything is run."""
-    assert main(["verify", "--cores", "0", "--out", str(tmp_path / "out")]) == 10
+    assert guarded(verify.main, ["--cores", "0", "--out", str(tmp_path / "out")]) == 10
     assert capsys.readouterr().err == "ffimpact: --cores: 0 (accepted: from 1)\n" and not (tmp_path / "out").exists()
 
 

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from orchestrate import run, scene
-from orchestrate.failure import BadInput
-from orchestrate.freefem.describe import describe
-from orchestrate.output import vtu
-from orchestrate.report import drawing
+from ffimpact import run, scene
+from ffimpact.failure import BadInput
+from ffimpact.freefem.describe import describe
+from ffimpact.output import vtu
+from ffimpact.report import drawing
 from verification.measure import bodies, disc, measure
 
 IMPACT = {"law": "neohookean", "nu": 0.4999, "speed": 4, "accuracy": 0.1, "tolerance": 1e-15}

@@ -5,14 +5,15 @@ import re
 
 import numpy as np
 import pandas as pd
+import pages
 import pytest
 
-from orchestrate import run, scene
-from orchestrate.freefem import freefem
-from orchestrate.output import notes, results
-from orchestrate.report import drawing, pages, report
-from orchestrate.sweeps import study
-from orchestrate.sweeps import sweep
+from ffimpact import run, scene
+from ffimpact.freefem import freefem
+from ffimpact.output import notes, results
+from ffimpact.report import drawing, report
+from ffimpact.sweeps import study
+from ffimpact.sweeps import sweep
 from verification import measure
 
 COARSE = dict(accuracy=0.1, mesh_size=0.02, contact_mesh_size=0.006, dt=5e-5)

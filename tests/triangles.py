@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from orchestrate.mesh import mesh
+from ffimpact.mesh import mesh
 
 
 def areas(m) -> np.ndarray:

@@ -4,7 +4,7 @@ import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 
-from orchestrate.report.literature import REFERENCE
+from ffimpact.report.literature import REFERENCE
 
 from .bars import bouncing, relaxing, two
 from .blocks import blocks

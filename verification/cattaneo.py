@@ -10,9 +10,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
-from orchestrate.mesh import mesh
-from orchestrate.failure import Failure
-from orchestrate.report.figures import BLACK, BLUE, GREY, ORANGE
+from ffimpact.mesh import mesh
+from ffimpact.failure import Failure
+from ffimpact.report.figures import BLACK, BLUE, GREY, ORANGE
 
 from .case import Row
 from .measure import measure

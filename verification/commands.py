@@ -9,21 +9,26 @@ from pathlib import Path
 
 import pandas as pd
 
-from orchestrate import run
-from orchestrate.output.folder import result_folder
-from orchestrate.places import COMMAND, RESULTS, shown
-from orchestrate.sweeps import study
+from ffimpact import run
+from ffimpact.output.folder import result_folder
+from ffimpact.places import RESULTS, shown
+from ffimpact.sweeps import study
 
 
 def command(name: str, doc: str, page: bool = False, folder: str = "") -> argparse.ArgumentParser:
     """The command line of a study: --out, its result folder, checked; --page where what it prints may become a page. For finish()."""
-    parser = argparse.ArgumentParser(prog=f"{COMMAND} {name}", description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(prog=program(name), description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", metavar="DIR", type=lambda text: result_folder(Path(text)), default=str(RESULTS / (folder or name)),
                         help="the result folder")
     if page:
         parser.add_argument("--page", metavar="FILE", type=Path, help="also write what is printed as a page")
     parser.set_defaults(command=name, table=folder or name)
     return parser
+
+
+def program(name: str) -> str:
+    """How a study is called."""
+    return "python -m verification" if name == "verify" else f"python -m benchmarks {name}"
 
 
 def finish(options: argparse.Namespace, rows: pd.DataFrame, text: str, good: bool, argv: list[str] | None = None, title: str = "",
@@ -45,7 +50,7 @@ def page(path: Path | None, title: str, command: list[str], text: str) -> None:
 
 
 def measured(command: list[str]) -> str:
-    """Which command measured what follows, its words behind `python -m orchestrate`; at which commit, when, and on which machine."""
+    """Which command measured what follows, its words behind `python -m ffimpact`; at which commit, when, and on which machine."""
     model = re.search(r"^model name\s*: (.*)", Path("/proc/cpuinfo").read_text(), re.MULTILINE)
-    return (f"Written by `{COMMAND} {shlex.join(command)}` at commit {run.commit(10)}, {date.today()}, on {study.CORES} cores, "
+    return (f"Written by `{program(command[0])} {shlex.join(command[1:])}` at commit {run.commit(10)}, {date.today()}, on {study.CORES} cores, "
             f"{model[1] if model else platform.machine()}.")

@@ -9,8 +9,8 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 
-from orchestrate.mesh import mesh
-from orchestrate.report.figures import BLACK, BLUE, ORANGE
+from ffimpact.mesh import mesh
+from ffimpact.report.figures import BLACK, BLUE, ORANGE
 
 from .case import Row
 from .measure import disc, outcome

@@ -8,8 +8,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
-from orchestrate.failure import Failure
-from orchestrate.report.figures import BLACK, BLUE, ORANGE
+from ffimpact.failure import Failure
+from ffimpact.report.figures import BLACK, BLUE, ORANGE
 
 from .case import Row
 from .measure import Outcome, disc, measure, outcome

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from orchestrate.output.results import read_history, read_summary
+from ffimpact.output.results import read_history, read_summary
 
 from .case import FRONT, Row
 from .measure import measure

@@ -11,13 +11,13 @@ from pathlib import Path
 
 import numpy as np
 
-from orchestrate.freefem import freefem
-from orchestrate.input import dimension, parameters
-from orchestrate.output import results
-from orchestrate.scenes import assembly
-from orchestrate.failure import Failure
-from orchestrate.input.parameters import ROOT, Value
-from orchestrate.scene import read as read_scene
+from ffimpact.freefem import freefem
+from ffimpact.input import dimension, parameters
+from ffimpact.output import results
+from ffimpact.scenes import assembly
+from ffimpact.failure import Failure
+from ffimpact.input.parameters import ROOT, Value
+from ffimpact.scene import read as read_scene
 
 from . import solids
 
@@ -56,7 +56,7 @@ def outcome(folder: Path) -> Outcome:
 
 
 def bodies(folder: Path, tables: dict, **given: Value | Path) -> Outcome:
-    """The script of bodies for the scene in these tables (orchestrate.scene), with more flags, run into `folder`/run."""
+    """The script of bodies for the scene in these tables (ffimpact.scene), with more flags, run into `folder`/run."""
     out = folder / "run"
     _start(f"edp/{dimension.of(tables).script}.edp", prepared(folder, tables) | given | {"out": out})
     return outcome(out)

@@ -15,7 +15,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from numpy.typing import ArrayLike
 
-from orchestrate.report.figures import BLACK, BLUE, GREY, ORANGE
+from ffimpact.report.figures import BLACK, BLUE, GREY, ORANGE
 
 from . import hertz
 from .case import Row

@@ -1,4 +1,4 @@
-"""Scenes of bodies in tables, as orchestrate.scene reads them: discs of radius 0.05 m, coarse."""
+"""Scenes of bodies in tables, as ffimpact.scene reads them: discs of radius 0.05 m, coarse."""
 
 RADIUS = 0.05
 SOFT = {"law": "neohookean", "young": 7e6, "nu": 0.45, "density": 1722, "accuracy": 0.05}

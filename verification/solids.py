@@ -5,10 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
-from orchestrate.mesh import solid_mesh
-from orchestrate.mesh.mesh import AXIS, FREE, boundary
-from orchestrate.mesh.solid_mesh import DEPTH, right_handed
-from orchestrate.scenes.assembly import stack
+from ffimpact.mesh import solid_mesh
+from ffimpact.mesh.mesh import AXIS, FREE, boundary
+from ffimpact.mesh.solid_mesh import DEPTH, right_handed
+from ffimpact.scenes.assembly import stack
 
 CORNERS = ((0, 1, 3, 7), (0, 3, 2, 7), (0, 2, 6, 7), (0, 6, 4, 7), (0, 4, 5, 7), (0, 5, 1, 7))    # a cell as six tetrahedra around its diagonal
 MATERIAL = ("neohookean", 7e6, 0.3, 1722.0)                                                       # law, young [Pa], nu, density [kg/m3]

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from orchestrate.input import parameters
-from orchestrate.mesh import mesh
-from orchestrate.sweeps.sweep_figures import distance
+from ffimpact.input import parameters
+from ffimpact.mesh import mesh
+from ffimpact.sweeps.sweep_figures import distance
 
 COARSE = dict(mesh_size=0.025, contact_mesh_size=0.0079, accuracy=0.03)
 MASS = 1722 * math.pi * 0.05**2
@@ -44,7 +44,7 @@ def test_force_history_is_that_of_getfem(disc, tmp_path):
     (the file says how); `make bench` runs it again where it is installed."""
     mesh.write(mesh.disc(0.05, 8e-3, 2.5e-3, half=True), tmp_path / "half.msh")
     found = disc(speed=8, nu=0.45, dt=5e-5, mesh=tmp_path / "half.msh")
-    theirs = np.genfromtxt(parameters.ROOT / "verification/peers/getfem-normal-svk.csv", delimiter=",", names=True, skip_header=3)
+    theirs = np.genfromtxt(parameters.ROOT / "benchmarks/programs/getfem-normal-svk.csv", delimiter=",", names=True, skip_header=3)
     ours = found.history
     middle = ours["t"] - ours["dt"] / 2
     off = distance((theirs["t"] - 5e-5 / 2, theirs["normal_force"]), (middle, ours["normal_force"]))

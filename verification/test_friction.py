@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from orchestrate.mesh import mesh
+from ffimpact.mesh import mesh
 from triangles import whole_of
 
 COARSE = dict(mesh_size=0.025, contact_mesh_size=0.0079, accuracy=0.03, slip_velocity=0.1)

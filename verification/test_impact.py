@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from orchestrate.output.results import read_summary
+from ffimpact.output.results import read_summary
 
 from . import impact
 

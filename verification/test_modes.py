@@ -6,8 +6,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from orchestrate import run, scene
-from orchestrate.report import impacts
+from ffimpact import run, scene
+from ffimpact.report import impacts
 from verification import measure as runs, modes, solids
 
 NU = 0.3

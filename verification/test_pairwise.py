@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from orchestrate.failure import Failure
+from ffimpact.failure import Failure
 
 SCENE = {"radius": 0.5, "speed": 10, "nu": 0.4, "law": "neohookean", "accuracy": 0.02}
 CONSERVED = 1e-9            # over the energy, the momentum and their arms at the start

@@ -15,14 +15,14 @@ import numpy as np
 import pandas as pd
 from matplotlib.ticker import NullLocator
 
-from orchestrate import run
-from orchestrate.failure import BadInput, Failure
-from orchestrate.freefem import freefem
-from orchestrate.output.results import read_frame
-from orchestrate.places import ROOT, shown
-from orchestrate.report.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE, save
-from orchestrate.report.literature import REFERENCE
-from orchestrate.sweeps import study
+from ffimpact import run
+from ffimpact.failure import BadInput, Failure
+from ffimpact.freefem import freefem
+from ffimpact.output.results import read_frame
+from ffimpact.places import ROOT, shown
+from ffimpact.report.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE, save
+from ffimpact.report.literature import REFERENCE
+from ffimpact.sweeps import study
 
 from . import commands
 from .case import Case, Row

@@ -1,0 +1,247 @@
+"""Scenes drawn at random, the same ones for the same seed: what promises and robustness are tried on."""
+
+import math
+import random
+from collections.abc import Sequence
+from pathlib import Path
+
+from ffimpact.sweeps.study import Point
+
+# young [Pa], density [kg/m3], nu: from gel to steel, round values of handbooks
+MATERIALS = {"gel": (3e4, 1050.0, 0.45), "soft rubber": (1e5, 1000.0, 0.4), "foam": (1e6, 100.0, 0.0), "rubber": (7e6, 1722.0, 0.45),
+             "cork": (3e7, 200.0, 0.05), "ptfe": (5e8, 2200.0, 0.46), "nylon": (2.5e9, 1150.0, 0.4), "wood": (1e10, 700.0, 0.3),
+             "lead": (1.6e10, 11340.0, 0.44), "glass": (7e10, 2500.0, 0.22), "aluminium": (7e10, 2700.0, 0.33),
+             "steel": (2.1e11, 7850.0, 0.3)}
+# Of a mixture of all dimensions: the share of each scene in sixty, and accuracies that are asked for; bodies and three dimensions are dear.
+MIXTURE = {"disc-normal": (24, (0.005, 0.01, 0.02)), "disc-block": (10, (0.01, 0.02, 0.05)), "ball-axisymmetric": (12, (0.005, 0.01, 0.02)),
+           "two-discs": (10, (0.01, 0.02, 0.05)), "ball": (4, (0.1,))}
+COARSE = (0.03, 0.05, 0.1)  # accuracies of scenes where stated errors are tried at few elements and steps
+SLOWEST, FASTEST = 5e-4, {"svk": 0.1, "neohookean": 0.18}   # speeds, over sqrt(E/density); svk breaks down above
+FASTEST_CORNER = 0.05       # of those that fall on a corner
+
+
+def bar_speed(young: float, density: float) -> float:
+    """c = sqrt(E/rho) [m/s], which scales the speeds of impacts."""
+    return (young / density) ** 0.5
+
+
+def draw(seed: int, count: int, hard: bool = False, scene: str = "disc-normal") -> list[Point]:
+    """`count` impacts of a disc: material, law, speed, radius; some oblique or spinning, with and without friction, exponents.
+
+    `hard`: also gravity, other integrators, linear elements, other accuracies, penalties and friction laws.
+    `scene`: a key of SCENES, what they are overrides of; on a block no gravity, of a ball what keeps its axis.
+    """
+    chance = random.Random(seed)
+    points = [_scene(chance, hard) for _ in range(count)]
+    return [SCENES[scene](chance, point) for point in points]
+
+
+def mixture(seed: int, count: int) -> list[tuple[str, Point]]:
+    """About `count` scenes of all dimensions, with and without friction, of one body and two, the kinds spread evenly: each scene's name
+    and what it is overridden by."""
+    found = []
+    for scene, (share, accuracies) in MIXTURE.items():
+        chance = random.Random(f"{seed} {scene}")
+        many = max(1, round(count * share / 60))
+        for k in range(many):
+            point = SCENES[scene](chance, _scene(chance, False))
+            found.append(((k + 0.5) / many, scene, point | {"accuracy": chance.choice(accuracies)}))
+    return [(scene, point) for _, scene, point in sorted(found, key=lambda one: one[0])]
+
+
+def coarse(seed: int, count: int, asked: Sequence[float] = COARSE) -> list[tuple[str, Point]]:
+    """`count` discs and balls of revolution in turn at each accuracy `asked` for, as draw() has them, a fifth nearly incompressible."""
+    chance, found = random.Random(f"{seed} coarse"), []
+    for k in range(count):
+        scene = ("disc-normal", "ball-axisymmetric")[k % 2]
+        point = SCENES[scene](chance, _scene(chance, False))
+        if chance.random() < 0.2:
+            point["nu"] = chance.choice([0.48, 0.49, 0.499, 0.4999])
+        found.append((scene, point | {"accuracy": asked[k // 2 % len(asked)]}))
+    return found
+
+
+def _on_plane(chance: random.Random, point: Point) -> Point:
+    return point
+
+
+def _of_revolution(chance: random.Random, point: Point) -> Point:
+    return {name: value for name, value in point.items() if name not in ("angle", "spin", "symmetry")}
+
+
+def _on_block(chance: random.Random, point: Point) -> Point:
+    """On a free block of the same material, of some radii's width and height."""
+    across, deep = chance.choice([5, 10, 20]), chance.choice([2, 4])
+    kept = {name: value for name, value in point.items() if name not in ("gravity", "height")}
+    return kept | {"block_width": across * point["radius"], "block_height": deep * point["radius"]}
+
+
+def _on_another(chance: random.Random, point: Point) -> Point:
+    """On another disc, off their centres, of another radius and stiffness at times; the frame drifts."""
+    radius, speed, other = point["radius"], point["speed"], point["radius"] * chance.choice([0.5, 1, 1, 2])
+    apart, off = radius + other, chance.choice([0, 0.2, 0.4, 0.6]) * (radius + other)
+    drift = [_round(chance.uniform(-2, 2) * speed) for _ in "xy"]
+    found = {name: point[name] for name in ("law", "young", "density", "nu")}
+    found |= {"body.1.radius": radius, "body.2.radius": other, "body.1.position": [0.0, 0.0],
+              "body.2.position": [_round(1.05 * apart), _round(off)], "body.1.velocity": [speed + drift[0], drift[1]],
+              "body.2.velocity": drift}
+    if chance.random() < 0.3:
+        found["body.2.young"] = 10 * point["young"]
+    if "spin" in point:
+        found["body.1.spin"] = point["spin"]
+    contact = {"friction_static": 0.0, "friction_dynamic": 0.0} | {
+        name: point[name] for name in ("friction_static", "friction_dynamic", "exponent") if name in point}
+    return found | {f"contact.{name}": value for name, value in contact.items()}
+
+
+def _on_corner(chance: random.Random, point: Point) -> Point:
+    """A block, square or longer, that falls on one of its corners."""
+    width, height, speed = 2 * point["radius"], 2 * point["radius"] * chance.choice([0.3, 0.6, 1]), min(
+        point["speed"], FASTEST_CORNER * bar_speed(point["young"], point["density"]))
+    found = {name: point[name] for name in ("law", "young", "density", "nu", "accuracy") if name in point}
+    found |= {"body.1.width": width, "body.1.height": height, "body.1.angle": _round(chance.uniform(10, 80)),
+              "body.1.position": [0.0, _round(0.51 * (width**2 + height**2) ** 0.5)],
+              "body.1.velocity": [_round(chance.choice([0, 0.5, 1]) * speed), -_round(speed)]}
+    contact = {"friction_static": 0.0, "friction_dynamic": 0.0} | {
+        name: point[name] for name in ("friction_static", "friction_dynamic", "exponent") if name in point}
+    return found | {f"contact.{name}": value for name, value in contact.items()}
+
+
+def _in_space(chance: random.Random, point: Point) -> Point:
+    """A ball in three dimensions, not too fast for coarse elements."""
+    kept = {name: value for name, value in point.items() if name not in ("symmetry", "spin", "exponent")}
+    return kept | {"law": "neohookean", "speed": _round(min(point["speed"], 0.05 * bar_speed(point["young"], point["density"])))}
+
+
+SCENES = {"disc-normal": _on_plane, "disc-block": _on_block, "ball-axisymmetric": _of_revolution, "two-discs": _on_another,
+          "block-corner": _on_corner, "ball": _in_space}
+
+
+def words(point: Point) -> str:
+    """A scene as a line of a table reads it best: law, material, speed over c, what is special."""
+    named = {value[:2]: name for name, value in MATERIALS.items()}
+    known = point["nu"] == MATERIALS[named[point["young"], point["density"]]][2]
+    told = {"law", "young", "density", "nu" if known else "", "speed", "friction_static", "friction_dynamic", "body.1.position",
+            "body.1.velocity", "body.2.velocity"}
+    point = {name.removeprefix("contact."): value for name, value in point.items()}
+    if "speed" in point:
+        speed = point["speed"]
+    elif "body.1.velocity" in point and isinstance(point["body.1.velocity"], list):
+        speed = max(abs(a - b) for a, b in zip(point["body.1.velocity"], point.get("body.2.velocity", [0, 0])))
+    else:                                      # of flat strikes: components along one axis
+        speed = sum(abs(value) for name, value in point.items() if ".velocity" in name)
+    parts = [point["law"], named[point["young"], point["density"]], f"v/c {speed / bar_speed(point['young'], point['density']):.2g}"]
+    if point.get("friction_static"):
+        parts.append(f"friction {point['friction_static']:g}, {point['friction_dynamic']:g}")
+    return ", ".join(parts + [f"{name} {value:g}" if isinstance(value, float) else f"{name} {value}" for name, value in point.items()
+                              if name not in told])
+
+
+def _scene(chance: random.Random, hard: bool) -> Point:
+    young, density, nu = chance.choice(list(MATERIALS.values()))
+    law = chance.choice(list(FASTEST))
+    c, radius = bar_speed(young, density), chance.choice([0.005, 0.05, 0.5])
+    speed = c * SLOWEST * (FASTEST[law] / SLOWEST) ** chance.random()
+    point = {"law": law, "young": young, "density": density, "nu": nu, "radius": radius, "speed": _round(speed)}
+    kind = chance.choice(["normal", "normal", "smooth oblique", "oblique", "oblique", "spin"])
+    if "oblique" in kind:
+        point["angle"] = chance.choice([30.0, 45.0, 60.0, 75.0])
+    if kind == "spin":
+        point["spin"] = _round(chance.uniform(-1, 1) * speed / radius)
+    if kind in ("oblique", "spin"):
+        static = chance.choice([0.1, 0.3, 0.7])
+        point |= {"friction_static": static, "friction_dynamic": _round(static * chance.choice([0.7, 1.0]))}
+    if chance.random() < 0.2:
+        point["exponent"] = 1.5
+    return point | (_harder(chance, point, c) if hard else {})
+
+
+def _harder(chance: random.Random, point: Point, c: float) -> Point:
+    """What a user may ask for besides, rubber and damping, too; each in a small part of the scenes."""
+    more: Point = {"accuracy": chance.choice([0.002, 0.005, 0.01, 0.03])}
+    if chance.random() < 0.15:
+        more["integrator"] = chance.choice(["midpoint", "newmark", "bdf2", "backward-euler"])
+    if chance.random() < 0.1:
+        more["degree"] = 1
+    if chance.random() < 0.15:
+        more["penalty"] = _round(point["young"] / point["radius"] * 10 ** chance.uniform(0.5, 3)) if "exponent" not in point else "auto"
+    if chance.random() < 0.1:
+        more |= {"gravity": _round(0.01 * c**2 / point["radius"] * chance.random()), "height": _round(chance.random() * point["radius"])}
+    if "friction_static" in point and chance.random() < 0.3:
+        more["regularization"] = chance.choice(["sqrt", "tanh"])
+    if chance.random() < 0.1:
+        more["symmetry"] = "full"
+    beside = random.Random(repr(point | more))           # of its own: what is drawn above stays as it is
+    if beside.random() < 0.2:
+        more["nu"] = beside.choice([0.49, 0.499, 0.4999])
+        if point["law"] == "neohookean" and not more.keys() & {"integrator", "degree"} and beside.random() < 0.5:
+            more |= {"law": "incompressible", "nu": 0.5}
+    if more.get("integrator", "midpoint") == "midpoint" and beside.random() < 0.15:
+        more["loss"] = beside.choice([0.01, 0.1, 0.5])
+    return more
+
+
+def _round(value: float) -> float:
+    return float(f"{value:.3g}")
+
+
+# ---- faces that strike flat
+
+FLAT = Path(__file__).with_name("flat")       # their scenes
+# how many of sixty, and the accuracies that are asked for: those in space are dear
+FLAT_MIXTURE = {"block-wall": (18, (0.02, 0.05, 0.1)), "two-bars": (14, (0.02, 0.05, 0.1)), "polygon-wall": (14, (0.02, 0.05, 0.1)),
+                "cylinder-wall": (10, (0.02, 0.05, 0.1)), "box-wall": (4, (0.1,))}
+FLAT_NU = (0.0, 0.0, 0.1, 0.2, 0.3, 0.4, 0.45, 0.49)
+
+
+def flat(seed: int, count: int) -> list[tuple[str, Point]]:
+    """About `count` bodies with faces that strike flat, on planes and on each other, in all dimensions: scene and overrides."""
+    found = []
+    for scene, (share, accuracies) in FLAT_MIXTURE.items():
+        chance = random.Random(f"{seed} {scene}")
+        many = max(1, round(count * share / 60))
+        for k in range(many):
+            young, density, _ = MATERIALS[chance.choice(list(MATERIALS))]
+            speed = bar_speed(young, density) * math.exp(chance.uniform(math.log(SLOWEST), math.log(FASTEST_FLAT)))
+            point = {"young": young, "density": density, "nu": chance.choice(FLAT_NU), "law": chance.choice(["svk", "neohookean"]),
+                     "accuracy": chance.choice(accuracies)}
+            point |= {name: value if isinstance(value, list) else float(f"{value:.3g}") for name, value in
+                      FLAT_SHAPES[scene](chance, speed).items()}
+            found.append(((k + 0.5) / many, scene, point))
+    return [(scene, point) for _, scene, point in sorted(found, key=lambda one: one[0])]
+
+
+def _block(chance: random.Random, speed: float) -> Point:
+    height, width = (0.1 * chance.choice([0.25, 0.5, 1.0, 2.0]) for _ in range(2))
+    return {"body.1.width": width, "body.1.height": height, "body.1.position.2": height / 2, "body.1.velocity.2": -speed}
+
+
+def _bars(chance: random.Random, speed: float) -> Point:
+    lengths, height = [0.1 * chance.choice([0.5, 1.0, 2.0]) for _ in range(2)], 0.1 * chance.choice([0.2, 0.5])
+    sides = {f"body.{k}.{name}": value for k, length, side in ((1, lengths[0], -1), (2, lengths[1], 1)) for name, value in
+             {"width": length, "height": height, "position.1": side * length / 2, "velocity.1": -side * speed / 2}.items()}
+    return sides
+
+
+def _polygon(chance: random.Random, speed: float) -> Point:
+    """A trapezoid on its longer or its shorter side."""
+    base, top, height = (0.1 * chance.uniform(*ends) for ends in ((0.5, 2), (0.3, 1), (0.5, 2)))
+    corners = [[-base / 2, 0.0], [base / 2, 0.0], [top / 2, height], [-top / 2, height]]
+    corners = [[float(f"{x:.3g}") for x in corner] for corner in corners]
+    lowest = height * (base + 2 * top) / (3 * (base + top))
+    return {"body.1.vertices": corners, "body.1.position.2": lowest * 1.01, "body.1.velocity.2": -speed}
+
+
+def _cylinder(chance: random.Random, speed: float) -> Point:
+    radius, height = 0.05 * chance.choice([0.3, 1.0, 2.0]), 0.1 * chance.choice([0.5, 1.0, 2.0])
+    return {"body.1.radius": radius, "body.1.height": height, "body.1.position": height / 2, "body.1.velocity": -speed}
+
+
+def _box(chance: random.Random, speed: float) -> Point:
+    width, height, depth = (0.1 * chance.choice([0.5, 1.0]) for _ in range(3))
+    return {"body.1.width": width, "body.1.height": height, "body.1.depth": depth, "body.1.position.2": height / 2,
+            "body.1.velocity.2": -speed}
+
+
+FASTEST_FLAT = 0.03          # speed over sqrt(E/density)
+FLAT_SHAPES = {"block-wall": _block, "two-bars": _bars, "polygon-wall": _polygon, "cylinder-wall": _cylinder, "box-wall": _box}

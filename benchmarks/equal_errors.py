@@ -1,0 +1,273 @@
+"""Who takes how long at equal errors: five impacts by this program and, where they are installed (peers.py), by NGSolve and GetFEM,
+from coarse to fine settings; processor seconds of the march and of the whole process for 1, 0.5 and 0.1 %."""
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+import pandas as pd
+
+from ffimpact.failure import unknown
+from ffimpact.freefem import freefem
+from ffimpact.input.parameters import Value
+from ffimpact.places import shown
+from ffimpact.progress import in_turn
+from ffimpact.sweeps import study
+
+from verification import commands
+from . import peers
+
+LEVELS = (1.0, 0.5, 0.1)    # % of error
+LIMIT = 1200.0              # seconds a run may take
+REPEATS, LONG = 3, 2.0      # runs of which the least times count; one alone where it takes longer [s]
+TOLERANCE = 1e-8            # of the peers' Newton: its work over the energy; 5e-12 changes answers by 1e-5 and costs a quarter more
+SECONDS = {"imports_seconds": "imports", "setup_seconds": "set-up", "cpu_seconds": "march", "process_seconds": "process"}
+OURS, EXPLICIT, TUNED, USUAL = "ffimpact", "ffimpact, explicit", "ngsolve, tuned", "ngsolve, as written by users"
+OWN = (OURS, EXPLICIT)
+GETFEM, GETFEM_USUAL = "getfem, tuned", "getfem, as written by users"
+Found = dict[str, Any]
+Measured = dict[str, float]  # answers
+
+
+@dataclass(frozen=True)
+class Case:
+    """An impact: what is asked of all programs, the names of its answers by program and what their errors are relative to (None:
+    itself), settings by program from coarse to fine, and by program two finer ones, which with the last of those make its reference: the
+    finest with other elements and other steps than either, or its bar would see one of both errors alone."""
+
+    title: str
+    scene: str
+    given: study.Point
+    speed: float
+    answers: dict[str, tuple[str, str, float | None]]     # words: (ours, theirs, unit)
+    settings: dict[str, list]
+    finest: dict[str, list]
+    theirs: study.Point = field(default_factory=dict)     # what the peers are asked beside
+
+
+def accuracies(*values: float, **given: Value) -> list[study.Point]:
+    return [{"accuracy": value} | given for value in values]
+
+
+def sizes(*pairs: tuple[float, float]) -> list[study.Point]:
+    """Factors of the sizes of peers.sized(), and steps [s]."""
+    return [peers.sized(factor, dt=dt) for factor, dt in pairs]
+
+
+def body(speed: float) -> dict[str, tuple[str, str, float | None]]:
+    return {"impulse": ("impulse", "impulse", None), "vy": ("rebound_vy", "rebound_vy", speed)}
+
+
+IN_PARTS = accuracies(0.05, 0.01, 0.005, 0.0025, 0.00125, integrator="central-difference")
+RIM = math.pi * peers.RADIUS**3 * 1722 / 2 # of a disc of the scenes' density, I/R: angular momentum over the speed of its rim [kg]
+CASES = {
+    "normal": Case(
+        "Disc, normal impact, St. Venant-Kirchhoff, 8 m/s", "disc-normal", {"law": "svk"}, 8.0, body(8.0),
+        {OURS: accuracies(0.1, 0.05, 0.02, 0.01, 0.005, 0.0025, 0.00125),
+         EXPLICIT: IN_PARTS, TUNED: sizes((3, 1.5e-4), (2, 1.5e-4), (2, 1e-4), (1, 1e-4), (1, 5e-5), (1, 2e-5)),
+         USUAL: sizes((3, 1.5e-4), (2, 1.5e-4), (2, 1e-4), (1, 1e-4), (1, 5e-5)),
+         GETFEM: sizes((2, 1.5e-4), (1, 1e-4), (1, 5e-5), (1, 2e-5)), GETFEM_USUAL: sizes((2, 1.5e-4), (1, 1e-4))},
+        {OURS: accuracies(0.0003, 0.00015), TUNED: sizes((0.7, 1e-5), (0.5, 7e-6))}),
+    "oblique": Case(
+        "Disc, oblique impact with static and dynamic friction, neo-Hookean, 12 m/s at 60 degrees", "disc-oblique",
+        {"law": "neohookean"}, 12.0,
+        body(12.0) | {"vx": ("rebound_vx", "rebound_vx", 12.0), "spin": ("angular_momentum", "angular_momentum", 12.0 * RIM)},
+        {OURS: accuracies(0.1, 0.05, 0.02, 0.01, 0.005, 0.0025, 0.00125, 0.0006),
+         EXPLICIT: IN_PARTS, TUNED: sizes((3, 1.5e-4), (2, 1e-4), (2, 5e-5), (1, 5e-5), (1, 3e-5), (1, 2e-5)),
+         USUAL: sizes((3, 1.5e-4), (2, 1.5e-4), (2, 1e-4), (2, 5e-5))},
+        {OURS: accuracies(0.0003, 0.00015), TUNED: sizes((1, 5e-6), (0.6, 3.75e-6))}, {"speed": 12.0}),
+    "block": Case(
+        "Disc on a free block, St. Venant-Kirchhoff, 10 m/s", "disc-block", {"law": "svk", "penalty": 1e9}, 10.0,
+        {"impulse": ("impulse", "impulse", None), "vy disc": ("rebound_vy_1", "velocity_upper", 10.0),
+         "vy block": ("rebound_vy_2", "velocity_lower", 10.0)},
+        {OURS: accuracies(0.1, 0.05, 0.02, 0.01, 0.005, 0.0025, 0.00125), EXPLICIT: IN_PARTS,
+         TUNED: [{"refine": value} for value in (0.15, 0.25, 0.5, 0.75)],
+         USUAL: [{"refine": value, "contact": "ngsolve"} for value in (0.25, 0.5, 0.75)]},
+        {OURS: accuracies(0.0006, 0.0004), TUNED: [{"refine": 1.0}, {"refine": 1.25}]}),
+    "ball": Case(
+        "Ball of revolution, normal impact, neo-Hookean, 8 m/s", "ball-axisymmetric",
+        {"law": "neohookean", "nu": 0.45, "speed": 8.0, "penalty": 1.5e10}, 8.0,
+        body(8.0),
+        {OURS: accuracies(0.1, 0.05, 0.02, 0.01, 0.005, 0.0025, 0.00125),
+         EXPLICIT: IN_PARTS, TUNED: sizes((3, 1.5e-4), (2, 1.5e-4), (2, 1e-4), (1, 1e-4), (1, 5e-5), (1, 2e-5)),
+         USUAL: sizes((3, 1.5e-4), (2, 1.5e-4), (2, 1e-4), (1, 1e-4), (1, 5e-5))},
+        {OURS: accuracies(0.0006, 0.0003), TUNED: sizes((0.7, 1e-5), (0.5, 7e-6))}),
+    "rubber": Case(
+        "Disc of rubber, nu = 0.499, normal impact, neo-Hookean, 4 m/s", "disc-normal",
+        {"law": "neohookean", "nu": 0.499, "speed": 4.0}, 4.0, body(4.0),
+        {OURS: accuracies(0.1, 0.05, 0.02, 0.01, 0.005, 0.0025, 0.00125),
+         TUNED: sizes((3, 1.5e-4), (2, 1.5e-4), (2, 1e-4), (1, 1e-4), (1, 5e-5)), USUAL: sizes((3, 1.5e-4), (2, 1.5e-4), (2, 1e-4))},
+        {OURS: accuracies(0.0006, 0.0003), TUNED: sizes((0.7, 2e-5), (0.5, 1.4e-5))}),
+}
+
+HEAD = """Processor time, user and system, in seconds on one thread: march / whole process. The march is the time steps alone: of
+FreeFem++ from its first step on, of the peers their loop. The whole process is all that a script of a user costs: imports,
+mesh, set-up, of ours also FreeFem++ that Python starts. Least of {repeats} runs, of one where it takes above {long:g} s; our
+runs make no estimate of their error.
+
+A setting has a level where it and all finer ones of its program are below it in all answers: being below it by chance does
+not count. Errors are those of the impulse relative to itself, of velocities to that of the impact, of the spin as the speed
+of the rim (angular momentum over I/R) to it, and against our finest run. NGSolve's finest has to agree with it within both
+error bars: what the finest run of a program differs by from its two next ones, which have other elements and other steps.
+
+NGSolve, tuned: energy-momentum step, sparse Cholesky factorisation kept as long as it serves, contact on the arc alone, with
+friction on a dense compliance of the few unknowns that touch; on the block central differences with contact by hand; of rubber
+plain elements, where ours project the volume. As written by users: one form, Newton's method with UMFPACK, with friction damped
+and mu by the velocity of the step before; on the block NGSolve's own ContactBoundary. Explicit: ours with central differences,
+beside our default step, which alone is compared with others."""
+
+
+def main(argv: list[str]) -> int:
+    """Runs all cases, writes equal-errors.csv and the page; 0 where all references agree, 1 where they do not or there is no peer."""
+    parser = commands.command("equal-errors", __doc__, page=True)
+    parser.add_argument("cases", metavar="CASE", nargs="*", default=list(CASES), help=f"(default: {' '.join(CASES)})")
+    options = parser.parse_args(argv)
+    for name in options.cases:
+        if name not in CASES:
+            parser.error(unknown(name, CASES, ", "))
+    freefem.find()      # which builds the kernels where there are none, outside all times
+    tables, texts, agreed, ratios = [], [], {}, {}
+    for name in in_turn("equal-errors", options.cases):
+        rows, reference = measure(CASES[name])
+        tables.append(rows.assign(case=name))
+        texts.append(text(CASES[name], rows, reference))
+        agreed[name], ratios[name] = not reference.empty and bool(reference.agree.all()), beside(rows)
+    study.save(pd.concat(tables), options.out / "equal-errors.csv")
+    report = "\n\n".join([HEAD.format(repeats=REPEATS, long=LONG), *texts, verdict(agreed, ratios)])
+    print(report + f"\n\n{shown(options.out)}/equal-errors.csv")
+    commands.page(options.page, "Run time at equal errors", ["equal-errors", *argv], report)
+    return 0 if all(agreed.values()) else 1
+
+
+# ---- the measurement
+
+def measure(case: Case) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """A row a setting: program, its setting, seconds, errors in %; and a row an answer: references, bars [%] and whether they agree."""
+    found, rows = {}, []
+    for program, points in case.settings.items():
+        for point in points:
+            got, reason = least(case, program, point)
+            found[program, words(point)] = got
+            rows.append({"program": program, "setting": words(point), "exit": int(got is None), "message": reason})
+            if "not installed" in reason:
+                break
+    fine = {}
+    for program, points in case.finest.items():
+        runs = [found.get((program, words(case.settings[program][-1])))]
+        runs += [runs[0] and once(case, program, point)[0] for point in points]
+        fine[program] = [answers(case, program, each) for each in runs]
+    if None in fine[OURS]:
+        raise study.Failure(f"equal-errors: the reference of {case.title} failed", 11)
+    for row in rows:
+        if of_it := found[row["program"], row["setting"]]:
+            row |= {name: of_it[name] for name in ("dofs", "steps", *SECONDS)}
+            row |= errors(case, answers(case, row["program"], of_it), fine[OURS][-1])
+    return pd.DataFrame(rows), compare(case, fine)
+
+
+def once(case: Case, program: str, point: study.Point) -> tuple[Found | None, str]:
+    """What a program prints at a setting, or why nothing."""
+    if program in OWN:
+        return peers.ours(LIMIT, case.scene, fields=0, **case.given, **point)
+    if case.scene == "disc-block":
+        return peers.two_bodies(LIMIT, **case.given, **point)
+    form = "plain" if program in (USUAL, GETFEM_USUAL) else "tuned"
+    return peers.run(program.split(",")[0], form, limit=LIMIT, scene=case.scene, tolerance=TOLERANCE, **case.given, **case.theirs, **point)
+
+
+def least(case: Case, program: str, point: study.Point) -> tuple[Found | None, str]:
+    """The same with the least seconds of REPEATS runs, of one where that takes longer than LONG."""
+    found, reason = once(case, program, point)
+    for _ in range(REPEATS - 1 if found and found["process_seconds"] <= LONG else 0):
+        again, _ = once(case, program, point)
+        found |= {name: min(found[name], again[name]) for name in SECONDS}
+    return found, reason
+
+
+def answers(case: Case, program: str, found: Found | None) -> Measured | None:
+    """The judged answers of what a program printed."""
+    return found and {answer: found[ours if program in OWN else theirs] for answer, (ours, theirs, _) in case.answers.items()}
+
+
+def errors(case: Case, measured: Measured, reference: Measured) -> dict[str, float]:
+    """In %, of each answer and the largest."""
+    found = {f"{answer} %": 100 * abs(measured[answer] - reference[answer]) / (unit or abs(reference[answer]))
+             for answer, (*_, unit) in case.answers.items()}
+    return found | {"error": max(found.values())}
+
+
+def compare(case: Case, fine: dict[str, list[Measured | None]]) -> pd.DataFrame:
+    """A row an answer: both references, whose bars [%] are the largest difference of a program's finest run from its two next, their
+    difference [%], and whether it is within both; none where NGSolve gave none."""
+    if None in fine[TUNED]:
+        return pd.DataFrame()
+    bars = {program: max(errors(case, run, finest)["error"] for run in runs) for program, (*runs, finest) in fine.items()}
+    apart = errors(case, fine[TUNED][-1], fine[OURS][-1])
+    return pd.DataFrame([{"answer": answer, OURS: fine[OURS][-1][answer], "its bar %": bars[OURS], "ngsolve": fine[TUNED][-1][answer],
+                          "bar %": bars[TUNED], "apart %": apart[f"{answer} %"], "agree": apart[f"{answer} %"] <= bars[OURS] + bars[TUNED]}
+                         for answer in case.answers])
+
+
+def words(point: study.Point) -> str:
+    """A setting; sizes in mm, steps in microseconds."""
+    if "mesh_size" in point:
+        return f"h {1e3 * point['mesh_size']:g} mm, dt {1e6 * point['dt']:g} us"
+    return ", ".join(f"{name} {value}" for name, value in point.items() if name not in ("contact", "integrator"))
+
+
+# ---- what the rows say
+
+def safe(rows: pd.DataFrame, program: str, level: float) -> pd.Series | None:
+    """The row of a program that costs its whole process least among those from which on all finer settings keep the level;
+    None where none does."""
+    own = rows[rows.program == program]
+    kept = own[(own.exit == 0) & (own.error <= level)] if "error" in own else own[:0]
+    broken = own.index.difference(kept.index)
+    kept = kept[kept.index > broken.max()] if len(broken) else kept
+    return None if kept.empty else kept.loc[kept.process_seconds.idxmin()]
+
+
+def beside(rows: pd.DataFrame) -> dict[float, tuple[float, float]]:
+    """By level the least march and whole process of all others over ours; nan where ours or all others do not reach it."""
+    found = {}
+    for level in LEVELS:
+        ours = safe(rows, OURS, level)
+        theirs = [best for program in rows.program.unique() if program not in OWN and (best := safe(rows, program, level)) is not None]
+        found[level] = tuple(min((best[name] for best in theirs), default=math.nan) / (math.nan if ours is None else ours[name])
+                             for name in ("cpu_seconds", "process_seconds"))
+    return found
+
+
+def verdict(agreed: dict[str, bool], ratios: dict[str, dict[float, tuple[float, float]]]) -> str:
+    """The last paragraph: whether the references agree, and who is quicker."""
+    without = [name for name, agrees in agreed.items() if not agrees]
+    pairs = [pair for each in ratios.values() for pair in each.values() if not math.isnan(pair[0])]
+    quicker = [sum(pair[which] > 1 for pair in pairs) for which in (0, 1)]
+    each = "; ".join(f"{name} " + ", ".join(f"{level:g} %: " + ("-" if math.isnan(march) else f"{march:.1f} / {process:.1f}")
+                                            for level, (march, process) in of.items()) for name, of in ratios.items())
+    return (f"The references of both programs agree within their bars in {len(agreed) - len(without)} of {len(agreed)} cases"
+            + f" (not: {', '.join(without)})" * bool(without)
+            + f". Our march is the quickest in {quicker[0]} of {len(pairs)} comparisons, our whole process "
+            f"in {quicker[1]}. The quickest other over ours, march / process: {each}.")
+
+
+def text(case: Case, rows: pd.DataFrame, reference: pd.DataFrame) -> str:
+    """A case as markdown: who takes how long, the references, all settings."""
+    ran = rows[rows.exit == 0]
+    levels = pd.DataFrame([{"march / process [s]": program} | {f"{level:g} %": cell(safe(rows, program, level)) for level in LEVELS}
+                           for program in ran.program.unique()])
+    parts = [f"## {case.title}", study.table(levels, dict.fromkeys(levels, ""))]
+    if not reference.empty:
+        bar = reference[["its bar %", "bar %"]].max(axis=None)
+        parts += ["References:" if bar <= min(LEVELS) else f"References, whose bars say that errors below {bar:.2g} % are not known:",
+                  study.table(reference, {"answer": "", OURS: ".6g", "its bar %": ".3f",
+                                          "ngsolve": ".6g", "bar %": ".3f", "apart %": ".3f", "agree": ""})]
+    formats = {"program": "", "setting": "", "dofs": ".0f", "steps": ".0f"} | dict.fromkeys(SECONDS.values(), ".2f")
+    parts += ["All settings, seconds and errors:",
+              study.table(ran.rename(columns=SECONDS), formats | {f"{answer} %": ".3f" for answer in case.answers})]
+    missing = [f"- {row.program}, {row.setting}: {row.message}" for row in rows[rows.exit != 0].itertuples()]
+    return "\n\n".join(parts + ["\n".join(missing)] * bool(missing))
+
+
+def cell(best: pd.Series | None) -> str:
+    return "none" if best is None else f"{best.cpu_seconds:.2f} / {best.process_seconds:.2f} ({best.setting})"

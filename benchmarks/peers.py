@@ -1,0 +1,114 @@
+"""Other programs on the same disc or ball, or the same two bodies, and a plain textbook script of FreeFEM (benchmarks/programs/): found
+where they are installed, run one process at a time. This program beside them runs as they do (ffimpact_run.py).
+
+NGSolve: the extra `peers` of pyproject.toml, in this Python or in the one that $NGSOLVE_PYTHON names. GetFEM: Debian's python3-getfem,
+in /usr/bin/python3 or in $GETFEM_PYTHON. Nothing else needs them.
+"""
+
+import json
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+from functools import cache, partial
+from pathlib import Path
+from signal import SIGKILL
+
+from ffimpact.failure import Failure
+from ffimpact.freefem import freefem
+from ffimpact.input.parameters import Value
+from ffimpact.mesh import mesh
+from ffimpact.places import INSTALLED, ROOT, shown
+from ffimpact.scene import Scene
+from ffimpact.sweeps.study import Point
+
+PYTHONS = {"ffimpact": ("", sys.executable), "ngsolve": ("NGSOLVE_PYTHON", sys.executable), "getfem": ("GETFEM_PYTHON", "/usr/bin/python3")}
+INSTALL = {"ngsolve": "pip install ngsolve==6.2.2608", "getfem": "apt-get install python3-getfem"}
+ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+RADIUS = 0.05               # m, of disc-normal and the peers' default
+BULK, CONTACT = 8e-3, 2.5e-3   # m: mesh sizes of factor 1 on the disc of that radius
+TEXTBOOK = "../benchmarks/programs/textbook"
+# our scenes, and the script <program>_<body>.py beside each
+BODIES = {"disc-normal": "disc", "disc-oblique": "disc_oblique", "ball-axisymmetric": "ball", "ball": "ball_3d"}
+
+
+def sized(factor: float, **given: Value) -> Point:
+    """A mesh of `factor` times the sizes BULK and CONTACT."""
+    return {"mesh_size": factor * BULK, "contact_mesh_size": factor * CONTACT} | given
+
+
+@cache
+def find(program: str) -> str | None:
+    """The Python that imports `program` (ngsolve or getfem), None where there is none."""
+    variable, usual = PYTHONS[program]
+    python = os.environ.get(variable, usual)
+    if program == "ffimpact":
+        return python
+    try:
+        found = subprocess.run([python, "-c", f"import {program}"], capture_output=True, timeout=60).returncode == 0
+    except (OSError, subprocess.TimeoutExpired):
+        return None
+    return python if found else None
+
+
+def run(program: str, form: str, mesh_size: float, contact_mesh_size: float, dt: float, limit: float = 600, scene: str = "disc-normal",
+        **flags: Value) -> tuple[dict | None, str]:
+    """(what the peer prints, "") or (None, the reason there is nothing).
+
+    program: ngsolve or (the disc alone) getfem; form: plain, tuned or (NGSolve) newmark; sizes [m], step dt [s], limit
+    [s]; scene: of BODIES. Further flags by the names of the peers: law, nu, speed, penalty, young, density, tolerance, history.
+    """
+    flags |= {"form": form, "dt": dt, "mesh_size": mesh_size, "contact_mesh_size": contact_mesh_size}
+    with tempfile.TemporaryDirectory() as folder:
+        if program == "getfem":     # on our mesh; netgen makes its own with the same sizes
+            flags["mesh"] = str(Path(folder) / "mesh.msh")
+            mesh.write(mesh.disc(RADIUS, mesh_size, contact_mesh_size, half=True), Path(flags["mesh"]))
+        return _printed(program, f"{program}_{BODIES[scene]}.py", folder, limit, flags)
+
+
+def two_bodies(limit: float, **flags: Value) -> tuple[dict | None, str]:
+    """The same of benchmarks/programs/ngsolve_two_bodies.py, SI units; flags by its names: law, nu, penalty, speed, refine ..."""
+    with tempfile.TemporaryDirectory() as folder:
+        return _printed("ngsolve", "ngsolve_two_bodies.py", folder, limit, flags)
+
+
+def ours(limit: float, scene: str, **given: Value) -> tuple[dict | None, str]:
+    """The same of a run of this program without an estimate: its summary, and how its seconds part."""
+    with tempfile.TemporaryDirectory() as folder:
+        return _printed("ffimpact", "ffimpact_run.py", folder, limit, {"scene": scene, "given": json.dumps(given)})
+
+
+def _printed(program: str, script: str, folder: str, limit: float, flags: dict[str, Value]) -> tuple[dict | None, str]:
+    """(the last line that the script prints, read as JSON, and process_seconds: user and system time of it and of what it started, "") or
+    (None, the reason there is nothing)."""
+    if INSTALLED:
+        return None, "the scripts of other programs are in the source folder (benchmarks/programs/)"
+    python = find(program)
+    if not python:
+        return None, f"{program} is not installed ({INSTALL[program]})"
+    words = [word for name, value in flags.items() for word in (f"--{name.replace('_', '-')}", str(value))]
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    try:
+        done = subprocess.run([python, ROOT / "benchmarks/programs" / script, *words], env=os.environ | ONE_THREAD, cwd=folder,
+                              capture_output=True, text=True, timeout=limit,
+                              preexec_fn=partial(freefem.die_with_parent, os.getpid(), SIGKILL))
+    except subprocess.TimeoutExpired:
+        return None, f"no end after {limit:g} s: killed"
+    said, complaint = done.stdout.strip().splitlines(), done.stderr.strip().splitlines()
+    if done.returncode != 0 or not said:
+        return None, f"exit code {done.returncode}: {complaint[-1] if complaint else 'no output'}"
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return json.loads(said[-1]) | {"process_seconds": after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime}, ""
+
+
+def textbook(wanted: Scene, mesh_file: Path) -> dict:
+    """What the textbook script prints of a disc on a mesh, under the names of summary.json. Seconds: processor time without set-up."""
+    log = mesh_file.with_suffix(".log")
+    code, _ = freefem.run(freefem.find(), TEXTBOOK, wanted.values | {"mesh": mesh_file}, log)
+    said = log.read_text().strip().splitlines()
+    words = said[-1].split() if said else []
+    if code != 0 or words[:1] != ["textbook"]:
+        raise Failure(f"textbook: the textbook script ended with exit code {code}; its output is in {shown(log)}")
+    names = ("dofs", "steps", "newton_iterations", "cpu_seconds", "impulse", "rebound_vy", "contact_time", "energy_drift")
+    return dict(zip(names, map(float, words[1:])))

@@ -1,0 +1,27 @@
+"""A scene with this program, as a Python script of a user runs it, without the estimate of the error: ends with a line of JSON as the peers do.
+
+cpu_seconds: FreeFem++ from the first step on; setup_seconds: its start and operators, and what Python does (scene, mesh, result); imports_seconds: Python's.
+"""
+
+import argparse
+import json
+import sys
+import time
+from pathlib import Path
+from resource import RUSAGE_CHILDREN, getrusage
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from ffimpact import run, scene  # noqa: E402
+from ffimpact.output.results import read_history  # noqa: E402
+
+parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+parser.add_argument("--scene", required=True)
+parser.add_argument("--given", type=json.loads, required=True, help="parameters, as JSON")
+options = parser.parse_args()
+imports = time.process_time()
+summary = run.run(scene.load(options.scene), options.given, Path("out").resolve(), estimate=False).summary
+marching = summary["cpu_seconds"] - summary["start_seconds"]
+children = getrusage(RUSAGE_CHILDREN)
+print(json.dumps({name: value for name, value in summary.items() if isinstance(value, (int, float))} | {
+    "angular_momentum": read_history(Path("out"))["angular_momentum"][-1], "imports_seconds": imports, "cpu_seconds": marching,
+    "setup_seconds": time.process_time() - imports + children.ru_utime + children.ru_stime - marching}))

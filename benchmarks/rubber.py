@@ -1,0 +1,157 @@
+"""Disc and ball as nu -> 0.5: answers and cost with volume in the mean of elements and at points, NGSolve beside them."""
+
+import itertools
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+from matplotlib.ticker import LogLocator, NullFormatter
+
+from ffimpact.report.figures import BLUE, DASHED, GREY, ORANGE, STYLE, save
+from ffimpact.sweeps import study
+
+from verification import commands
+from . import peers
+
+NUS = (0.3, 0.4, 0.45, 0.47, 0.49, 0.499, 0.4999, 0.5)    # 0.5: law = incompressible
+BASE = {"law": "neohookean", "speed": 4.0, "accuracy": 2e-3, "fields": 0}
+BODIES = {"disc": "disc-normal", "ball": "ball-axisymmetric"}
+LIMIT = 120.0                                       # seconds a run may take
+PLAIN = 0.45                                        # nu up to which both are the same (edp/core/law/material.idp)
+DEAREST = 1.5                                       # most processor time at the largest nu, over that at PLAIN
+BETTER = 4                                          # times smaller: the accuracy of the projected runs beside these
+SLACK = 2 * BASE["accuracy"]                         # both ends of a rise may be off by as much
+PEER_NU, FINE, PEER_DT, PEER_PENALTY, AGREE = 0.499, 0.5, 1e-5, 1e10, 5e-3   # beside NGSolve: sizes over peers.sized(1), [s], [Pa/m]
+ANSWERS = {"contact [ms]": ("thresholded_contact_time", 1e3), "impulse": ("impulse", 1.0), "rebound [m/s]": ("rebound_vy", 1.0)}
+FORMATS = {"body": "", "volume": "", "nu": "g", "contact [ms]": ".3f", "finer [ms]": ".3f", "impulse": ".4f", "rebound [m/s]": ".4f",
+           "energy": ".0e", "dofs": ".0f", "steps": ".0f", "iterations": ".0f", "factors": ".0f", "CPU [s]": ".2f", "outcome": ""}
+
+
+def main(argv: list[str]) -> int:
+    """Prints the table, writes rubber.csv and rubber.png; 0 if what is asked of the mean volume holds."""
+    parser = commands.command("rubber", __doc__, page=True)
+    parser.add_argument("--nus", metavar="NU", nargs="+", type=float, default=NUS, help="Poisson's ratios (default: %(default)s)")
+    parser.add_argument("--limit", metavar="SECONDS", type=float, default=LIMIT, help="of a run (default %(default)g)")
+    options = parser.parse_args(argv)
+    table = compare(sorted(options.nus), options.limit, options.out)
+    draw(table, options.out / "rubber.png")
+    beside = [row for body in BODIES for row in peer(body)]
+    text = report(table, beside)
+    return commands.finish(options, table, text, holds(table) and agrees(beside), argv, "Rubber: nu to 0.5", "csv, .png")
+
+
+def compare(nus: list[float], limit: float, out: Path) -> pd.DataFrame:
+    """A row a run; up to PLAIN nothing is to be compared."""
+    rows = []
+    for body, scene in BODIES.items():
+        points = [_point("projected", nu) for nu in nus] + [_point("plain", nu) for nu in nus if PLAIN < nu < 0.5]
+        found = study.study(points, out / body, BASE, limit, scene, cores=1)
+        finer = study.study(points[:len(nus)], out / f"{body}-finer", BASE | {"accuracy": BASE["accuracy"] / BETTER}, limit, scene, cores=1)
+        name, factor = ANSWERS["contact [ms]"]
+        rows += [_row(body, one) | {"finer [ms]": factor * better.get(name, float("nan"))}
+                 for one, better in itertools.zip_longest(found.to_dict("records"), finer.to_dict("records"), fillvalue={})]
+    return pd.DataFrame(rows)
+
+
+def _point(volume: str, nu: float) -> study.Point:
+    return {"volume": volume, "nu": nu} | ({"law": "incompressible"} if nu == 0.5 else {})
+
+
+def _row(body: str, found: dict) -> dict:
+    row = {"body": body, "volume": found["volume"], "nu": found["nu"], "energy": found.get("energy_drift")}
+    row |= {name: factor * found.get(key, float("nan")) for name, (key, factor) in ANSWERS.items()}
+    row["outcome"] = found["message"].split(":")[-1].strip()
+    return row | {"dofs": found.get("dofs"), "steps": found.get("steps"), "iterations": found.get("newton_iterations"),
+                  "factors": found.get("factorizations"), "CPU [s]": found.get("cpu_seconds", float("nan")) - found.get("start_seconds", 0)}
+
+
+def peer(body: str) -> list[dict]:
+    """NGSolve with plain quadratic elements and ours, both with the same sizes and step; nothing where it is not installed."""
+    sizes = peers.sized(FINE, law="neohookean", nu=PEER_NU, speed=4.0, penalty=PEER_PENALTY, dt=PEER_DT)
+    theirs, why = peers.run("ngsolve", "tuned", limit=600, scene=BODIES[body], **sizes)
+    ours, failed = peers.ours(600, BODIES[body], **sizes)
+    if not theirs or not ours:
+        print(f"no NGSolve beside the {body}: {why or failed}")
+        return []
+    return [{"body": body, "answer": name, "ours": ours[name], "NGSolve": theirs[name], "differ": abs(ours[name] / theirs[name] - 1)}
+            for name in ("contact_time", "impulse", "rebound_vy")]
+
+
+def agrees(beside: list[dict]) -> bool:
+    return all(row["differ"] <= AGREE for row in beside)
+
+
+def holds(table: pd.DataFrame) -> bool:
+    """In the mean of elements: every run ends, energy to 1e-9, contact times fall and no answer jumps, at the cost asked for."""
+    mine = table[table.volume == "projected"]
+    good = (mine.outcome == "").all() and (mine.energy < 1e-9).all()
+    for _, one in mine.groupby("body"):
+        times = one["contact [ms]"].to_numpy()
+        good &= (np.diff(times) <= SLACK * times[:-1]).all() and _dearer(one) <= DEAREST
+    return bool(good)
+
+
+def _dearer(one: pd.DataFrame) -> float:
+    """Processor time at the largest nu over that at PLAIN (the nearest there is)."""
+    return one["CPU [s]"].iloc[-1] / one["CPU [s]"].iloc[int(np.argmin(abs(one.nu.to_numpy() - PLAIN)))]
+
+
+def _rise(one: pd.DataFrame, name: str) -> str:
+    """The largest rise of an answer from one nu to the next, in words."""
+    return f"{100 * max(0.0, one[name].pct_change().max()):.2f} % at most"
+
+
+def draw(table: pd.DataFrame, path: Path) -> None:
+    """Answers and processor time over 0.5 - nu; of J = 1 a line, with the accuracy that was asked for as a band about it."""
+    names = [*ANSWERS, "CPU [s]"]
+    with plt.rc_context(STYLE):
+        figure, grid = plt.subplots(len(BODIES), len(names), figsize=(12, 2.9 * len(BODIES)), squeeze=False)
+        for (body, one), axes in zip(table.groupby("body", sort=False), grid):
+            for name, axis in zip(names, axes):
+                for volume, colour, line in (("projected", BLUE, "-"), ("plain", ORANGE, DASHED)):
+                    its, held = one[(one.volume == volume) & (one.nu < 0.5)], one[one.nu == 0.5]
+                    axis.plot(0.5 - its.nu, its[name], color=colour, linestyle=line, marker="o", markersize=3, label=volume)
+                for value in held[name]:
+                    axis.axhline(value, color=BLUE, linewidth=0.6, label="J = 1")
+                    if name in ANSWERS:
+                        asked = BASE["accuracy"]
+                        axis.axhspan((1 - asked) * value, (1 + asked) * value, color=GREY, alpha=0.25, linewidth=0,
+                                     label=f"± {100 * asked:g} %")
+                unit = {"impulse": " [N s/m]" if body == "disc" else " [N s]"}.get(name, "")
+                axis.set(xscale="log", xlabel="0.5 − ν", ylabel=f"{body}: {name}{unit}")
+                axis.invert_xaxis()
+            axes[-1].set_yscale("log")
+            axes[-1].yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+            axes[-1].yaxis.set_major_formatter("{x:g}")
+            axes[-1].yaxis.set_minor_formatter(NullFormatter())
+        grid[0][0].legend()
+        save(figure, path)
+
+
+def report(table: pd.DataFrame, beside: list[dict]) -> str:
+    """The table, what it says, and the verdict."""
+    mine = table[table.volume == "projected"]
+    lines = [f"Impact on the plane at {BASE['speed']:g} m/s, neo-Hookean, accuracy {BASE['accuracy']:g}. projected: what lambda has beyond "
+             f"nu = {PLAIN:g} acts on the mean volume of each element, nu = 0.5: law = incompressible;",
+             f"plain: all of it at points, shown where the two differ. contact: time above 1 % of the largest force, finer: at {BETTER} "
+             "times smaller accuracy; impulse in N s/m, of the ball N s; energy: largest error of the balance; CPU: without the start.",
+             "", study.table(table, FORMATS), ""]
+    for body, one in mine.groupby("body", sort=False):
+        first, last = one.iloc[0], one.iloc[-1]
+        lines.append(f"- {body}: from nu = {first.nu:g} to {last.nu:g} the contact time falls by "
+                     f"{100 * (1 - last['contact [ms]'] / first['contact [ms]']):.1f} %, the rebound goes from "
+                     f"{first['rebound [m/s]']:.3f} to {last['rebound [m/s]']:.3f} m/s; processor time at {last.nu:g} is "
+                     f"{_dearer(one):.2f} times that at {PLAIN:g}. From one nu to the next contact times rise by "
+                     f"{_rise(one, 'contact [ms]')}, finer by {_rise(one, 'finer [ms]')}.")
+    lines += ["", "Contact times jump where impulses do not: what is left of the force at the end is a shoulder of 1 to 3 % of the "
+              "peak", "for 0.1 ms, of the last points to leave, which ends above the threshold of 1 % on one mesh and below it on another."]
+    if beside:
+        lines += ["", f"NGSolve, on the same equations with plain quadratic elements, and this program, nu = {PEER_NU:g}, elements "
+                  f"of {FINE:g} times the usual sizes, steps of {PEER_DT:g} s, k = {PEER_PENALTY:g} Pa/m:", "",
+                  study.table(pd.DataFrame(beside), {"body": "", "answer": "", "ours": ".6g", "NGSolve": ".6g", "differ": ".1e"})]
+    said = f"to NGSolve {100 * AGREE:g} %" if beside else "NGSolve was not there"
+    good = holds(table) and agrees(beside)
+    return "\n".join([*lines, "", f"The requirement (in the mean of elements every run ends, energy to 1e-9, contact times "
+                                  f"fall to {SLACK:g}, at most {DEAREST:g} times the processor time; {said}) "
+                                  f"{'holds' if good else 'FAILS'}."])

@@ -1,0 +1,88 @@
+"""What a step costs over the number n of unknowns, by phase, and memory: the exponents b of c n^b, of one scene on ever finer meshes. A
+step's floor is what its iterations cannot do without, the forces of the bodies and solutions with the factors: phases assembly, solve."""
+
+import math
+import multiprocessing
+from dataclasses import dataclass
+from pathlib import Path
+from resource import RUSAGE_CHILDREN, getrusage
+
+import pandas as pd
+
+from ffimpact import run, scene
+from ffimpact.freefem import freefem
+from ffimpact.output.results import read_json
+from ffimpact.sweeps import study
+
+from verification import commands
+
+
+@dataclass(frozen=True)
+class Case:
+    """A scene, its element sizes in the bulk and where it can touch [m], what divides them, the steps [s] and how many; and the largest
+    exponents that are asked of the time of a step and of memory."""
+
+    scene: str
+    sizes: tuple[float, float]
+    finer: tuple[float, ...]
+    dt: float
+    steps: int
+    asked: float
+    memory: float = 1.1
+
+
+CASES = {
+    "disc": Case("disc-normal-neohookean", (5e-3, 1e-3), (1, 2, 4, 9), 2e-5, 30, 1.2),   # svk loses ellipticity here on fine meshes
+    "disc, friction": Case("disc-oblique", (5e-3, 1e-3), (1, 2, 4, 8), 2e-5, 30, 1.2),
+    "ball": Case("ball", (22e-3, 7.2e-3), (1, 1.6, 2.4, 4), 5e-5, 20, 1.4),
+    "ball, friction": Case("ball-oblique", (22e-3, 7.2e-3), (1, 1.6, 2.4, 3.4), 5e-5, 20, 1.4),
+}
+MOST_OVER_FLOOR = 4                        # asked of a step
+PHASES = ("assembly", "factor", "solve", "contact", "search", "audit", "output")   # what steps are made of (phase_seconds)
+
+
+def main(argv: list[str]) -> int:
+    """Prints seconds a step, memory and their exponents, writes scaling.csv; 0 if none is above what is asked."""
+    parser = commands.command("scaling", __doc__, page=True)
+    parser.add_argument("--meshes", metavar="N", type=int, default=4, help="the coarsest N of each case (default: all four)")
+    parser.add_argument("--cases", metavar="CASE", nargs="+", default=list(CASES), choices=CASES, help=", ".join(CASES))
+    options = parser.parse_args(argv)
+    freefem.find()                         # what has to be built is built here, not in the first run
+    rows, texts, good = [], [], True
+    for name in options.cases:
+        case = CASES[name]
+        with multiprocessing.get_context("fork").Pool(1, maxtasksperchild=1) as one:   # each with the memory of its own children
+            wanted = [(case, finer, options.out / name.replace(", ", "-")) for finer in case.finer[:options.meshes]]
+            found = pd.DataFrame(one.starmap(_row, wanted, chunksize=1))
+        exponents = {column: slope(found.unknowns, found[column]) for column in (*PHASES, "step", "memory")}
+        rows.append(found.assign(case=name))
+        good &= exponents["step"] <= case.asked and exponents["memory"] <= case.memory and found["over floor"].max() <= MOST_OVER_FLOOR
+        shown = pd.concat([found, pd.DataFrame([exponents | {"mesh": f"exponent (asked: {case.asked}, {case.memory})"}])])
+        texts.append(f"## {name}\n\n" + study.table(shown, {"mesh": "", "unknowns": ".0f", "iterations": ".1f", "factorisations": ".0f"}
+                                                  | dict.fromkeys((*PHASES, "step"), ".3g") | {"over floor": ".2g", "memory": ".0f"}))
+    verdict = (f"Seconds of processor time a step, by phase, from the first touch on; memory in MB. "
+               f"{'No' if good else 'An'} exponent is above what is asked, {'and no' if good else 'or a'} step above "
+               f"{MOST_OVER_FLOOR} times its floor.")
+    return commands.finish(options, pd.concat(rows), "\n\n".join([*texts, verdict]), good, argv, "Time and memory over the number of unknowns")
+
+
+def _row(case: Case, finer: float, out: Path) -> dict:
+    """One run, in a folder of its own, from a process of its own."""
+    bulk, contact = case.sizes
+    given = {"mesh_size": bulk / finer, "contact_mesh_size": contact / finer, "dt": case.dt, "end_time": case.steps * case.dt, "fields": 0}
+    folder = out / f"{finer:g}"
+    run.run(scene.load(case.scene).override(given), out=folder, force=True, estimate=False)
+    found = read_json(folder / "summary.json")
+    spent = {phase: found["phase_seconds"][phase] / found["steps"] for phase in PHASES}
+    return {"mesh": f"h / {finer:g}", "unknowns": found["dofs"], "iterations": found["newton_iterations"] / found["steps"],
+            "factorisations": found["factorizations"], **spent, "step": sum(spent.values()),
+            "over floor": sum(spent.values()) / max(spent["assembly"] + spent["solve"], 1e-9),
+            "memory": getrusage(RUSAGE_CHILDREN).ru_maxrss / 1024}
+
+
+def slope(n: pd.Series, values: pd.Series) -> float:
+    """b of the line log values = a + b log n that is nearest; nan where a value is too small to be seen."""
+    if len(n) < 2 or (values < 1e-4).any():
+        return math.nan
+    x, y = n.map(math.log), values.map(math.log)
+    return (x - x.mean()).dot(y - y.mean()) / (x - x.mean()).dot(x - x.mean())

@@ -1,0 +1,212 @@
+"""What the statements of the paper are judged with: the verdicts, the results that `make paper` leaves, error bars.
+
+Every verdict follows from numbers by the rule in the docstring of its statement (limits, friction, impacts, pairs, bodies, times). Section
+3 is told of the paper's law, St. Venant-Kirchhoff (5), except where it names (6): with it a verdict is decided; the neo-Hookean answer,
+which converges, stands beside it.
+
+Where that law loses ellipticity in a run that decides, its answer depends on the mesh, and "agrees" becomes "partly" (`_on_any_mesh`),
+whatever the statement is; but not of what every step keeps exactly, on any mesh: the discrete energy and momentum.
+"""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from functools import cache, wraps
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from ffimpact.output.results import read_frame, read_history, read_scene, read_summary
+from ffimpact.report.impacts import read_modes
+from ffimpact.sweeps import study, sweep, sweep_figures
+
+AGREES, DIFFERS, PARTLY, OPEN = "agrees", "does not agree", "partly", "not decided"
+CONSTANT = 1e-9             # of the energy at the start: below, an energy is constant
+LAWS = {"svk": "SVK", "neohookean": "neo-Hookean"}   # the paper's law first
+
+History = dict[str, np.ndarray]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What we found: the verdict, our number in words, the pictures, the folders of the runs it rests on."""
+
+    verdict: str
+    ours: str
+    figures: list[Path] = field(default_factory=list)
+    runs: list[Path] = field(default_factory=list)
+
+
+class Results:
+    """The finished cases in a folder of results, by the names of runs and sweeps; histories, summaries and modes of the runs of pair()."""
+
+    def __init__(self, folder: Path):
+        self.folder = folder
+
+    def run(self, name: str) -> Path:
+        return self.folder / name
+
+    def summary(self, name: str) -> dict:
+        return read_summary(self.run(name))
+
+    def history(self, name: str) -> History:
+        return read_history(self.run(name))
+
+    def scene(self, name: str) -> dict:
+        return read_scene(self.run(name))
+
+    def sweep(self, name: str) -> Path:
+        return self.folder / "sweeps" / name
+
+    def drawn(self, *names: str) -> list[Path]:
+        """The pictures of sweeps, of runs ("run/kind"), and those that have a place of their own (with .png)."""
+        return [self.folder / name if name.endswith(".png") else self.sweep(name) / "sweep.png" if name in sweep.built_in()
+                else self.folder / f"{name.replace('/', '/figures/')}.png" for name in names]
+
+    def table(self, name: str) -> pd.DataFrame:
+        """The points of a sweep, from its runs."""
+        return sweep.table(loaded(name), self.sweep(name))
+
+    def folders(self, *names: str) -> list[Path]:
+        """Those of runs, and of all runs of sweeps."""
+        return [folder for name in names for folder in ([study.place(self.sweep(name), point) for point in loaded(name).runs]
+                                                        if name in sweep.built_in() else [self.run(name)])]
+
+    def pair(self, name: str, **values) -> list[Path]:
+        """The runs of the point of a sweep with these values: plain and, where the sweep refines, refined."""
+        wanted = loaded(name)
+        point = next(point for point in wanted.points if values.items() <= point.items())
+        return [study.place(self.sweep(name), point | more) for more in ([{}, wanted.refine] if wanted.refine else [{}])]
+
+    def histories(self, name: str, **values) -> list[History]:
+        return [read_history(folder) for folder in self.pair(name, **values)]
+
+    def summaries(self, name: str, **values) -> list[dict]:
+        return [read_summary(folder) for folder in self.pair(name, **values)]
+
+    def modes(self, name: str, **values) -> list[np.recarray]:
+        return [read_modes(folder) for folder in self.pair(name, **values)]
+
+    def friction_laws(self) -> pd.DataFrame:
+        """The table that figure 3 is drawn from."""
+        return read_frame(self.folder / "friction-laws/laws.csv")
+
+    def stick_slip(self) -> pd.DataFrame:
+        """The table of the search for the paper's order of sliding and sticking."""
+        return read_frame(self.folder / "stick-slip/stick-slip.csv")
+
+
+@cache
+def loaded(name: str) -> sweep.Sweep:
+    return sweep.load(name)
+
+
+# ---- the statements, in the order of the paper
+
+STATEMENTS: list[tuple[str, str, Callable[[Results], Finding]]] = []
+Lost = list[float | None]   # when runs with St. Venant-Kirchhoff lost ellipticity [s], None or nan where they kept it
+
+
+def states(item: str, text: str, runs: str | Callable[[Results], list[Path]] = "", figures: str | None = None,
+           lost: Callable[[Results], Lost] = lambda results: [], exact: bool = False, laws: str = "") -> Callable:
+    """Registers how a statement of the paper is judged. The rule gives the verdict and our number in words, and may give `lost`.
+
+    runs: the runs and sweeps that it rests on; figures: as Results.drawn() names them, those of its sweeps where none are given; lost: of
+    the runs that decide; exact: it is about what every step keeps exactly, on any mesh. laws: the rule is about one law, which it takes,
+    and the words of both stand for {} in these: of_laws().
+    """
+    def register(rule: Callable) -> Callable[[Results], Finding]:
+        @wraps(rule)
+        def judged(results: Results) -> Finding:
+            verdict, ours, *more = of_laws(rule, results, laws) if laws else rule(results)
+            folders = results.folders(*runs.split()) if isinstance(runs, str) else runs(results)
+            shown = [name for name in runs.split() if name in sweep.built_in()] if figures is None else figures.split()
+            if verdict == AGREES:
+                verdict, ours = _on_any_mesh(ours, more[0] if more else lost(results), exact)
+            return Finding(verdict, ours, results.drawn(*shown), folders)
+        STATEMENTS.append((item, text, judged))
+        return judged
+    return register
+
+
+def lost(*which: str | tuple[str, dict]) -> Callable[[Results], Lost]:
+    """When runs, or those of the points (sweep, values) on both meshes, lose ellipticity [s]."""
+    def times(results: Results) -> Lost:
+        ends = [results.summaries(one[0], **one[1]) if isinstance(one, tuple) else [results.summary(one)] for one in which]
+        return [end["ellipticity_lost_time"] for each in ends for end in each]
+    return times
+
+
+def _on_any_mesh(ours: str, lost: Lost, exact: bool) -> tuple[str, str]:
+    """The rule of all statements on St. Venant-Kirchhoff: "agrees" becomes "partly" where a run that decides lost ellipticity, as another
+    mesh may decide otherwise; not where the statement is `exact`."""
+    if not (times := [time for time in lost if known(time)]):
+        return AGREES, ours
+    since = f"SVK loses ellipticity from {1e3 * min(times):.2f} ms on"
+    if exact:
+        return AGREES, f"{ours} ({since}; but this is kept exactly by every step, on any mesh.)"
+    return PARTLY, f"{ours} Partly: {since}, from where its answer depends on the mesh."
+
+
+def graded(agrees: bool, partly: bool = False) -> str:
+    """The verdict of what agrees, or else partly."""
+    return AGREES if agrees else PARTLY if partly else DIFFERS
+
+
+def of_laws(rule: Callable[[Results, str], tuple], results: Results, around: str) -> tuple[str, str]:
+    """(verdict, words) of both laws. The rule gives of each (holds, words): agrees with both, partly with the paper's alone, not where the
+    paper's does not; or (verdict, words, what is said behind them all): the paper's law decides."""
+    found = {law: rule(results, law) for law in LAWS}
+    (paper, _, *said), (other, *_) = found.values()
+    words = around.format("; ".join(f"{LAWS[law]}: {own}" for law, (_, own, *_) in found.items()))
+    return paper if said else graded(paper and other, paper), words + "".join(said)
+
+
+def finished(results: Results, name: str) -> pd.DataFrame:
+    """The points of a sweep that finished."""
+    rows = results.table(name)
+    return rows[rows.exit == 0]
+
+
+def bar(rows: pd.DataFrame, column: str, **values) -> tuple[float, float]:
+    """(value, error bar) of the point with these values; the bar is at least the root mean square of those of `rows`."""
+    here = np.logical_and.reduce([rows[name] == value for name, value in values.items()])
+    return float(rows[column][here].iloc[0]), float(sweep_figures.bars(rows, column)[here][0])
+
+
+def touching(history: History) -> np.ndarray:
+    """The steps from the first to the last touch, as indices."""
+    steps = np.flatnonzero(history["normal_force"] > 0)
+    return np.arange(steps[0], steps[-1] + 1)
+
+
+def maxima(values: np.ndarray, least: float) -> int:
+    """How many maxima stand out: between two of them the values fall and rise again by more than `least`."""
+    count, low, high, rising = 0, values[0], values[0], True
+    for value in values:
+        if rising and value < high - least:
+            count, rising, low = count + 1, False, value
+        elif not rising and value > low + least:
+            rising, high = True, value
+        low, high = min(low, value), max(high, value)
+    return count
+
+
+def both(values: Iterable, form: str = "") -> str:
+    """The numbers of both meshes, or steps, in words, each in a format such as ".1f"."""
+    return " and ".join(format(value, form) for value in values)
+
+
+def when(time: float | None, words: str) -> str:
+    """Since when something is so in a run [s], in words."""
+    return f"{words} from {1e3 * time:.2f} ms on" if known(time) else f"{words}: never"
+
+
+def known(time: float | None) -> bool:
+    """Whether a time of the summary is there."""
+    return time is not None and not np.isnan(time)
+
+
+def both_times(summary: dict) -> str:
+    """The contact time, and that between the crossings of 1 % of the peak force, in words."""
+    return f"{1e3 * summary['contact_time']:.3f} ms (above 1 % of the peak force {1e3 * summary['thresholded_contact_time']:.3f} ms)"

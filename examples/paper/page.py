@@ -1,0 +1,132 @@
+"""The page of the paper's statements beside our numbers, as HTML that holds everything itself."""
+
+import base64
+from datetime import datetime
+from html import escape
+from pathlib import Path
+
+import pandas as pd
+
+from verification import verify
+
+from ffimpact import __version__, scene
+from ffimpact.input import parameters
+from ffimpact.output.results import read_frame, read_json, read_scene
+from ffimpact.report.figures import GREEN, ORANGE, STYLE
+from ffimpact.run import code_hash
+from ffimpact.sweeps import study, sweep
+from .judging import AGREES, DIFFERS, OPEN, PARTLY, Finding
+
+COLOURS = {AGREES: GREEN, DIFFERS: ORANGE, PARTLY: "#b8860b", OPEN: "#777777"}
+SHOWN = {"energies": "energies over time", "force": "contact force over time",
+         "rolling": "velocity of the centre and the rim, and the share that slides",
+         "velocity": "velocities over time", "contact": "contact pressure along the outline and over time",
+         "flight": "shapes on the flight and in the contact", "shapes": "deformed shapes"}   # what a picture of a run shows
+PIXELS, DPI = 85, STYLE["savefig.dpi"]      # of the page and of a picture to an inch
+BACK = '<a href="#top">Back to the top</a>'
+TITLES = {"friction-laws": "The friction laws (11) to (13), from the functions that the solver runs (make friction-laws)",
+          "stick-slip": "Share of the load that slides in each third of the contact, over ε, k and ν (make stick-slip)",
+          "-and-".join(("disc-normal", "disc-normal-neohookean", "ball-axisymmetric-svk", "ball-axisymmetric")):
+          "Accelerations of the centre of mass, energies and velocities of discs and balls (make ball-comparison)"}
+
+
+def page(findings: list[tuple[str, str, Finding]], more: str = "") -> str:
+    """The page as HTML, pictures and all; `more` comes behind the statements."""
+    counts = ", ".join(f"{sum(found.verdict == verdict for *_, found in findings)} {verdict}" for verdict in COLOURS)
+    contents = "\n".join(f"<li>{line}</li>" for line in [
+        '<a href="#all">All verdicts</a>',
+        *(f'<a href="#s{k}">{escape(item)}</a>: {escape(text)}' for k, (item, text, _) in enumerate(findings)),
+        *(['<a href="#verification">Verification</a>: exact solutions'] if more else [])])
+    rows = "\n".join(f'<tr id="row{k}"><td>{escape(item)}</td><td>{escape(text)}</td><td>{escape(found.ours)}</td>'
+                     f'<td style="color:{COLOURS[found.verdict]}"><a href="#s{k}">{found.verdict}</a></td></tr>'
+                     for k, (item, text, found) in enumerate(findings))
+    shown = {}
+    sections = "\n".join(_section(k, *each, shown) for k, each in enumerate(findings))
+    return Path(__file__).with_name("page.html").read_text("utf-8").format(
+        counts=counts, contents=contents, rows=rows, sections=sections, more=more, now=datetime.now(), version=__version__,
+        code=code_hash(), back=BACK)
+
+
+def _section(k: int, item: str, text: str, found: Finding, shown: dict[Path, int]) -> str:
+    """A statement with its pictures, numbered through the page; of one that an earlier statement has, by `shown`, a link to it."""
+    pictures = []
+    for path in found.figures:
+        if path in shown:
+            pictures.append(f'<p><a href="#figure{shown[path]}">Figure {shown[path]}</a> above: {escape(caption(path))}.</p>')
+        else:
+            shown[path] = len(shown) + 1
+            pictures.append(_picture(path, shown[path], f"#s{k}", item))
+    return (f'<h2 id="s{k}">{escape(item)}: {escape(text)}</h2>\n<p><b style="color:{COLOURS[found.verdict]}">{found.verdict}</b>: '
+            f'{escape(found.ours)}</p>\n'
+            + "\n".join(pictures) + f'\n{_provenance(found.runs)}\n<p><a href="#row{k}">Back to its row in the table</a> · {BACK}</p>')
+
+
+def _picture(path: Path, number: int = 0, back: str = "", item: str = "") -> str:
+    """A picture with its caption, as wide as it was drawn, so that the text of all has one size; with a number and what it belongs to where
+    they are given."""
+    words, data = escape(caption(path)), path.read_bytes()
+    wide = f' width="{round(PIXELS * int.from_bytes(data[16:20], "big") / DPI)}"' if data[12:16] == b"IHDR" else ""
+    lead, trail = (f"<b>Figure {number}.</b> ", f' (<a href="{back}">{escape(item)}</a>)') if number else ("", "")
+    anchor = f' id="figure{number}"' if number else ""
+    return (f'<figure{anchor}><img alt="{words}"{wide} src="data:image/png;base64,{base64.b64encode(data).decode()}">'
+            f"<figcaption>{lead}{words}{trail}</figcaption></figure>")
+
+
+def caption(path: Path) -> str:
+    """What a picture shows: of a run its scene's title and the quantity, of a sweep its title."""
+    if path.name == "sweep.png" and path.parent.name in sweep.built_in():
+        return f"{sweep.load(path.parent.name).title} (make {path.parent.name})"
+    if path.parent.name == "figures" and path.parent.parent.name in scene.built_in():
+        return f"{path.parent.parent.name}: {scene.load(path.parent.parent.name).title}: {SHOWN.get(path.stem, path.stem)}"
+    return TITLES.get(path.stem, path.stem.replace("-", " ")) + (", all with k = 1e10 Pa/m" if path.parent.name == "same-penalty" else "")
+
+
+def verification(folder: Path) -> str:
+    """The section with what `make verify` left in `folder`: a table of the cases, then each with its figure and numbers."""
+    frame = read_frame(folder / "verify.csv", verify.COLUMNS)
+    judged = verify.judged(frame)
+    table = _table(verify.overview(frame), verify.FORMATS)
+    parts = []
+    for case in verify.CASES:
+        rows, asked = frame[frame.case == case.name], judged[judged.case == case.name]
+        figure = folder / f"{verify.slug(case)}.png"
+        parts.append(f"<h3>{escape(case.name)}: {escape(case.title)}</h3>\n<p>{escape(case.note)}</p>\n"
+                     f"{_picture(figure) if figure.exists() else ''}\n<details><summary>all numbers ({len(rows)}, of which "
+                     f"{len(asked)} are judged)</summary>{_table(rows, verify.NUMBERS)}</details>")
+    return ('<h2 id="verification">Verification</h2>' "\n<p>Against exact solutions, by tolerances fixed beforehand (make verify): "
+            f"<b>{'all pass' if judged['pass'].all() else 'NOT all pass'}</b>. A row a case, with the number that is nearest to "
+            f"its tolerance; order: observed, of the largest error between the coarsest and the finest size.</p>\n{table}\n"
+            + "\n".join(parts) + f"\n<p>{BACK}</p>")
+
+
+def _table(frame: pd.DataFrame, formats: dict[str, str]) -> str:
+    """The columns named in `formats` as an HTML table."""
+    rows = [[*formats], *zip(*([study.cell(value, form) for value in frame[name]] for name, form in formats.items()))]
+    return "<table>" + "\n".join("<tr>" + "".join(f"<{tag}>{escape(text)}</{tag}>" for text in row) + "</tr>"
+                                 for tag, row in zip(["th"] + ["td"] * len(frame), rows)) + "</table>"
+
+
+def _provenance(folders: list[Path]) -> str:
+    """nu, and parameters that differ from their defaults, common to all runs and by run, and where the runs come from."""
+    scenes = [read_scene(folder) for folder in folders if (folder / "scene.toml").exists()]
+    if not scenes:
+        return ""
+    standard = parameters.defaults()
+    common = {name: value for name, value in scenes[0].items()
+              if all(used.get(name) == value for used in scenes) and (name in ("script", "nu") or standard.get(name) != value)}
+    varied = {name: sorted({used[name] for used in scenes if name in used}, key=lambda value: (isinstance(value, str), value))
+              for name in scenes[0]
+              if any(used.get(name) != scenes[0][name] for used in scenes)}
+    records = [read_json(path) for folder in folders
+               for path in (folder / "summary.json", folder / "failure.json") if path.exists()]
+    made = [record.get("provenance", {}) for record in records]
+    warned = study.warned("; ".join(each.get("warnings", [])) for each in records)
+    lines = [f"runs          {len(scenes)}", f"warnings      {warned or 'none'}",
+             "parameters    " + ", ".join(f"{name} = {value}" for name, value in common.items())]
+    lines += [f"varied        {name}: " + (", ".join(map(str, values)) if len(values) <= 8 else
+                                          f"{len(values)} values from {values[0]} to {values[-1]}") for name, values in varied.items()]
+    for name, words in (("git", "commit"), ("code", "code sha256"), ("freefem", "FreeFem++"), ("gmsh", "gmsh")):
+        lines.append(f"{words:<14}" + ", ".join(sorted({str(each.get(name)) for each in made})))
+    meshes = sorted({str(each.get("mesh")) for each in made})
+    lines.append("mesh sha256   " + (", ".join(meshes) if len(meshes) <= 4 else f"{len(meshes)} meshes, in each run's summary.json"))
+    return f"<details><summary>parameters and provenance</summary><pre>{escape(chr(10).join(lines))}</pre></details>"

@@ -1,0 +1,135 @@
+"""The paper's statements beside this program's numbers: results/paper/report.html, one self-contained page.
+
+Reads what the cases left in results/ (`make paper` makes them first) and computes no number that is not in them. Every verdict
+follows from the numbers by the rule written at its statement; a printed number of the paper counts as known to half a unit of
+its last digit.
+"""
+
+import argparse
+import importlib
+import os
+import re
+import shlex
+import subprocess
+from collections.abc import Callable, Iterable, Iterator
+from functools import partial
+from pathlib import Path
+
+from verification import verify
+
+from ffimpact import scene
+from ffimpact.__main__ import guarded
+from ffimpact.failure import BadInput, Failure, Unreadable
+from ffimpact.output.folder import result_folder
+from ffimpact.places import RESULTS, ROOT, shown
+from ffimpact.progress import Line
+from ffimpact.sweeps import study, sweep
+from . import judging, stick_slip
+from . import limits, friction, impacts, pairs, bodies, times   # noqa: F401: these register the statements, in this order
+from .page import COLOURS, page, verification
+
+# the runs, and the pictures of them on the page
+RUNS = {"disc-normal": ("force",), "disc-normal-neohookean": (), "disc-normal-incompressible": (),
+        "disc-oblique": ("flight", "force", "energies"),
+        "disc-oblique-svk": ("flight", "force", "rolling", "energies"), "disc-rolling": ("rolling",),
+        "disc-block": ("velocity", "shapes", "energies"), "disc-block-neohookean": ("velocity",),
+        "ball": ("shapes", "force"), "ball-axisymmetric": (), "ball-axisymmetric-svk": ("energies", "force")}
+# the make target of a case, where it is not its own name
+TARGETS = {"disc-oblique-svk": "disc-oblique", "disc-block-neohookean": "disc-block", "ball-axisymmetric-svk": "ball-axisymmetric",
+           "disc-normal-neohookean": "ball-comparison", "disc-normal-incompressible": "ball-comparison"}
+# about how long each takes on two cores [s], for the time left; whatever is not named: USUAL
+SECONDS = {"disc-normal": 3, "disc-oblique": 40, "disc-rolling": 10, "friction-laws": 3, "oblique": 36, "friction-jump": 6,
+           "friction-steps": 11, "slip-limit": 6, "contact-time-svk": 90, "law-comparison": 6, "contact-time-neohookean": 90, "pairing": 15,
+           "calibrate": 115, "calibrate-oblique": 62, "calibrate-ball": 13, "calibrate-ball-3d": 27, "conservation": 8, "stick-slip": 70,
+           "verify": 200}
+USUAL = 20
+
+
+def main(argv: list[str]) -> int:
+    """Writes the page; Failure that lists every case that is missing or was made with other code."""
+    parser = argparse.ArgumentParser(prog="python -m examples.paper", description=__doc__)
+    parser.add_argument("--results", metavar="DIR", type=Path, default=RESULTS, help="where the cases are (default: results)")
+    parser.add_argument("--make", metavar="TARGET", nargs="+", default=[], help="run these targets of make first")
+    options = parser.parse_args(argv)
+    if code := make(options.make):
+        return code
+    results = judging.Results(result_folder(options.results))
+    require(results)
+    findings = [(item, text, find(results)) for item, text, find in judging.STATEMENTS]
+    target = results.folder / "paper/report.html"
+    with study.complete(target) as part:
+        part.write_text(page(findings, verification(results.folder / "verify")))
+    for item, text, found in findings:
+        print(f"{item}: {text}\n    {found.verdict.upper()}: {found.ours}\n")
+    print(", ".join(f"{sum(found.verdict == verdict for *_, found in findings)} {verdict}" for verdict in COLOURS))
+    print(shown(target))
+    return 0
+
+
+def require(results: judging.Results) -> None:
+    """Failure with one line that names every make target whose result is missing, or of another scene or other code."""
+    missing = dict.fromkeys(target for target, files, there in _needed(results) if not (all(file.exists() for file in files) and there()))
+    if missing:
+        raise Failure(f"paper: no results of the present scenes and code for {', '.join(missing)}; run: make {' '.join(missing)}   "
+                      "(or: make paper)", Unreadable.code)
+
+
+def _needed(results: judging.Results) -> Iterator[tuple[str, list[Path], Callable[[], bool]]]:
+    """(target, files that it leaves, whether what else it leaves is there) of all that the statements read."""
+    for name, pictures in RUNS.items():
+        runs = [(results.run(name), scene.load(name))]
+        yield TARGETS.get(name, name), results.drawn(*(f"{name}/{picture}" for picture in pictures)), partial(_hold, runs)
+    yield "ball-comparison", results.drawn(bodies.ACCELERATIONS, bodies.LIKE_FOR_LIKE), lambda: True
+    for name in sweep.built_in():
+        wanted = judging.loaded(name)
+        yield name, results.drawn(name), partial(_hold, _runs(results.sweep(name), scene.load(wanted.scene), wanted.base, wanted.runs))
+    place = results.folder / "stick-slip"
+    yield ("stick-slip", [place / "stick-slip.csv", place / "stick-slip.png"],
+           partial(_hold, _runs(place, scene.load(stick_slip.SCENE), stick_slip.BASE, stick_slip.grid(stick_slip.AXES))))
+    laws = [ROOT / "edp/core/contact/friction.idp", ROOT / "edp/friction-laws.edp"]
+    drawn = [results.folder / "friction-laws" / name for name in ("laws.csv", "friction-laws.png")]
+    yield "friction-laws", drawn, lambda: all(made.stat().st_mtime >= law.stat().st_mtime for made in drawn for law in laws)
+    yield "verify", [], lambda: verify.there(results.folder / "verify")
+
+
+def _runs(folder: Path, given: scene.Scene, base: study.Point, points: list[study.Point]) -> Iterator[tuple[Path, scene.Scene]]:
+    """The runs of a study in a folder, each with its scene."""
+    return ((study.place(folder, point), given.override(base | point)) for point in points)
+
+
+def _hold(runs: Iterable[tuple[Path, scene.Scene]]) -> bool:
+    """Whether every folder holds the outcome of its scene, by the present code."""
+    return all(study.there(folder, wanted) for folder, wanted in runs)
+
+
+# ---- what the statements rest on, made
+
+def make(targets: list[str]) -> int:
+    """Runs what make would run for each, one after another in this process, with one line of progress; the exit code of the first that
+    fails, else 0."""
+    wanted = {target: commands(target) for target in targets}
+    with Line("paper", {target: SECONDS.get(target, USUAL) for target in targets}) as line:
+        for k, (target, each) in enumerate(wanted.items(), 1):
+            with line.part(target, f"{k} of {len(wanted)}"):
+                for words in each:
+                    if code := called(*words):
+                        return code
+    return 0
+
+
+def commands(target: str) -> list[tuple[str, list[str]]]:
+    """The module, and the words after `python -m MODULE`, in each line of the recipe of a target."""
+    plain = {name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL")}
+    said = subprocess.run(["make", "-n", "-s", target, "ARGS="], cwd=ROOT, env=plain, capture_output=True, text=True).stdout
+    recipe = re.findall(r" -m ([\w.]+) ?(.*)$", said, re.MULTILINE)
+    if not recipe:
+        raise BadInput(f"--make: '{target}' is no target that runs the program (accepted: see make)")
+    return [(module, shlex.split(line)) for module, line in recipe]
+
+
+def called(module: str, words: list[str]) -> int:
+    """The exit code of python -m MODULE, here."""
+    found = importlib.import_module(module)
+    if hasattr(found, "__path__"):
+        found = importlib.import_module(f"{module}.__main__")
+    return guarded(found.execute if module == "ffimpact" else found.main, words)

@@ -1,0 +1,77 @@
+"""All figures of a finished run, each with its title."""
+
+import re
+from pathlib import Path
+from textwrap import wrap
+
+import numpy as np
+
+from ..failure import Unreadable
+from ..input import dimension
+from ..input.parameters import Value
+from ..output import vtu
+from ..output.results import Contents, body_names, check_files, read_history, read_json, read_scene
+from . import bodies, contact as contacts, impacts, solid
+from .figures import BODY, STYLE, as_written, is_half, material, per_metre, plt, save, touched
+
+LETTERS, MOST_LINES = 14, 4       # of a title: letters an inch, lines of each of its parts
+
+
+def draw(folder: Path) -> list[Path]:
+    """Draws all figures of the run in `folder` into folder/figures; the files. Unreadable where the
+    folder is broken. energies.png is the last: where it is, all are."""
+    check_files(folder)
+    history, scene = impacts.with_flights(read_history(folder)), read_scene(folder)
+    scene["touched"] = touched(read_json(folder / "summary.json"))
+    if scene["script"] in dimension.SCRIPTS and "body" not in scene:
+        raise Unreadable(f"{folder}: of a run without Python, which keeps neither names of bodies nor obstacles (accepted: a folder of "
+                         "ffimpact run)")
+    snapshots = vtu.series(folder / "fields.pvd")
+    target = folder / "figures"
+    target.mkdir(exist_ok=True)
+    touches, several = history["normal_force"] > 0, bodies.are_several(scene)
+    names = body_names(scene) if several else ["body"]
+    # without the flight
+    contact = Contents({name: column[max(0, int(np.argmax(touches)) - 1):] for name, column in history.items()}, history.path)
+    with plt.rc_context(STYLE):
+        drawn = bodies.draw(history, contact, scene, snapshots)
+        if (folder / "fields/contact.csv").exists():
+            table = contacts.read(folder)
+            ball, free = scene if scene.get("script") in BODY and is_half(scene) else None, history["t"][~touches]
+            drawn["contact"] = contacts.draw(table, names, is_half(scene), free, ball, scene.get("symmetry", "full"), history)
+            if snapshots and "Z" in table.dtype.names:
+                drawn["solid"] = solid.draw(snapshots, table, scene)
+        if (folder / "contacts.csv").exists():
+            bounces, rigid = impacts.read(folder), [as_written(one["name"]) for one in scene.get("obstacle", [])] or ["plane"]
+            drawn["bounces"] = impacts.draw(bounces, names, rigid)
+            drawn["height"] = impacts.heights(history, bounces, names) if scene.get("until") == "rest" else None
+        if (folder / "modes.csv").exists():
+            drawn["vibration"] = impacts.vibration(impacts.read_modes(folder), history, per_metre(scene))
+        drawn = {name: figure for name, figure in drawn.items() if figure}
+        for name, figure in reversed(drawn.items()):
+            figure.suptitle(wrapped(title(scene), figure.get_figwidth()))
+            save(figure, target / f"{name}.png")
+    return [target / f"{name}.png" for name in drawn]
+
+
+def title(scene: dict[str, Value]) -> str:
+    """Which body, law, nu, speed, the angle where the impact is oblique, linear elements, and the friction law where there is one; of
+    several bodies each one's."""
+    if bodies.are_several(scene):
+        return bodies.title(scene)
+    angle = "" if scene.get("angle", 90) == 90 else f" at {scene['angle']:g}°"
+    body = BODY.get(scene.get("script"), "")
+    above = f" from a height of {scene['height']:g} m" if scene.get("height", 0) > 0 else ""
+    text = f"{body}{material(scene)}, {scene['speed']:g} m/s{angle}{above}"
+    if scene.get("degree") == 1:
+        text += ", linear elements"
+    if scene.get("friction_static", 0) > 0:
+        text += (f"\nfriction {scene['friction_static']:g} static, {scene['friction_dynamic']:g} dynamic, "
+                 f"{scene['regularization']}, ε = {scene['slip_velocity']:g} m/s")
+    return text
+
+
+def wrapped(text: str, width: float) -> str:
+    """Each line of a title in as many as fit the width [inches] of a figure, but no more than MOST_LINES; a number stays with its unit."""
+    text = re.sub(r"(?<=\d) (?=(?:m|MPa|Pa|kg)\b)", "\N{NO-BREAK SPACE}", text)
+    return "\n".join("\n".join(wrap(line, int(LETTERS * width))[:MOST_LINES]) for line in text.split("\n"))

@@ -1,0 +1,10 @@
+"""python -m verification: the exact solutions."""
+
+import sys
+
+from ffimpact.__main__ import start
+
+from .verify import main
+
+if __name__ == "__main__":
+    sys.exit(start(main))

@@ -1,2 +1,0 @@
-"""Measurements of the program itself, commands of `python -m orchestrate` in the source folder: what it costs, how its errors fall, what it promises and
-what it does with hard scenes; other programs beside it (peers)."""
