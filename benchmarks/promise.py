@@ -9,7 +9,9 @@ from pathlib import Path
 
 import pandas as pd
 
-from ffimpact import run, scene
+from ffimpact import scene
+
+from ffimpact.running import run
 from ffimpact.failure import Failure, TooLong
 from ffimpact.input.parameters import Value, whole
 from ffimpact.output import estimate, notes

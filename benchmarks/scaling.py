@@ -9,7 +9,9 @@ from resource import RUSAGE_CHILDREN, getrusage
 
 import pandas as pd
 
-from ffimpact import run, scene
+from ffimpact import scene
+
+from ffimpact.running import run
 from ffimpact.freefem import freefem
 from ffimpact.output.results import read_json
 from ffimpact.sweeps import study

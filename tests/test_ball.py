@@ -5,7 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from ffimpact import run, scene
+from ffimpact import scene
+
+from ffimpact.running import run
 from ffimpact.input import parameters
 from ffimpact.output import estimate, vtu
 from ffimpact.failure import BadInput

@@ -6,7 +6,7 @@ import time
 import numpy as np
 import pytest
 
-from ffimpact import run
+from ffimpact.running import run
 from ffimpact.freefem import freefem
 from ffimpact.geometry import tumbling
 from ffimpact.input import parameters

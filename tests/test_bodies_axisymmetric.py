@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from ffimpact import run
+from ffimpact.running import run
 from ffimpact.freefem import freefem
 from ffimpact.input import parameters
 from ffimpact.mesh import mesh

@@ -12,7 +12,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from ffimpact import run, scene
+from ffimpact import scene
+
+from ffimpact.running import run
 from ffimpact.freefem import freefem
 from ffimpact.input import parameters
 from ffimpact.output import results

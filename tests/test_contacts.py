@@ -4,7 +4,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from ffimpact import run, scene
+from ffimpact import scene
+
+from ffimpact.running import run
 from ffimpact.failure import Unreadable
 from ffimpact.report import compare, impacts
 

@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from ffimpact import __main__ as program, run, scene
+from ffimpact import __main__ as program, scene
+
+from ffimpact.running import run
 from ffimpact.report import report
 
 SET = ("--set", "accuracy=0.4", "fields=3", "modes=4")

@@ -7,7 +7,9 @@ from dataclasses import replace
 import pandas as pd
 import pytest
 
-from ffimpact import run, scene
+from ffimpact import scene
+
+from ffimpact.running import run
 from ffimpact.freefem import freefem
 from ffimpact.mesh import gmsh_file, mesh
 from ffimpact.scene import read as read_scene

@@ -10,7 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from ffimpact import run, scene
+from ffimpact import scene
+
+from ffimpact.running import run
 from ffimpact.freefem import freefem
 from ffimpact.input import parameters
 from ffimpact.mesh import mesh

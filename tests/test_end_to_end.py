@@ -11,7 +11,9 @@ import sys
 import numpy as np
 import pytest
 
-from ffimpact import run, scene
+from ffimpact import scene
+
+from ffimpact.running import run
 from ffimpact.freefem import freefem
 from ffimpact.input import parameters
 from ffimpact.output import results, vtu

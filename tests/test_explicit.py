@@ -4,7 +4,9 @@ from functools import cache
 
 import pytest
 
-from ffimpact import run, scene
+from ffimpact import scene
+
+from ffimpact.running import run
 from verification.measure import bodies, disc
 
 EXPLICIT = {"integrator": "central-difference"}

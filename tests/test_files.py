@@ -10,7 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ffimpact import run, scene
+from ffimpact import scene
+
+from ffimpact.running import run
 from ffimpact.failure import BadInput
 from ffimpact.freefem.describe import describe
 from ffimpact.mesh import mesh, rounding, solid_file, solid_mesh

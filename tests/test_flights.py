@@ -8,7 +8,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from ffimpact import run, scene
+from ffimpact import scene
+
+from ffimpact.running import run
 from ffimpact.scenes import approach
 from ffimpact.failure import BadInput
 from ffimpact.scene import Scene, read as read_scene

@@ -9,7 +9,9 @@ import sys
 import numpy as np
 import pytest
 
-from ffimpact import run, scene
+from ffimpact import scene
+
+from ffimpact.running import run
 from ffimpact.input import parameters
 from ffimpact.output import results, vtu
 from ffimpact.__main__ import main

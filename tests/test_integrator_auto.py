@@ -2,7 +2,9 @@
 
 import pytest
 
-from ffimpact import run, scene
+from ffimpact import scene
+
+from ffimpact.running import run
 from ffimpact.output import results
 from verification.measure import disc
 

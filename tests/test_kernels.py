@@ -4,7 +4,9 @@ import os
 
 import pytest
 
-from ffimpact import run, scene
+from ffimpact import scene
+
+from ffimpact.running import run
 from ffimpact.failure import BadInput
 from ffimpact.freefem import freefem, kernels
 from verification.measure import disc, measure, prepared

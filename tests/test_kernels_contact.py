@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
-from ffimpact import run, scene
+from ffimpact import scene
+
+from ffimpact.running import run
 from verification.measure import measure
 
 DISC = ("kernels-contact", dict(accuracy=0.1))

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from ffimpact import run
+from ffimpact.running import run
 from ffimpact.scenes import approach, assembly
 from ffimpact.freefem.describe import describe
 from ffimpact.input.tables import to_toml

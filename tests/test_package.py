@@ -14,7 +14,7 @@ import pandas as pd
 import pytest
 
 import ffimpact
-from ffimpact import run
+from ffimpact.running import run
 from ffimpact.failure import Unreadable
 from ffimpact.input.parameters import ROOT
 
@@ -56,7 +56,7 @@ def test_the_package_holds_every_file_of_the_program():
 
 def test_it_runs_in_any_folder(fake, site, tmp_path):
     """Installed it runs a scene by the same code, with its results below the working folder, and names itself by its own name."""
-    done = call(site, tmp_path, "-c", "from ffimpact import run, scene; run.run(scene.load('disc-normal'), {'fields': 0}, estimate=False)")
+    done = call(site, tmp_path, "-c", "from ffimpact import scene; from ffimpact.running import run; run.run(scene.load('disc-normal'), {'fields': 0}, estimate=False)")
     assert done.returncode == 0, done.stderr
     said = json.loads((tmp_path / "results/disc-normal/summary.json").read_text())["provenance"]
     assert said["code"] == run.code_hash() and said["version"] == ffimpact.__version__ and said["git"] == "unknown"

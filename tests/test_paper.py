@@ -8,7 +8,8 @@ import pandas as pd
 import pytest
 
 import fake_freefem
-from ffimpact import __version__, run, scene
+from ffimpact import __version__, scene
+from ffimpact.running import run
 from ffimpact.__main__ import guarded
 from ffimpact.failure import Failure
 from examples.paper import paper, bodies as paper_bodies, friction as paper_friction, judging as paper_judging, page as paper_page

@@ -8,7 +8,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from ffimpact import run, scene
+from ffimpact import scene
+
+from ffimpact.running import run
 from ffimpact.output import vtu
 from ffimpact.report import bodies, contact, figures
 from ffimpact.output.results import RunResult, body_names

@@ -2,7 +2,9 @@
 
 import pytest
 
-from ffimpact import run, scene
+from ffimpact import scene
+
+from ffimpact.running import run
 from ffimpact.input.parameters import ROOT
 from verification import measure
 from benchmarks import bench, equal_errors, peers

@@ -6,7 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ffimpact import run, scene
+from ffimpact import scene
+
+from ffimpact.running import run
 from ffimpact.failure import BadInput, Failure
 from ffimpact.output.results import Contents
 from ffimpact.report import drawing, impacts

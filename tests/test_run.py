@@ -7,7 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ffimpact import run, scene
+from ffimpact import scene
+
+from ffimpact.running import run
 from ffimpact.freefem import freefem
 from ffimpact.mesh import mesh
 from ffimpact.output import folder, results
@@ -257,7 +259,7 @@ def test_what_decides_a_result_is_derived():
     """A run is reused only by the same code: every module that assembly.py reaches by imports decides, but those that are named as harmless, and so does a new one."""
     decisive = run.imported(run.ENTRANCE) - run.HARMLESS
     assert run.HARMLESS < run.imported(run.ENTRANCE) and {"scenes/scene", "scenes/entries", "scenes/assembly", "input/parameters", "mesh/mesh", "mesh/solid_mesh", "input/tables", "geometry/tumbling"} <= decisive
-    assert not decisive & {"run", "output/folder", "report/report", "sweeps/study", "running/solver"}
+    assert not decisive & {"running/run", "output/folder", "report/report", "sweeps/study", "running/solver"}
 
 
 def test_an_import_anywhere_is_found(tmp_path):

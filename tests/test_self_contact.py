@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ffimpact import run
+from ffimpact.running import run
 from ffimpact.output import vtu
 from ffimpact.failure import BadInput, Failure
 from ffimpact.mesh import mesh

@@ -7,7 +7,9 @@ from importlib.util import find_spec
 import numpy as np
 import pytest
 
-from ffimpact import run, scene
+from ffimpact import scene
+
+from ffimpact.running import run
 from ffimpact.output import vtu
 from ffimpact.__main__ import main
 from ffimpact.input.parameters import ROOT

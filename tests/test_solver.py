@@ -5,7 +5,9 @@ from contextlib import contextmanager
 
 import pytest
 
-from ffimpact import run, scene
+from ffimpact import scene
+
+from ffimpact.running import run
 from ffimpact.freefem import freefem
 from ffimpact.output import estimate, results
 from ffimpact.running import solver

@@ -8,7 +8,7 @@ import sys
 import pandas as pd
 import pytest
 
-from ffimpact import run
+from ffimpact.running import run
 from ffimpact.output import results
 from verification import commands
 from benchmarks import pairing_comparison, stress

@@ -14,7 +14,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from ffimpact import run
+from ffimpact.running import run
 from ffimpact.input import parameters
 from ffimpact.output import results
 from ffimpact.__main__ import main

@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
-from ffimpact import run, scene
+from ffimpact import scene
+
+from ffimpact.running import run
 from ffimpact.failure import BadInput
 from ffimpact.freefem.describe import describe
 from ffimpact.output import vtu

@@ -8,7 +8,9 @@ import pandas as pd
 import pages
 import pytest
 
-from ffimpact import run, scene
+from ffimpact import scene
+
+from ffimpact.running import run
 from ffimpact.freefem import freefem
 from ffimpact.output import notes, results
 from ffimpact.report import drawing, report

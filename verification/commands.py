@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from ffimpact import run
+from ffimpact.running import run
 from ffimpact.output.folder import result_folder
 from ffimpact.places import RESULTS, shown
 from ffimpact.sweeps import study

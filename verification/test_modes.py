@@ -6,7 +6,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from ffimpact import run, scene
+from ffimpact import scene
+
+from ffimpact.running import run
 from ffimpact.report import impacts
 from verification import measure as runs, modes, solids
 

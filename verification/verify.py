@@ -15,7 +15,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.ticker import NullLocator
 
-from ffimpact import run
+from ffimpact.running import run
 from ffimpact.failure import BadInput, Failure
 from ffimpact.freefem import freefem
 from ffimpact.output.results import read_frame

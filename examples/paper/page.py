@@ -13,7 +13,7 @@ from ffimpact import __version__, scene
 from ffimpact.input import parameters
 from ffimpact.output.results import read_frame, read_json, read_scene
 from ffimpact.report.figures import GREEN, ORANGE, STYLE
-from ffimpact.run import code_hash
+from ffimpact.running.run import code_hash
 from ffimpact.sweeps import study, sweep
 from .judging import AGREES, DIFFERS, OPEN, PARTLY, Finding
 

@@ -1,45 +1,47 @@
-"""Python side of ffimpact: scenes as data, meshes, one FreeFem++ process a run, figures, reports.
+"""Impact of nonlinear deformable bodies: scenes in, results out.
 
-    import ffimpact
-    run = ffimpact.load_run("results/disc-normal")
-    run.history.plot("t", "normal_force")
+    import ffimpact as ff
+    rubber = ff.NeoHookean(young=7e6, nu=0.45, density=1722)
+    scene = ff.Scene(bodies=[ff.Disc(radius=0.05, material=rubber, position=(0, 0.051), velocity=(0, -8))], obstacles=[ff.Plane()])
+    result = ff.run(scene, accuracy=0.005)
+    result["impulse"], result.errors["impulse"], result.plot.force()
+
+What is listed in __all__ is loaded when it is first used.
 """
 
 from __future__ import annotations
 
+import importlib
 from importlib.metadata import version
-from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    import pandas as pd
+    from .api import Study, run, sweep
+    from .failure import BadInput, Busy, Failure, MaterialFailed, NotInstalled, StepFailed, TooLong, Unreadable
+    from .model import (Ball, Body, Bowl, Box, Circle, Contact, Cylinder, Disc, Ellipse, Ellipsoid, Gas, Implicit, Incompressible, Load,
+                        Material, Mesh, MooneyRivlin, NeoHookean, Obstacle, Ogden, Pair, Plane, Polygon, Polyline, Rectangle, Ring,
+                        SaintVenantKirchhoff, Scene, Shell, Sphere, Support, Surface, Torus, Tube)
+    from .result import Result, compare, load
 
 __version__ = version("ffimpact")
 
-
-class Run(NamedTuple):
-    """A finished run, SI units. Entries of tables and lists of tables have dotted names: body.2.young, phase_seconds.contact."""
-
-    scene: pd.Series       # every parameter as used
-    summary: pd.Series     # the numbers of summary.json, its warnings and its provenance
-    history: pd.DataFrame  # a row per accepted step
-
-
-def load_run(folder: str | Path) -> Run:
-    """What is in the folder of a finished run; Unreadable, in one line, where there is none."""
-    import pandas as pd
-
-    from .output import results
-    folder = Path(folder)
-    scene, summary = (pd.Series(dict(_entries(of)), dtype=object, name=folder.name)
-                      for of in (results.read_scene(folder), results.read_summary(folder)))
-    return Run(scene, summary, pd.DataFrame(results.read_history(folder)))
+_MODULES = {
+    "api": ("Study", "run", "sweep"),
+    "failure": ("BadInput", "Busy", "Failure", "MaterialFailed", "NotInstalled", "StepFailed", "TooLong", "Unreadable"),
+    "model": ("Ball", "Body", "Bowl", "Box", "Circle", "Contact", "Cylinder", "Disc", "Ellipse", "Ellipsoid", "Gas", "Implicit",
+              "Incompressible", "Load", "Material", "Mesh", "MooneyRivlin", "NeoHookean", "Obstacle", "Ogden", "Pair", "Plane", "Polygon",
+              "Polyline", "Rectangle", "Ring", "SaintVenantKirchhoff", "Scene", "Shell", "Sphere", "Support", "Surface", "Torus", "Tube"),
+    "result": ("Result", "compare", "load"),
+}
+_HOME = {name: module for module, names in _MODULES.items() for name in names}
+__all__ = sorted(_HOME)
 
 
-def _entries(given: dict | list, path: str = "") -> list[tuple[str, object]]:
-    """(dotted name, value) of every entry, of the tables in a list by their number from 1."""
-    found = []
-    for name, value in given.items() if isinstance(given, dict) else enumerate(given, 1):
-        nested = isinstance(value, dict) or isinstance(value, list) and value and isinstance(value[0], dict)
-        found += _entries(value, f"{path}{name}.") if nested else [(f"{path}{name}", value)]
-    return found
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module 'ffimpact' has no attribute '{name}'")
+    return getattr(importlib.import_module(f".{_HOME[name]}", __name__), name)
+
+
+def __dir__() -> list[str]:
+    return [*__all__, "__version__"]

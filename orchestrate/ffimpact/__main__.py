@@ -96,9 +96,10 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _run(options: argparse.Namespace) -> None:
-    from . import run, scene
+    from . import scene
     from .input import parameters
     from .report import report
+    from .running import run
     given = parameters.overrides(options.set)
     if options.checkpoint_every:
         given["checkpoint_every"] = options.checkpoint_every

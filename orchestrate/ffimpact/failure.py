@@ -50,6 +50,18 @@ def unknown(word, accepted: Iterable[str], between: str = "|") -> str:
     return f"'{brief(word)}' is not known{suggestion(word, words)} (accepted: {between.join(words)})"
 
 
+class StepFailed(Failure):
+    """A time step that does not converge however small it is."""
+
+    code = 11
+
+
+class MaterialFailed(Failure):
+    """A law that breaks down: an element is turned inside out."""
+
+    code = 12
+
+
 class TooLong(Failure):
     """A run that its time limit ended: interrupted, not failed. The code is that of timeout(1)."""
 
@@ -76,3 +88,9 @@ class Unreadable(Failure):
 
 class Busy(Unreadable):
     """A result folder that another run is writing just now."""
+
+
+def of_code(code: int, message: str) -> Failure:
+    """The failure of an exit code."""
+    kinds = {one.code: one for one in (StepFailed, MaterialFailed, TooLong, BadInput, NotInstalled, Unreadable)}
+    return kinds[code](message) if code in kinds else Failure(message, code)

@@ -12,7 +12,7 @@ from ..output.folder import result_folder
 from ..input.parameters import overrides
 from ..places import RESULTS, shown
 from ..output.results import RunResult, body_names, mechanical_energy, suffixes
-from ..run import run
+from ..running.run import run
 from . import report
 from .figures import ABOVE, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE, numbers_of_the_paper, per_metre, touched, save
 

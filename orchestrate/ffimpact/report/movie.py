@@ -21,7 +21,7 @@ from ..failure import BadInput, NotInstalled, Unreadable
 from ..input.parameters import overrides, whole
 from ..places import RESULTS, shown
 from ..output.results import RunResult, suffixes
-from ..run import run
+from ..running.run import run
 from . import bodies, contact, solid
 from .drawing import title
 from .figures import BLACK, BLUE, GREY, ORANGE, STRESS, STYLE, Body, deformed, diameter, draw_body, is_half, legend, per_metre

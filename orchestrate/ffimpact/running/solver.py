@@ -17,7 +17,7 @@ import numpy as np
 
 from ..freefem import freefem
 from ..output import estimate
-from ..failure import Failure, Unreadable
+from ..failure import Failure, NotInstalled, Unreadable, of_code
 from ..input.parameters import Value
 from ..progress import Line
 from ..output.results import read_history, read_json, read_summary, write_json
@@ -132,11 +132,11 @@ def _check(stage: Path, exit_code: int, said: str) -> None:
     log = (stage / "log.txt").read_text()
     said = read_json(stage / "failure.json").get("message") or said
     if exit_code in FAILURES and said:
-        raise Failure(said, exit_code)
+        raise of_code(exit_code, said)
     if exit_code == -signal.SIGXFSZ:
         raise Unreadable("out: a file of the run is larger than files may be here; raise ulimit -f, or ask for fewer fields or steps")
     if "Load error" in log:
-        raise Failure(f"FreeFem++ lacks a plugin: {_tail(stage)}; {freefem.HOW}", 13)
+        raise NotInstalled(f"FreeFem++ lacks a plugin: {_tail(stage)}; {freefem.HOW}")
     how = f"was killed by {signal.Signals(-exit_code).name}" if exit_code < 0 else f"stopped with exit code {exit_code}"
     goes_on = "; the same command goes on from the last checkpoint" if (stage / "checkpoint").exists() else ""
     raise Failure(f"FreeFem++ {how}; {_tail(stage)}{goes_on}")

@@ -15,7 +15,8 @@ from typing import Any, TypeVar
 
 import pandas as pd
 
-from .. import run, scene, stopping
+from .. import scene, stopping
+from ..running import run
 from ..freefem import freefem
 from ..failure import BadInput, Busy, Failure, TooLong, Unreadable
 from ..mesh import mesh

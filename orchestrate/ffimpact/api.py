@@ -1,0 +1,151 @@
+"""run() and sweep(): scenes in, results out, from a script or a notebook."""
+
+from __future__ import annotations
+
+import hashlib
+import itertools
+import json
+import re
+import subprocess
+import sys
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+
+from . import scene as files
+from .failure import BadInput, Failure, of_code, unknown
+from .freefem import freefem
+from .input.tables import to_toml
+from .model import Scene
+from .places import RESULTS
+from .progress import Line
+from .result import Result
+from .running import run as running
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+__all__ = ["Study", "run", "sweep"]
+
+STATES = 40                  # kept of a run where the scene does not say how many, for figures and animations
+
+
+def run(scene: Scene | str | Path, entries: Mapping[str, Any] | None = None, *, out: str | Path | None = None, force: bool = False,
+        estimate: bool = True, progress: bool | None = None, **more: Any) -> Result:
+    """The result of a scene: one made in Python, the name of a built-in one, or the path of a TOML file.
+
+    Entries of the scene are set by keywords (accuracy=0.005) or by dotted names (entries={"body.1.young": 2e6}). `out` is the result
+    folder: results/NAME of a file or a built-in scene; of a scene made in Python a folder of its own. A run that is there is not made
+    again, unless `force`. With `estimate` a second run estimates the errors. Raises the exceptions of ffimpact: BadInput,
+    StepFailed and so on. A run keeps STATES states where the scene leaves `fields` open.
+    """
+    given = dict(entries or {}) | more
+    wanted, place = _wanted(scene, given)
+    found = running.run(wanted, given, out or place, force=force, progress=progress, estimate=estimate)
+    return Result(found.folder, found.reused)
+
+
+def _wanted(scene: Scene | str | Path, given: dict[str, Any]) -> tuple[Any, Path]:
+    """The scene as it is read, and where its results go; `given` gets the states to keep."""
+    if isinstance(scene, Scene):
+        wanted = scene.read(_word(scene.title or "scene"))
+    elif isinstance(scene, str | Path):
+        wanted = files.load(scene)
+    else:
+        raise BadInput(f"scene: '{scene}' is none (accepted: a Scene, the name of a built-in one, the path of a TOML file)")
+    if not wanted.values.get("fields"):
+        given.setdefault("fields", STATES)
+    told = json.dumps([scene.table() if isinstance(scene, Scene) else "", given], sort_keys=True, default=str)
+    own = f"-{hashlib.sha256(told.encode()).hexdigest()[:8]}" if isinstance(scene, Scene) else ""
+    return wanted, RESULTS / f"{wanted.name}{own}"
+
+
+def _word(title: str) -> str:
+    """A title as the name of a folder."""
+    return re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-")[:40] or "scene"
+
+
+class Study:
+    """A sweep: `table` has a row for each point, with the entries that vary, the exit code, its message and the numbers of the run;
+    `results` the Result of each, None where a run failed."""
+
+    def __init__(self, axes: list[str], points: list[dict[str, Any]], results: list[Result | None], failures: list[Failure | None]):
+        self.axes, self.results = axes, results
+        rows = []
+        for point, result, failure in zip(points, results, failures):
+            numbers = {name: result[name] for name in result.keys()} if result else {}
+            rows.append(point | {"exit": failure.code if failure else 0, "message": str(failure or "")} | numbers)
+        self.table = pd.DataFrame(rows)
+
+    def __repr__(self) -> str:
+        return repr(self.table)
+
+    def _repr_html_(self) -> str:
+        return str(self.table.to_html(max_cols=12))
+
+    def plot(self, x: str, y: str, by: str | None = None, ax: Axes | None = None) -> Axes:
+        """A number y over an entry x with error bars, a line for each value of the entry `by`; returns the axes."""
+        import matplotlib.pyplot as plt
+        for name, accepted in ((x, self.axes), (y, list(self.table)), *(((by, self.axes),) if by else ())):
+            if name not in accepted:
+                raise BadInput(f"plot: {unknown(name, accepted, ', ')}")
+        ax = ax if ax is not None else plt.subplots(layout="constrained")[1]
+        bars = pd.Series([one.errors.get(y, np.nan) if one else np.nan for one in self.results])
+        unit = next((one.units.get(y, "") for one in self.results if one), "")
+        for value, rows in self.table.assign(bars=bars).groupby(by) if by else [(None, self.table.assign(bars=bars))]:
+            rows = rows.sort_values(x)
+            ax.errorbar(rows[x], rows[y], rows.bars.fillna(0), marker="o", capsize=3, label=None if by is None else f"{by} = {value:g}")
+        ax.set(xlabel=x, ylabel=f"{y} [{unit}]" if unit not in ("", "-", "1") else y)
+        if by:
+            ax.legend()
+        return ax
+
+
+def sweep(scene: Scene | str | Path, values: Mapping[str, Sequence[Any]], *, workers: int | None = None, out: str | Path | None = None,
+          **more: Any) -> Study:
+    """Every combination of the values of some entries, each a run with estimated errors; `workers` run at a time (as many as cores).
+
+    Each run is a process `ffimpact run` in a folder of its own below `out`; what is finished there is not run again. A run that
+    fails is a row with its exit code and message.
+    """
+    if not values or not all(len(_listed(name, one)) for name, one in values.items()):
+        raise BadInput("sweep: nothing varies (accepted: one value or more of each entry)")
+    given = dict(more)
+    wanted, place = _wanted(scene, given)
+    points = [dict(zip(values, combination)) for combination in itertools.product(*values.values())]
+    told = json.dumps({name: list(one) for name, one in values.items()}, sort_keys=True, default=str)
+    folder = Path(out) if out else place.with_name(f"{place.name}-sweep-{hashlib.sha256(told.encode()).hexdigest()[:8]}")
+    scenes = [wanted.override(given | point) for point in points]         # BadInput before anything is run
+    folder.mkdir(parents=True, exist_ok=True)
+    outcomes: list[Result | Failure] = []
+    with Line(folder.name, {k: 1.0 for k in range(len(points))}) as line, ThreadPoolExecutor(workers or freefem.CORES) as pool:
+        tasks = [pool.submit(_point, one, folder / f"{k:03d}") for k, one in enumerate(scenes, 1)]
+        try:
+            for k, task in enumerate(tasks):
+                outcomes.append(task.result())
+                line.at(k, 1.0, f"{k + 1} of {len(tasks)} done")
+        finally:
+            pool.shutdown(cancel_futures=True)
+    return Study(list(values), points, [one if isinstance(one, Result) else None for one in outcomes],
+                 [one if isinstance(one, Failure) else None for one in outcomes])
+
+
+def _listed(name: str, value: Any) -> Sequence[Any]:
+    if isinstance(value, str) or not hasattr(value, "__len__"):
+        raise BadInput(f"sweep: {name}: '{value}' is no list of values (accepted: [1, 2, 3])")
+    return value
+
+
+def _point(wanted: Any, folder: Path) -> Result | Failure:
+    """One run in a process of its own: its result, or why there is none."""
+    file = folder.with_suffix(".toml")
+    file.write_text(to_toml(wanted.with_files_in(folder.parent, wanted.given)), "utf-8")
+    done = subprocess.run([sys.executable, "-m", "ffimpact", "run", str(file), "--out", str(folder), "--quiet"], stdin=subprocess.DEVNULL,
+                          stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    if done.returncode:
+        return of_code(done.returncode, done.stderr.strip().removeprefix("ffimpact: ") or f"ended with exit code {done.returncode}")
+    return Result(folder, reused=False)

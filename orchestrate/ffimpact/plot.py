@@ -1,0 +1,87 @@
+"""Figures of a run, drawn into axes: result.plot.force(ax=...). Importing this changes no setting of matplotlib."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.tri import Triangulation
+
+from .failure import BadInput, Unreadable
+from .input.dimension import per_metre
+from .output import vtu
+
+if TYPE_CHECKING:
+    from .result import Result
+
+__all__ = ["Plots"]
+
+MS, KN = 1e3, 1e-3
+ENERGIES = {"kinetic": "kinetic", "elastic": "elastic", "contact": "contact", "friction_work": "friction", "viscous_work": "viscosity"}
+
+
+class Plots:
+    """The figures of a finished run. Each method takes `ax`, the axes to draw into (its own by default), and returns them."""
+
+    def __init__(self, result: Result):
+        self.result = result
+        self.per = per_metre(result["provenance"]["script"])
+
+    def force(self, ax: Axes | None = None) -> Axes:
+        """Normal and tangential force [kN] over time [ms]."""
+        history, ax = self.result.history, _axes(ax)
+        ax.plot(MS * history.t, KN * history.normal_force, label="normal")
+        for name in ("tangential_force", "tangential_force_z"):
+            if name in history and history[name].any():
+                ax.plot(MS * history.t, KN * history[name], label=name.replace("_", " "))
+        return _labelled(ax, f"force [kN{self.per}]")
+
+    def energies(self, ax: Axes | None = None) -> Axes:
+        """Energies, and the work of friction and viscosity, [J] over time [ms]."""
+        history, ax = self.result.history, _axes(ax)
+        for name, label in ENERGIES.items():
+            if name in history and history[name].any():
+                ax.plot(MS * history.t, history[name], label=label)
+        ax.plot(MS * history.t, history.kinetic + history.elastic + history.contact, "k--", label="mechanical")
+        return _labelled(ax, f"energy [J{self.per}]")
+
+    def velocities(self, ax: Axes | None = None) -> Axes:
+        """Velocities of the bodies' centres of mass [m/s] over time [ms]."""
+        history, ax = self.result.history, _axes(ax)
+        names = [name for name in history if name[:2] in ("vx", "vy", "vz") and name[2:3] in ("", "_")]
+        several = [name for name in names if "_" in name]
+        for name in several or names:
+            if history[name].any():
+                ax.plot(MS * history.t, history[name], label=name.replace("_", " of body "))
+        return _labelled(ax, "velocity [m/s]")
+
+    def shapes(self, ax: Axes | None = None, field: str = "von_mises", time: float | None = None) -> Axes:
+        """The deformed bodies with a field at a time [s], that of the largest force by default. Needs states (fields=N of the run)."""
+        ax, series = _axes(ax), vtu.series(self.result.folder / "fields.pvd")
+        if not series:
+            raise Unreadable(f"{self.result.folder}: has no states (accepted: a run with fields = 20, say)")
+        if time is None:
+            time = float(self.result.history.t[self.result.history.normal_force.idxmax()])
+        when, path = min(series, key=lambda one: abs(one[0] - time))
+        state = vtu.read(path)
+        if field not in state.fields:
+            raise BadInput(f"field: '{field}' is not known (accepted: {', '.join(state.fields)})")
+        values = state.fields[field]
+        values = np.linalg.norm(values, axis=1) if values.ndim > 1 else values
+        x, y = (state.points[:, :2] + state.fields["displacement"][:, :2]).T
+        drawn = ax.tripcolor(Triangulation(x, y, state.triangles), values, shading="gouraud", rasterized=True)
+        ax.figure.colorbar(drawn, ax=ax, label=field.replace("_", " "))
+        ax.set(aspect="equal", xlabel="x [m]", ylabel="y [m]", title=f"t = {MS * when:.3g} ms")
+        return ax
+
+
+def _axes(ax: Axes | None) -> Axes:
+    return ax if ax is not None else plt.subplots(layout="constrained")[1]
+
+
+def _labelled(ax: Axes, label: str) -> Axes:
+    ax.set(xlabel="time [ms]", ylabel=label)
+    ax.legend()
+    return ax

@@ -1,0 +1,210 @@
+"""A finished run as Python objects: numbers with units and error bars, tables, figures, states.
+
+    result = ffimpact.run("disc-normal", speed=4)
+    result["impulse"], result.errors["impulse"], result.units["impulse"]
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pandas as pd
+
+from .failure import BadInput, NotInstalled, Unreadable, unknown
+from .freefem.describe import describe_results
+from .output import vtu
+from .output.results import check_files, read_answers, read_scene, read_summary
+from .report import report
+
+if TYPE_CHECKING:
+    import pyvista
+
+    from .plot import Plots
+
+__all__ = ["Result", "compare", "load"]
+
+SHOWN = ("impulse", "peak_force", "contact_time", "thresholded_contact_time", "rebound_vx", "rebound_vy", "rebound_vz", "rebound_spin",
+         "restitution", "energy_initial", "energy_final", "friction_work", "energy_drift")
+# numbers whose error is that of an energy, over the largest energy
+ENERGIES = ("energy_initial", "energy_final", "translation_energy", "rotation_energy", "vibration_energy", "creep_work", "viscous_work")
+OF_ITSELF = ("impulse", "thresholded_contact_time", "contact_time", "peak_force", "max_pressure", "max_penetration")
+
+
+class Result:
+    """The finished run in a folder. result["impulse"] is a number of its summary, SI units (docs/results.md lists them all).
+
+    `reused` says whether the run was there already.
+    """
+
+    def __init__(self, folder: str | Path, reused: bool = True):
+        self.folder, self.reused = Path(folder), reused
+        self.summary: dict[str, Any] = read_summary(self.folder)
+        check_files(self.folder)
+
+    def __getitem__(self, name: str) -> Any:
+        if name not in self.summary:
+            raise BadInput(f"result: {unknown(name, self.summary, ', ')}")
+        return self.summary[name]
+
+    def keys(self) -> list[str]:
+        """The names of all its numbers."""
+        return [name for name, value in self.summary.items() if isinstance(value, int | float) and not isinstance(value, bool)]
+
+    @cached_property
+    def scene(self) -> dict[str, Any]:
+        """Every entry as it was used: result.scene["body"][0]["young"]."""
+        return read_scene(self.folder)
+
+    @cached_property
+    def history(self) -> pd.DataFrame:
+        """A row for each step, SI units: columns t, normal_force, kinetic ..."""
+        return pd.read_csv(self.folder / "history.csv")
+
+    @cached_property
+    def contacts(self) -> pd.DataFrame:
+        """A row for each interval of contact of a body and its partner."""
+        path = self.folder / "contacts.csv"
+        return pd.read_csv(path) if path.exists() else pd.DataFrame()
+
+    @property
+    def warnings(self) -> list[str]:
+        """What may make an answer wrong."""
+        return list(self.summary["warnings"])
+
+    @cached_property
+    def errors(self) -> Mapping[str, float]:
+        """The estimated error of each number in its own unit: the answer is result[name] +- result.errors[name].
+
+        Numbers without an estimate are left out. Penalty and slip velocity are no part of it.
+        """
+        share = self.summary.get("estimated_error") or {}
+        if not share:
+            return {}
+        answers = read_answers(self.folder)
+        energy, reach = float(answers.summary["largest_energy"]), self.scene.get("radius")
+        found: dict[str, float] = {name: share[name] * abs(self[name]) for name in share
+                                   if name in OF_ITSELF or name.startswith("support_peak") and self.summary.get(name)}
+        found |= {name: share.get(name, 0.0) * energy for name in ("friction_work", "support_work", "load_work") if name in share}
+        for name in self.keys():
+            kind = re.sub(r"_[0-9]+$", "", name)
+            if kind in ENERGIES:
+                found[name] = share["energy"] * energy
+            elif re.fullmatch("impulse_[xyz]", name):
+                found[name] = share["impulse"] * abs(self["impulse"])
+            elif kind.startswith("rebound_v"):
+                found[name] = share["rebound"] * answers.speed
+            elif kind.startswith("rebound_spin"):
+                size = self.summary.get(f"reach{name[len(kind):]}") or reach
+                if size:
+                    found[name] = share["rebound_spin"] * answers.speed / size
+            elif kind == "restitution":
+                found[name] = share["rebound"]
+        return {name: found[name] for name in self.keys() if name in found}
+
+    @cached_property
+    def units(self) -> Mapping[str, str]:
+        """The unit of each number and column."""
+        said = describe_results(script=self.summary["provenance"]["script"])["meanings"]
+        return {name: entry[0] for table in ("summary", "history", "contacts") for name, entry in said[table].items()} | {
+            name: said["summary"][bare][0] for name in self.summary if (bare := re.sub(r"_[0-9]+$", "", name)) in said["summary"]}
+
+    @property
+    def table(self) -> pd.DataFrame:
+        """The main numbers: value, error, unit."""
+        names = [name for name in self.keys() if re.sub(r"_[0-9]+$", "", name) in SHOWN and self[name] is not None]
+        names.sort(key=lambda name: SHOWN.index(re.sub(r"_[0-9]+$", "", name)))
+        return pd.DataFrame({"value": [self[name] for name in names], "error": [self.errors.get(name) for name in names],
+                             "unit": [self.units.get(name, "") for name in names]}, index=pd.Index(names, name="number"))
+
+    def __repr__(self) -> str:
+        rows = [f"  {name:<26}{row['value']:>12.5g}{_bar(row['error'])} {_unit(row['unit'])}".rstrip() for name, row in self.table.iterrows()]
+        more = [f"  warning: {sentence}" for sentence in report.told(self.summary) if sentence.lstrip().startswith("warning")]
+        return "\n".join([f"Result in {self.folder}", *rows[:9], *more])
+
+    def _repr_html_(self) -> str:
+        rows = "".join(f"<tr><td>{escape(str(name))}</td><td>{row['value']:.5g}{_bar(row['error'])}</td><td>{escape(_unit(row['unit']))}</td></tr>"
+                       for name, row in self.table.iterrows())
+        told = "".join(f"<p>{escape(sentence)}</p>" for sentence in self.warnings)
+        return f"<table><caption>{escape(str(self.folder))}</caption>{rows}</table>{told}"
+
+    @property
+    def plot(self) -> Plots:
+        """Figures: result.plot.force(), .energies(), .velocities(), .shapes(); each returns axes and draws into ax=..."""
+        from .plot import Plots
+        return Plots(self)
+
+    @property
+    def fields(self) -> Fields:
+        """The states that were kept (fields=N of the run) as grids of pyvista."""
+        return Fields(self.folder)
+
+    def view(self, path: str | Path | None = None, field: str = "von_mises") -> Any:
+        """An animation of the states that were kept: a player in a notebook, or one HTML file that needs no network."""
+        from .view import view
+        return view(self, path, field)
+
+
+def _bar(error: float | None) -> str:
+    return "" if error is None or pd.isna(error) else f" ± {error:.2g}"
+
+
+def _unit(unit: str) -> str:
+    return "" if unit in ("1", "-") else unit
+
+
+class Fields(Sequence["pyvista.UnstructuredGrid"]):
+    """The kept states in the order of time: fields[-1]["von_mises"] are values at the nodes. `times` [s]."""
+
+    def __init__(self, folder: Path):
+        self.series = vtu.series(folder / "fields.pvd")
+        self.times = [time for time, _ in self.series]
+        self.folder = folder
+
+    def __len__(self) -> int:
+        return len(self.series)
+
+    def __getitem__(self, index: Any) -> Any:
+        try:
+            import pyvista
+        except ImportError:
+            raise NotInstalled("fields: need pyvista; install it: pip install pyvista") from None
+        if not self.series:
+            raise Unreadable(f"{self.folder}: has no states (accepted: a run with fields = 20, say)")
+        return pyvista.read(self.series[index][1])
+
+
+def load(folder: str | Path) -> Result:
+    """The finished run in a folder; Unreadable, in one line, where there is none."""
+    return Result(folder)
+
+
+def compare(*results: Result, names: Sequence[str] = ()) -> pd.DataFrame:
+    """The main numbers of several runs side by side, each with its error; `agree` says whether all lie within their error bars.
+
+    `names`: which numbers; the main ones of the first run by default.
+    """
+    if len(results) < 2:
+        raise BadInput(f"compare: '{len(results)}' results (accepted: two or more)")
+    rows = list(names) or [name for name in results[0].table.index if all(name in one.summary for one in results)]
+    found = pd.DataFrame(index=pd.Index(rows, name="number"))
+    labels = list(_labels(results))
+    for label, one in zip(labels, results):
+        found[label] = [one[name] for name in rows]
+        found[f"error of {label}"] = [one.errors.get(name) for name in rows]
+    found["unit"] = [results[0].units.get(name, "") for name in rows]
+    lows = [[one[name] - one.errors.get(name, 0.0) for one in results] for name in rows]
+    highs = [[one[name] + one.errors.get(name, 0.0) for one in results] for name in rows]
+    found["agree"] = [max(low) <= min(high) for low, high in zip(lows, highs)]
+    return found
+
+
+def _labels(results: Sequence[Result]) -> Iterator[str]:
+    """Names of the folders, told apart where they are the same."""
+    names = [one.folder.name for one in results]
+    for k, name in enumerate(names):
+        yield name if names.count(name) == 1 else str(results[k].folder)
