@@ -10,12 +10,10 @@ import tomllib
 import venv
 from pathlib import Path
 
-import pandas as pd
 import pytest
 
 import ffimpact
 from ffimpact.running import run
-from ffimpact.failure import Unreadable
 from ffimpact.input.parameters import ROOT
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
@@ -85,18 +83,6 @@ def test_the_lock_is_within_the_ranges():
     for wanted in PROJECT["project"]["dependencies"] + PROJECT["project"]["optional-dependencies"]["test"]:
         name, low, high = re.fullmatch(r"([\w-]+)>=([\d.]+)(?:,<(\d+))?", wanted).groups()
         assert numbers(low) <= numbers(pins[name]) and (not high or numbers(pins[name]) < numbers(high))
-
-
-def test_a_run_as_pandas_objects(finished_folder):
-    """load_run gives scene, summary and history; nested entries by dotted names; one line where there is no run."""
-    (finished_folder / "summary.json").write_text('{"status": "ok", "contact_time": 0.004, "phase_seconds": {"contact": 0.1}, "breakdown_time": null}')
-    (finished_folder / "scene.toml").write_text('title = "two"\n[[body]]\nyoung = 1e6\nvelocity = [0.0, -1.0]\n[[body]]\nyoung = 2e6\n[contact]\npenalty = 1e9\n')
-    found = ffimpact.load_run(str(finished_folder))
-    assert found.scene["body.2.young"] == 2e6 and found.scene["body.1.velocity"] == [0.0, -1.0] and found.scene["contact.penalty"] == 1e9
-    assert found.summary["phase_seconds.contact"] == 0.1 and found.summary["breakdown_time"] is None
-    assert isinstance(found.history, pd.DataFrame) and len(found.history) == 200 and found.history.normal_force.max() > 0
-    with pytest.raises(Unreadable, match="nowhere/scene.toml cannot be read"):
-        ffimpact.load_run("nowhere")
 
 
 @pytest.mark.robustness

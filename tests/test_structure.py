@@ -10,14 +10,16 @@ from ffimpact.places import ROOT
 PACKAGE = ROOT / "orchestrate/ffimpact"
 # a room imports those before it, and the modules beside the rooms that stand in the same line; what is in no line imports nothing but itself
 ORDER = (("failure", "places", "progress", "stopping"), ("freefem",), ("input",), ("output",), ("geometry",), ("mesh",), ("scenes",), ("scene",), ("running",),
-         ("report",), ("sweeps",), ("__init__", "__main__"))
+         ("report",), ("sweeps",), ("model",), ("plot", "view"), ("result",), ("api",), ("__init__", "__main__"))
 MODULES = {path.relative_to(PACKAGE).with_suffix("").parts: path for path in sorted(PACKAGE.rglob("*.py"))}
 
 
 def imported(module: tuple[str, ...]) -> set[tuple[str, ...]]:
-    """The modules of the package that one imports, wherever in it."""
-    found = set()
-    for node in ast.walk(ast.parse(MODULES[module].read_text())):
+    """The modules of the package that one imports, wherever in it, but for types alone."""
+    found, tree = set(), ast.parse(MODULES[module].read_text())
+    for node in [one for one in ast.walk(tree) if isinstance(one, ast.If) and getattr(one.test, "id", "") == "TYPE_CHECKING"]:
+        node.body = [ast.Pass()]
+    for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom) and node.level:
             place = module[:len(module) - node.level] + tuple((node.module or "").split(".") if node.module else ())
             found |= {place + (name.name,) for name in node.names if place + (name.name,) in MODULES} or ({place} & set(MODULES)) or {place + ("__init__",)}

@@ -143,6 +143,7 @@ def start(run: Command | None = None) -> int:
     if locale.getencoding().lower() not in ("utf-8", "utf8") and not sys.flags.utf8_mode:   # files are UTF-8 whatever the locale is
         os.execv(sys.executable, [sys.executable, "-X", "utf8", *sys.orig_argv[1:]])
     gc.set_threshold(100_000)                          # to look for garbage every few hundred objects takes longer than to keep it
+    os.environ.setdefault("MPLBACKEND", "Agg")         # figures become files
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")   # numpy's too: to start its threads takes as long as to load it
     stopping.obey()
     for name in ("stdout", "stderr"):                  # closed by who started us

@@ -31,11 +31,19 @@ if TYPE_CHECKING:
 
 __all__ = ["Study", "run", "sweep"]
 
-STATES = 40                  # kept of a run where the scene does not say how many, for figures and animations
+STATES = 40  # kept of a run where the scene does not say how many, for figures and animations
 
 
-def run(scene: Scene | str | Path, entries: Mapping[str, Any] | None = None, *, out: str | Path | None = None, force: bool = False,
-        estimate: bool = True, progress: bool | None = None, **more: Any) -> Result:
+def run(
+    scene: Scene | str | Path,
+    entries: Mapping[str, Any] | None = None,
+    *,
+    out: str | Path | None = None,
+    force: bool = False,
+    estimate: bool = True,
+    progress: bool | None = None,
+    **more: Any,
+) -> Result:
     """The result of a scene: one made in Python, the name of a built-in one, or the path of a TOML file.
 
     Entries of the scene are set by keywords (accuracy=0.005) or by dotted names (entries={"body.1.young": 2e6}). `out` is the result
@@ -45,7 +53,9 @@ def run(scene: Scene | str | Path, entries: Mapping[str, Any] | None = None, *, 
     """
     given = dict(entries or {}) | more
     wanted, place = _wanted(scene, given)
-    found = running.run(wanted, given, out or place, force=force, progress=progress, estimate=estimate)
+    found = running.run(
+        wanted, given, out or place, force=force, progress=progress, estimate=estimate
+    )
     return Result(found.folder, found.reused)
 
 
@@ -56,10 +66,14 @@ def _wanted(scene: Scene | str | Path, given: dict[str, Any]) -> tuple[Any, Path
     elif isinstance(scene, str | Path):
         wanted = files.load(scene)
     else:
-        raise BadInput(f"scene: '{scene}' is none (accepted: a Scene, the name of a built-in one, the path of a TOML file)")
+        raise BadInput(
+            f"scene: '{scene}' is none (accepted: a Scene, the name of a built-in one, the path of a TOML file)"
+        )
     if not wanted.values.get("fields"):
         given.setdefault("fields", STATES)
-    told = json.dumps([scene.table() if isinstance(scene, Scene) else "", given], sort_keys=True, default=str)
+    told = json.dumps(
+        [scene.table() if isinstance(scene, Scene) else "", given], sort_keys=True, default=str
+    )
     own = f"-{hashlib.sha256(told.encode()).hexdigest()[:8]}" if isinstance(scene, Scene) else ""
     return wanted, RESULTS / f"{wanted.name}{own}"
 
@@ -73,12 +87,22 @@ class Study:
     """A sweep: `table` has a row for each point, with the entries that vary, the exit code, its message and the numbers of the run;
     `results` the Result of each, None where a run failed."""
 
-    def __init__(self, axes: list[str], points: list[dict[str, Any]], results: list[Result | None], failures: list[Failure | None]):
+    def __init__(
+        self,
+        axes: list[str],
+        points: list[dict[str, Any]],
+        results: list[Result | None],
+        failures: list[Failure | None],
+    ):
         self.axes, self.results = axes, results
         rows = []
         for point, result, failure in zip(points, results, failures):
             numbers = {name: result[name] for name in result.keys()} if result else {}
-            rows.append(point | {"exit": failure.code if failure else 0, "message": str(failure or "")} | numbers)
+            rows.append(
+                point
+                | {"exit": failure.code if failure else 0, "message": str(failure or "")}
+                | numbers
+            )
         self.table = pd.DataFrame(rows)
 
     def __repr__(self) -> str:
@@ -90,23 +114,45 @@ class Study:
     def plot(self, x: str, y: str, by: str | None = None, ax: Axes | None = None) -> Axes:
         """A number y over an entry x with error bars, a line for each value of the entry `by`; returns the axes."""
         import matplotlib.pyplot as plt
-        for name, accepted in ((x, self.axes), (y, list(self.table)), *(((by, self.axes),) if by else ())):
+
+        for name, accepted in (
+            (x, self.axes),
+            (y, list(self.table)),
+            *(((by, self.axes),) if by else ()),
+        ):
             if name not in accepted:
                 raise BadInput(f"plot: {unknown(name, accepted, ', ')}")
         ax = ax if ax is not None else plt.subplots(layout="constrained")[1]
         bars = pd.Series([one.errors.get(y, np.nan) if one else np.nan for one in self.results])
         unit = next((one.units.get(y, "") for one in self.results if one), "")
-        for value, rows in self.table.assign(bars=bars).groupby(by) if by else [(None, self.table.assign(bars=bars))]:
+        for value, rows in (
+            self.table.assign(bars=bars).groupby(by)
+            if by
+            else [(None, self.table.assign(bars=bars))]
+        ):
             rows = rows.sort_values(x)
-            ax.errorbar(rows[x], rows[y], rows.bars.fillna(0), marker="o", capsize=3, label=None if by is None else f"{by} = {value:g}")
+            ax.errorbar(
+                rows[x],
+                rows[y],
+                rows.bars.fillna(0),
+                marker="o",
+                capsize=3,
+                label=None if by is None else f"{by} = {value:g}",
+            )
         ax.set(xlabel=x, ylabel=f"{y} [{unit}]" if unit not in ("", "-", "1") else y)
         if by:
             ax.legend()
         return ax
 
 
-def sweep(scene: Scene | str | Path, values: Mapping[str, Sequence[Any]], *, workers: int | None = None, out: str | Path | None = None,
-          **more: Any) -> Study:
+def sweep(
+    scene: Scene | str | Path,
+    values: Mapping[str, Sequence[Any]],
+    *,
+    workers: int | None = None,
+    out: str | Path | None = None,
+    **more: Any,
+) -> Study:
     """Every combination of the values of some entries, each a run with estimated errors; `workers` run at a time (as many as cores).
 
     Each run is a process `ffimpact run` in a folder of its own below `out`; what is finished there is not run again. A run that
@@ -117,12 +163,21 @@ def sweep(scene: Scene | str | Path, values: Mapping[str, Sequence[Any]], *, wor
     given = dict(more)
     wanted, place = _wanted(scene, given)
     points = [dict(zip(values, combination)) for combination in itertools.product(*values.values())]
-    told = json.dumps({name: list(one) for name, one in values.items()}, sort_keys=True, default=str)
-    folder = Path(out) if out else place.with_name(f"{place.name}-sweep-{hashlib.sha256(told.encode()).hexdigest()[:8]}")
-    scenes = [wanted.override(given | point) for point in points]         # BadInput before anything is run
+    told = json.dumps(
+        {name: list(one) for name, one in values.items()}, sort_keys=True, default=str
+    )
+    folder = (
+        Path(out)
+        if out
+        else place.with_name(f"{place.name}-sweep-{hashlib.sha256(told.encode()).hexdigest()[:8]}")
+    )
+    scenes = [wanted.override(given | point) for point in points]  # BadInput before anything is run
     folder.mkdir(parents=True, exist_ok=True)
     outcomes: list[Result | Failure] = []
-    with Line(folder.name, {k: 1.0 for k in range(len(points))}) as line, ThreadPoolExecutor(workers or freefem.CORES) as pool:
+    with (
+        Line(folder.name, {k: 1.0 for k in range(len(points))}) as line,
+        ThreadPoolExecutor(workers or freefem.CORES) as pool,
+    ):
         tasks = [pool.submit(_point, one, folder / f"{k:03d}") for k, one in enumerate(scenes, 1)]
         try:
             for k, task in enumerate(tasks):
@@ -130,8 +185,12 @@ def sweep(scene: Scene | str | Path, values: Mapping[str, Sequence[Any]], *, wor
                 line.at(k, 1.0, f"{k + 1} of {len(tasks)} done")
         finally:
             pool.shutdown(cancel_futures=True)
-    return Study(list(values), points, [one if isinstance(one, Result) else None for one in outcomes],
-                 [one if isinstance(one, Failure) else None for one in outcomes])
+    return Study(
+        list(values),
+        points,
+        [one if isinstance(one, Result) else None for one in outcomes],
+        [one if isinstance(one, Failure) else None for one in outcomes],
+    )
 
 
 def _listed(name: str, value: Any) -> Sequence[Any]:
@@ -144,8 +203,17 @@ def _point(wanted: Any, folder: Path) -> Result | Failure:
     """One run in a process of its own: its result, or why there is none."""
     file = folder.with_suffix(".toml")
     file.write_text(to_toml(wanted.with_files_in(folder.parent, wanted.given)), "utf-8")
-    done = subprocess.run([sys.executable, "-m", "ffimpact", "run", str(file), "--out", str(folder), "--quiet"], stdin=subprocess.DEVNULL,
-                          stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    done = subprocess.run(
+        [sys.executable, "-m", "ffimpact", "run", str(file), "--out", str(folder), "--quiet"],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
     if done.returncode:
-        return of_code(done.returncode, done.stderr.strip().removeprefix("ffimpact: ") or f"ended with exit code {done.returncode}")
+        return of_code(
+            done.returncode,
+            done.stderr.strip().removeprefix("ffimpact: ")
+            or f"ended with exit code {done.returncode}",
+        )
     return Result(folder, reused=False)

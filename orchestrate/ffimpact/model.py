@@ -27,9 +27,42 @@ from .input.tables import to_toml
 from .scenes import scene as reading
 from .scenes.bodies import MATERIAL, SIZES
 
-__all__ = ["Ball", "Body", "Bowl", "Box", "Circle", "Contact", "Cylinder", "Disc", "Ellipse", "Ellipsoid", "Gas", "Implicit", "Incompressible",
-           "Load", "Material", "Mesh", "MooneyRivlin", "NeoHookean", "Obstacle", "Ogden", "Pair", "Plane", "Polygon", "Polyline",
-           "Rectangle", "Ring", "SaintVenantKirchhoff", "Scene", "Shell", "Sphere", "Support", "Surface", "Torus", "Tube"]
+__all__ = [
+    "Ball",
+    "Body",
+    "Bowl",
+    "Box",
+    "Circle",
+    "Contact",
+    "Cylinder",
+    "Disc",
+    "Ellipse",
+    "Ellipsoid",
+    "Gas",
+    "Implicit",
+    "Incompressible",
+    "Load",
+    "Material",
+    "Mesh",
+    "MooneyRivlin",
+    "NeoHookean",
+    "Obstacle",
+    "Ogden",
+    "Pair",
+    "Plane",
+    "Polygon",
+    "Polyline",
+    "Rectangle",
+    "Ring",
+    "SaintVenantKirchhoff",
+    "Scene",
+    "Shell",
+    "Sphere",
+    "Support",
+    "Surface",
+    "Torus",
+    "Tube",
+]
 
 
 def _plain(value: Any) -> Any:
@@ -42,11 +75,13 @@ def _plain(value: Any) -> Any:
 
 
 Number = Annotated[float, BeforeValidator(_plain)]
-Vector = Annotated[list[float], BeforeValidator(_plain)]         # a component for each axis: 2 in the plane, 3 in space
+Vector = Annotated[
+    list[float], BeforeValidator(_plain)
+]  # a component for each axis: 2 in the plane, 3 in space
 Point = Annotated[float | list[float], BeforeValidator(_plain)]  # of revolution also y alone
 Points = Annotated[list[list[float]], BeforeValidator(_plain)]
-Function = float | str | dict                                    # of t [s]: a number, an expression, {csv = FILE}
-Functions = Annotated[Any, BeforeValidator(_plain)]              # of each axis
+Function = float | str | dict  # of t [s]: a number, an expression, {csv = FILE}
+Functions = Annotated[Any, BeforeValidator(_plain)]  # of each axis
 
 
 class Entries(BaseModel):
@@ -81,14 +116,19 @@ def _bad(model: type[BaseModel], error: ValidationError) -> BadInput:
     if first["type"] == "extra_forbidden":
         near = difflib.get_close_matches(name, model.model_fields, 1)
         hint = f"; did you mean {near[0]}?" if near else ""
-        return BadInput(f"{model.__name__}: {name}: no such entry, set to '{brief(first['input'])}'{hint} "
-                        f"(accepted: {', '.join(model.model_fields)})")
+        return BadInput(
+            f"{model.__name__}: {name}: no such entry, set to '{brief(first['input'])}'{hint} "
+            f"(accepted: {', '.join(model.model_fields)})"
+        )
     if first["type"] == "missing":
         return BadInput(f"{model.__name__}: {name}: is missing")
-    return BadInput(f"{model.__name__}: {name}: '{brief(first['input'])}' is not accepted ({first['msg']})")
+    return BadInput(
+        f"{model.__name__}: {name}: '{brief(first['input'])}' is not accepted ({first['msg']})"
+    )
 
 
 # ---- materials
+
 
 class Material(Entries):
     """What a body is made of. `law` is a constitutive law of edp/core/law; the classes below are those laws.
@@ -101,10 +141,14 @@ class Material(Entries):
     young: Number = Field(description="Young's modulus [Pa]")
     nu: Number = Field(description="Poisson's ratio; 0.5: J = 1")
     density: Number = Field(description="reference density [kg/m3]")
-    law_parameters: str | None = Field(None, description="what the law takes beyond young and nu, separated by commas")
+    law_parameters: str | None = Field(
+        None, description="what the law takes beyond young and nu, separated by commas"
+    )
     viscosity: Number | None = Field(None, description="viscosity [Pa s]")
     bulk_viscosity: Number | None = Field(None, description="viscosity of volume [Pa s]")
-    relaxation_modulus: Number | None = Field(None, description="shear modulus of a Maxwell branch [Pa]")
+    relaxation_modulus: Number | None = Field(
+        None, description="shear modulus of a Maxwell branch [Pa]"
+    )
     relaxation_time: Number | None = Field(None, description="its time [s]")
     loss: Number | None = Field(None, description="loss factor of shear at the first mode")
 
@@ -140,17 +184,23 @@ class Ogden(Material):
     law: str = "ogden"
 
 
-LAWS = {one.model_fields["law"].default: one for one in (SaintVenantKirchhoff, NeoHookean, Incompressible, MooneyRivlin, Ogden)}
+LAWS = {
+    one.model_fields["law"].default: one
+    for one in (SaintVenantKirchhoff, NeoHookean, Incompressible, MooneyRivlin, Ogden)
+}
 
 
 # ---- conditions at the boundary of a body
+
 
 class Support(Entries):
     """A part of a body's boundary that is held or moved (docs/supports-and-loads.md)."""
 
     where: str | dict = Field(description="a side, the name of a group of a mesh, or a region")
     fix: str | None = Field(None, description="all, x, y, z or normal")
-    motion: Functions | None = Field(None, description="displacement [m], a function of t for each axis")
+    motion: Functions | None = Field(
+        None, description="displacement [m], a function of t for each axis"
+    )
     release: Number | None = Field(None, description="time from which it is free [s]")
 
 
@@ -166,12 +216,15 @@ class Load(Entries):
     """A stress on a part of a body's boundary: one of traction, pressure, gas."""
 
     where: str | dict = Field(description="a side, the name of a group of a mesh, or a region")
-    traction: Functions | None = Field(None, description="per reference area [Pa], a function of t for each axis")
+    traction: Functions | None = Field(
+        None, description="per reference area [Pa], a function of t for each axis"
+    )
     pressure: Function | None = Field(None, description="follows the surface [Pa]")
     gas: Gas | None = None
 
 
 # ---- bodies
+
 
 class Body(Entries):
     """What bodies of all shapes have; the shapes are the classes below. Rigid ones need no law, young and nu."""
@@ -184,10 +237,16 @@ class Body(Entries):
     direction: Number | None = Field(None, description="of the speed, from the x axis [degrees]")
     spin: Point | None = Field(None, description="angular velocity [rad/s]; in space a vector")
     angle: Point | None = Field(None, description="turned by [degrees]; in space a vector")
-    turn: Point | None = Field(None, description="in space: turned about the axes one after the other [degrees]")
+    turn: Point | None = Field(
+        None, description="in space: turned about the axes one after the other [degrees]"
+    )
     name: str | None = None
-    mesh_size: Number | None = Field(None, description="largest element size [m]; by accuracy where it is open")
-    contact_mesh_size: Number | None = Field(None, description="element size where it may touch [m]")
+    mesh_size: Number | None = Field(
+        None, description="largest element size [m]; by accuracy where it is open"
+    )
+    contact_mesh_size: Number | None = Field(
+        None, description="element size where it may touch [m]"
+    )
     support: list[Support] | None = None
     load: list[Load] | None = None
     rigid: bool | None = Field(None, description="moves without deforming")
@@ -303,10 +362,28 @@ class Mesh(Body):
     scale: Number | None = None
 
 
-BODIES = {one.shape: one for one in (Disc, Ellipse, Rectangle, Ring, Polygon, Ball, Shell, Ellipsoid, Cylinder, Tube, Torus, Box, Mesh)}
+BODIES = {
+    one.shape: one
+    for one in (
+        Disc,
+        Ellipse,
+        Rectangle,
+        Ring,
+        Polygon,
+        Ball,
+        Shell,
+        Ellipsoid,
+        Cylinder,
+        Tube,
+        Torus,
+        Box,
+        Mesh,
+    )
+}
 
 
 # ---- rigid obstacles
+
 
 class Obstacle(Entries):
     """What rigid obstacles of all kinds have; the kinds are the classes below."""
@@ -314,7 +391,9 @@ class Obstacle(Entries):
     kind: ClassVar[str]
     name: str | None = None
     velocity: Point | None = Field(None, description="[m/s]")
-    motion: Functions | None = Field(None, description="displacement [m], a function of t for each axis")
+    motion: Functions | None = Field(
+        None, description="displacement [m], a function of t for each axis"
+    )
     rotation: Function | None = Field(None, description="turned by [degrees], a function of t")
     pivot: Vector | None = Field(None, description="what it turns about [m]")
     axis: Vector | None = Field(None, description="in space, the direction that it turns about")
@@ -391,6 +470,7 @@ OBSTACLES = {one.kind: one for one in (Plane, Circle, Sphere, Bowl, Polyline, Im
 
 # ---- contact
 
+
 class Pair(Entries):
     """What differs between two partners, by their names; between a body and an obstacle, or two bodies."""
 
@@ -408,8 +488,12 @@ class Contact(Entries):
     friction_static: Number | None = Field(None, description="mu_e of (12)")
     friction_dynamic: Number | None = Field(None, description="mu_d of (12)")
     slip_velocity: Number | None = Field(None, description="epsilon of (12) and (13) [m/s]")
-    regularization: str | None = Field(None, description="phi of (13): linear, linear-printed, sqrt or tanh")
-    friction_transition: str | None = Field(None, description="from static to dynamic: jump or smooth")
+    regularization: str | None = Field(
+        None, description="phi of (13): linear, linear-printed, sqrt or tanh"
+    )
+    friction_transition: str | None = Field(
+        None, description="from static to dynamic: jump or smooth"
+    )
     pairing: str | None = Field(None, description="closest-point (9), or pairwise (14), (15)")
     pairing_range: Number | None = Field(None, description="epsilon of (14) [m]")
     self_contact: str | None = Field(None, description="auto, on or off")
@@ -418,6 +502,7 @@ class Contact(Entries):
 
 # ---- the scene
 
+
 class Scene(Entries):
     """Bodies, obstacles, contact, and how the run is to be made. Entries are those of a TOML file, under the same names."""
 
@@ -425,7 +510,9 @@ class Scene(Entries):
     obstacles: list[Obstacle] = []
     contact: Contact = Contact()
     title: str | None = None
-    dimension: str | None = Field(None, description="plane-strain, axisymmetric or 3d; by the bodies where it is open")
+    dimension: str | None = Field(
+        None, description="plane-strain, axisymmetric or 3d; by the bodies where it is open"
+    )
     symmetry: str | None = Field(None, description="in space: auto, full, half or quarter")
     gravity: Number | None = Field(None, description="along -y [m/s2]")
     body_force_x: Number | None = Field(None, description="[m/s2]")
@@ -444,7 +531,9 @@ class Scene(Entries):
     modes: int | None = Field(None, description="natural modes of free bodies")
     checkpoint_every: int | None = Field(None, description="steps")
     without: str | None = None
-    folder: Path = Field(Path("."), exclude=True, repr=False, description="from which files of the scene are sought")
+    folder: Path = Field(
+        Path("."), exclude=True, repr=False, description="from which files of the scene are sought"
+    )
 
     @model_validator(mode="after")
     def _is_accepted(self) -> Self:
@@ -460,17 +549,26 @@ class Scene(Entries):
         if any(isinstance(body.position, list) and len(body.position) == 3 for body in self.bodies):
             return SOLID
         round_shapes = (Ball, Shell, Ellipsoid, Cylinder, Tube, Torus)
-        return AXISYMMETRIC if any(isinstance(body, round_shapes) for body in self.bodies) else PLANE_STRAIN
+        return (
+            AXISYMMETRIC
+            if any(isinstance(body, round_shapes) for body in self.bodies)
+            else PLANE_STRAIN
+        )
 
     def table(self) -> dict:
         """The tables of its TOML file."""
         axes = self.kind.axes
-        found = {name: _table(value) for name, value in self
-                 if value is not None and name not in ("bodies", "obstacles", "contact", "folder")}
+        found = {
+            name: _table(value)
+            for name, value in self
+            if value is not None and name not in ("bodies", "obstacles", "contact", "folder")
+        }
         floor = {"point": [0.0] * axes, "normal": [0.0, 1.0, 0.0][:axes]}
         found["dimension"] = self.dimension or self.kind.name
         found["body"] = [body.table() for body in self.bodies]
-        found["obstacle"] = [(floor if isinstance(one, Plane) else {}) | one.table() for one in self.obstacles]
+        found["obstacle"] = [
+            (floor if isinstance(one, Plane) else {}) | one.table() for one in self.obstacles
+        ]
         found["contact"] = self.contact.table()
         return {name: value for name, value in found.items() if value not in ({}, [])}
 
@@ -496,7 +594,9 @@ class Scene(Entries):
         path = files.SCENES / f"{name}.toml" if name in files.built_in() else Path(name)
         _, given = files.read_toml(path, files.absent(name, "scene", files.built_in()))
         if "body" not in given:
-            raise BadInput(f"{name}: has no [[body]] (accepted: a scene of bodies; run('{name}') runs this one)")
+            raise BadInput(
+                f"{name}: has no [[body]] (accepted: a scene of bodies; run('{name}') runs this one)"
+            )
         try:
             return cls.of(given, path.parent)
         except BadInput as error:
@@ -505,13 +605,19 @@ class Scene(Entries):
     @classmethod
     def of(cls, given: dict, folder: Path = Path(".")) -> Scene:
         """The scene of tables as a TOML file has them: what stands at the top for all bodies is each one's own afterwards."""
-        reading.read(given, folder, "scene")                    # all that is wrong, by the names of the file
+        reading.read(given, folder, "scene")  # all that is wrong, by the names of the file
         given = copy.deepcopy(given)
         common = {key: given.pop(key) for key in (*MATERIAL, *SIZES) if key in given}
         bodies = [_body(common | one, one) for one in given.pop("body")]
         obstacles = [OBSTACLES[one.pop("kind")](**one) for one in given.pop("obstacle", [])]
         given.pop("script", None)
-        return cls(bodies=bodies, obstacles=obstacles, contact=Contact(**given.pop("contact", {})), folder=folder, **given)
+        return cls(
+            bodies=bodies,
+            obstacles=obstacles,
+            contact=Contact(**given.pop("contact", {})),
+            folder=folder,
+            **given,
+        )
 
     def set(self, **entries: Any) -> Scene:
         """The same scene with entries set by their dotted names: scene.set(**{"body.1.velocity.2": -4, "accuracy": 0.01})."""
@@ -524,7 +630,9 @@ class Scene(Entries):
 def _body(given: dict, own: dict) -> Body:
     """The body of a table [[body]] with what stands at the top of the file in it."""
     rigid = given.get("rigid")
-    material = {key: given.pop(key) for key in MATERIAL if key in given and not (rigid and key == "density")}
+    material = {
+        key: given.pop(key) for key in MATERIAL if key in given and not (rigid and key == "density")
+    }
     if rigid and "mass" in own:
         given.pop("density", None)
     if "viscosity" in own and "loss" not in own or "loss" in own and "viscosity" not in own:
@@ -532,5 +640,6 @@ def _body(given: dict, own: dict) -> Body:
     if rigid:
         material = {}
     shape = BODIES[given.pop("shape")]
-    return shape(material=LAWS.get(material["law"], Material)(**material) if material else None, **given)
-
+    return shape(
+        material=LAWS.get(material["law"], Material)(**material) if material else None, **given
+    )

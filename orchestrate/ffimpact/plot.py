@@ -12,6 +12,8 @@ from matplotlib.tri import Triangulation
 from .failure import BadInput, Unreadable
 from .input.dimension import per_metre
 from .output import vtu
+from .report.bodies import draw_obstacles, obstacles_of
+from .report.figures import is_half
 
 if TYPE_CHECKING:
     from .result import Result
@@ -19,7 +21,18 @@ if TYPE_CHECKING:
 __all__ = ["Plots"]
 
 MS, KN = 1e3, 1e-3
-ENERGIES = {"kinetic": "kinetic", "elastic": "elastic", "contact": "contact", "friction_work": "friction", "viscous_work": "viscosity"}
+UNITS = {
+    "displacement": "m",
+    "velocity": "m/s",
+    "jacobian": "",
+}  # of the fields of a state; of the others Pa
+ENERGIES = {
+    "kinetic": "kinetic",
+    "elastic": "elastic",
+    "contact": "contact",
+    "friction_work": "friction",
+    "viscous_work": "viscosity",
+}
 
 
 class Plots:
@@ -44,24 +57,35 @@ class Plots:
         for name, label in ENERGIES.items():
             if name in history and history[name].any():
                 ax.plot(MS * history.t, history[name], label=label)
-        ax.plot(MS * history.t, history.kinetic + history.elastic + history.contact, "k--", label="mechanical")
+        ax.plot(
+            MS * history.t,
+            history.kinetic + history.elastic + history.contact,
+            "k--",
+            label="mechanical",
+        )
         return _labelled(ax, f"energy [J{self.per}]")
 
     def velocities(self, ax: Axes | None = None) -> Axes:
         """Velocities of the bodies' centres of mass [m/s] over time [ms]."""
         history, ax = self.result.history, _axes(ax)
-        names = [name for name in history if name[:2] in ("vx", "vy", "vz") and name[2:3] in ("", "_")]
+        names = [
+            name for name in history if name[:2] in ("vx", "vy", "vz") and name[2:3] in ("", "_")
+        ]
         several = [name for name in names if "_" in name]
         for name in several or names:
             if history[name].any():
                 ax.plot(MS * history.t, history[name], label=name.replace("_", " of body "))
         return _labelled(ax, "velocity [m/s]")
 
-    def shapes(self, ax: Axes | None = None, field: str = "von_mises", time: float | None = None) -> Axes:
+    def shapes(
+        self, ax: Axes | None = None, field: str = "von_mises", time: float | None = None
+    ) -> Axes:
         """The deformed bodies with a field at a time [s], that of the largest force by default. Needs states (fields=N of the run)."""
         ax, series = _axes(ax), vtu.series(self.result.folder / "fields.pvd")
         if not series:
-            raise Unreadable(f"{self.result.folder}: has no states (accepted: a run with fields = 20, say)")
+            raise Unreadable(
+                f"{self.result.folder}: has no states (accepted: a run with fields = 20, say)"
+            )
         if time is None:
             time = float(self.result.history.t[self.result.history.normal_force.idxmax()])
         when, path = min(series, key=lambda one: abs(one[0] - time))
@@ -70,9 +94,28 @@ class Plots:
             raise BadInput(f"field: '{field}' is not known (accepted: {', '.join(state.fields)})")
         values = state.fields[field]
         values = np.linalg.norm(values, axis=1) if values.ndim > 1 else values
-        x, y = (state.points[:, :2] + state.fields["displacement"][:, :2]).T
-        drawn = ax.tripcolor(Triangulation(x, y, state.triangles), values, shading="gouraud", rasterized=True)
-        ax.figure.colorbar(drawn, ax=ax, label=field.replace("_", " "))
+        points, triangles = (
+            state.points[:, :2] + state.fields["displacement"][:, :2],
+            state.triangles,
+        )
+        if is_half(self.result.scene):  # the other half is its mirror image
+            triangles = np.vstack([triangles, triangles + len(points)])
+            points, values = np.vstack([points, points * [-1, 1]]), np.concatenate([values, values])
+        drawn = ax.tripcolor(
+            Triangulation(*points.T, triangles), values, shading="gouraud", rasterized=True
+        )
+        unit = UNITS.get(field, "Pa")
+        ax.figure.colorbar(
+            drawn, ax=ax, label=f"{field.replace('_', ' ')} [{unit}]" if unit else field
+        )
+        low, high = points.min(axis=0), points.max(axis=0)
+        margin = 0.06 * (high - low).max()
+        draw_obstacles(
+            ax,
+            obstacles_of(self.result.scene),
+            (low[0] - margin, high[0] + margin, low[1] - margin, high[1] + margin),
+            when,
+        )
         ax.set(aspect="equal", xlabel="x [m]", ylabel="y [m]", title=f"t = {MS * when:.3g} ms")
         return ax
 

@@ -1,7 +1,7 @@
 """A finished run as Python objects: numbers with units and error bars, tables, figures, states.
 
-    result = ffimpact.run("disc-normal", speed=4)
-    result["impulse"], result.errors["impulse"], result.units["impulse"]
+result = ffimpact.run("disc-normal", speed=4)
+result["impulse"], result.errors["impulse"], result.units["impulse"]
 """
 
 from __future__ import annotations
@@ -28,11 +28,39 @@ if TYPE_CHECKING:
 
 __all__ = ["Result", "compare", "load"]
 
-SHOWN = ("impulse", "peak_force", "contact_time", "thresholded_contact_time", "rebound_vx", "rebound_vy", "rebound_vz", "rebound_spin",
-         "restitution", "energy_initial", "energy_final", "friction_work", "energy_drift")
+SHOWN = (
+    "impulse",
+    "peak_force",
+    "contact_time",
+    "thresholded_contact_time",
+    "rebound_vx",
+    "rebound_vy",
+    "rebound_vz",
+    "rebound_spin",
+    "restitution",
+    "energy_initial",
+    "energy_final",
+    "friction_work",
+    "energy_drift",
+)
 # numbers whose error is that of an energy, over the largest energy
-ENERGIES = ("energy_initial", "energy_final", "translation_energy", "rotation_energy", "vibration_energy", "creep_work", "viscous_work")
-OF_ITSELF = ("impulse", "thresholded_contact_time", "contact_time", "peak_force", "max_pressure", "max_penetration")
+ENERGIES = (
+    "energy_initial",
+    "energy_final",
+    "translation_energy",
+    "rotation_energy",
+    "vibration_energy",
+    "creep_work",
+    "viscous_work",
+)
+OF_ITSELF = (
+    "impulse",
+    "thresholded_contact_time",
+    "contact_time",
+    "peak_force",
+    "max_pressure",
+    "max_penetration",
+)
 
 
 class Result:
@@ -53,7 +81,11 @@ class Result:
 
     def keys(self) -> list[str]:
         """The names of all its numbers."""
-        return [name for name, value in self.summary.items() if isinstance(value, int | float) and not isinstance(value, bool)]
+        return [
+            name
+            for name, value in self.summary.items()
+            if isinstance(value, int | float) and not isinstance(value, bool)
+        ]
 
     @cached_property
     def scene(self) -> dict[str, Any]:
@@ -87,9 +119,16 @@ class Result:
             return {}
         answers = read_answers(self.folder)
         energy, reach = float(answers.summary["largest_energy"]), self.scene.get("radius")
-        found: dict[str, float] = {name: share[name] * abs(self[name]) for name in share
-                                   if name in OF_ITSELF or name.startswith("support_peak") and self.summary.get(name)}
-        found |= {name: share.get(name, 0.0) * energy for name in ("friction_work", "support_work", "load_work") if name in share}
+        found: dict[str, float] = {
+            name: share[name] * abs(self[name])
+            for name in share
+            if name in OF_ITSELF or name.startswith("support_peak") and self.summary.get(name)
+        }
+        found |= {
+            name: share.get(name, 0.0) * energy
+            for name in ("friction_work", "support_work", "load_work")
+            if name in share
+        }
         for name in self.keys():
             kind = re.sub(r"_[0-9]+$", "", name)
             if kind in ENERGIES:
@@ -99,7 +138,7 @@ class Result:
             elif kind.startswith("rebound_v"):
                 found[name] = share["rebound"] * answers.speed
             elif kind.startswith("rebound_spin"):
-                size = self.summary.get(f"reach{name[len(kind):]}") or reach
+                size = self.summary.get(f"reach{name[len(kind) :]}") or reach
                 if size:
                     found[name] = share["rebound_spin"] * answers.speed / size
             elif kind == "restitution":
@@ -110,25 +149,51 @@ class Result:
     def units(self) -> Mapping[str, str]:
         """The unit of each number and column."""
         said = describe_results(script=self.summary["provenance"]["script"])["meanings"]
-        return {name: entry[0] for table in ("summary", "history", "contacts") for name, entry in said[table].items()} | {
-            name: said["summary"][bare][0] for name in self.summary if (bare := re.sub(r"_[0-9]+$", "", name)) in said["summary"]}
+        return {
+            name: entry[0]
+            for table in ("summary", "history", "contacts")
+            for name, entry in said[table].items()
+        } | {
+            name: said["summary"][bare][0]
+            for name in self.summary
+            if (bare := re.sub(r"_[0-9]+$", "", name)) in said["summary"]
+        }
 
     @property
     def table(self) -> pd.DataFrame:
         """The main numbers: value, error, unit."""
-        names = [name for name in self.keys() if re.sub(r"_[0-9]+$", "", name) in SHOWN and self[name] is not None]
+        names = [
+            name
+            for name in self.keys()
+            if re.sub(r"_[0-9]+$", "", name) in SHOWN and self[name] is not None
+        ]
         names.sort(key=lambda name: SHOWN.index(re.sub(r"_[0-9]+$", "", name)))
-        return pd.DataFrame({"value": [self[name] for name in names], "error": [self.errors.get(name) for name in names],
-                             "unit": [self.units.get(name, "") for name in names]}, index=pd.Index(names, name="number"))
+        return pd.DataFrame(
+            {
+                "value": [self[name] for name in names],
+                "error": [self.errors.get(name) for name in names],
+                "unit": [self.units.get(name, "") for name in names],
+            },
+            index=pd.Index(names, name="number"),
+        )
 
     def __repr__(self) -> str:
-        rows = [f"  {name:<26}{row['value']:>12.5g}{_bar(row['error'])} {_unit(row['unit'])}".rstrip() for name, row in self.table.iterrows()]
-        more = [f"  warning: {sentence}" for sentence in report.told(self.summary) if sentence.lstrip().startswith("warning")]
+        rows = [
+            f"  {name:<26}{row['value']:>12.5g}{_bar(row['error'])} {_unit(row['unit'])}".rstrip()
+            for name, row in self.table.iterrows()
+        ]
+        more = [
+            f"  warning: {sentence}"
+            for sentence in report.told(self.summary)
+            if sentence.lstrip().startswith("warning")
+        ]
         return "\n".join([f"Result in {self.folder}", *rows[:9], *more])
 
     def _repr_html_(self) -> str:
-        rows = "".join(f"<tr><td>{escape(str(name))}</td><td>{row['value']:.5g}{_bar(row['error'])}</td><td>{escape(_unit(row['unit']))}</td></tr>"
-                       for name, row in self.table.iterrows())
+        rows = "".join(
+            f"<tr><td>{escape(str(name))}</td><td>{row['value']:.5g}{_bar(row['error'])}</td><td>{escape(_unit(row['unit']))}</td></tr>"
+            for name, row in self.table.iterrows()
+        )
         told = "".join(f"<p>{escape(sentence)}</p>" for sentence in self.warnings)
         return f"<table><caption>{escape(str(self.folder))}</caption>{rows}</table>{told}"
 
@@ -136,6 +201,7 @@ class Result:
     def plot(self) -> Plots:
         """Figures: result.plot.force(), .energies(), .velocities(), .shapes(); each returns axes and draws into ax=..."""
         from .plot import Plots
+
         return Plots(self)
 
     @property
@@ -146,6 +212,7 @@ class Result:
     def view(self, path: str | Path | None = None, field: str = "von_mises") -> Any:
         """An animation of the states that were kept: a player in a notebook, or one HTML file that needs no network."""
         from .view import view
+
         return view(self, path, field)
 
 
@@ -174,7 +241,9 @@ class Fields(Sequence["pyvista.UnstructuredGrid"]):
         except ImportError:
             raise NotInstalled("fields: need pyvista; install it: pip install pyvista") from None
         if not self.series:
-            raise Unreadable(f"{self.folder}: has no states (accepted: a run with fields = 20, say)")
+            raise Unreadable(
+                f"{self.folder}: has no states (accepted: a run with fields = 20, say)"
+            )
         return pyvista.read(self.series[index][1])
 
 
@@ -190,7 +259,9 @@ def compare(*results: Result, names: Sequence[str] = ()) -> pd.DataFrame:
     """
     if len(results) < 2:
         raise BadInput(f"compare: '{len(results)}' results (accepted: two or more)")
-    rows = list(names) or [name for name in results[0].table.index if all(name in one.summary for one in results)]
+    rows = list(names) or [
+        name for name in results[0].table.index if all(name in one.summary for one in results)
+    ]
     found = pd.DataFrame(index=pd.Index(rows, name="number"))
     labels = list(_labels(results))
     for label, one in zip(labels, results):

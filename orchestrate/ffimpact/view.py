@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 __all__ = ["view"]
 
-SECONDS = 5.0                # that the animation takes
+SECONDS = 5.0  # that the animation takes
 
 
 def view(result: Result, path: str | Path | None = None, field: str = "von_mises") -> Any:
@@ -36,12 +36,24 @@ def view(result: Result, path: str | Path | None = None, field: str = "von_mises
     times = np.array([time for time, _ in series])
     slow = SECONDS / (np.ptp(times) or 1.0)
     vertices = {f"{slow * t}": _places(one).astype(np.float32) for t, one in zip(times, states)}
-    values = {f"{slow * t}": _scalar(one.fields[field]).astype(np.float32) for t, one in zip(times, states)}
+    values = {
+        f"{slow * t}": _scalar(one.fields[field]).astype(np.float32)
+        for t, one in zip(times, states)
+    }
     top = max(float(value.max()) for value in values.values())
     low = min(float(value.min()) for value in values.values())
-    plot = k3d.plot(camera_auto_fit=False, grid_visible=False, name=f"{result.folder.name}: {field}")
-    plot += k3d.mesh(vertices, states[0].triangles.astype(np.uint32), attribute=values, color_range=[low, top],
-                     color_map=k3d.colormaps.matplotlib_color_maps.Viridis, side="double", flat_shading=False)
+    plot = k3d.plot(
+        camera_auto_fit=False, grid_visible=False, name=f"{result.folder.name}: {field}"
+    )
+    plot += k3d.mesh(
+        vertices,
+        states[0].triangles.astype(np.uint32),
+        attribute=values,
+        color_range=[low, top],
+        color_map=k3d.colormaps.matplotlib_color_maps.Viridis,
+        side="double",
+        flat_shading=False,
+    )
     every = np.vstack([_places(one) for one in states])
     centre, size = (every.min(axis=0) + every.max(axis=0)) / 2, np.ptp(every, axis=0).max()
     plot.camera = [*(centre + [0, 0, 1.6 * size]), *centre, 0, 1, 0]
@@ -55,8 +67,11 @@ def view(result: Result, path: str | Path | None = None, field: str = "von_mises
 
 def _places(state: vtu.Snapshot) -> np.ndarray:
     """Deformed places (n, 3) [m]."""
-    return state.points + state.fields["displacement"] if state.points.shape[1] == 3 else np.pad(
-        state.points + state.fields["displacement"][:, :2], [(0, 0), (0, 1)])
+    return (
+        state.points + state.fields["displacement"]
+        if state.points.shape[1] == 3
+        else np.pad(state.points + state.fields["displacement"][:, :2], [(0, 0), (0, 1)])
+    )
 
 
 def _scalar(field: np.ndarray) -> np.ndarray:

@@ -1,20 +1,11 @@
 """What figures have in common, and those of one body that goes along the plane: friction force, what slides and sticks, and the flight, as
 figures 4 and 5 of the paper."""
 
-import struct
-import zlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from warnings import filterwarnings
+from warnings import catch_warnings, filterwarnings
 
-import matplotlib
-from matplotlib import artist
-
-matplotlib.use("Agg")
-# what matplotlib would write into its docstrings takes a third of its import: others here take plt from this module, and not before it
-artist.kwdoc = lambda artist: ""
-artist.Artist._update_set_signature_and_docstring = classmethod(lambda cls: None)
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import TriMesh
@@ -39,7 +30,6 @@ SMALL = 7.5   # text of legends, of numbers in cells and below figures; all othe
 STYLE = {"font.size": 9, "axes.titlesize": 9, "legend.fontsize": SMALL, "figure.titlesize": 9, "axes.spines.top": False,
          "axes.spines.right": False, "axes.linewidth": 0.8, "lines.linewidth": 1.4, "legend.frameon": False, "figure.dpi": 100,
          "savefig.dpi": 150, "figure.constrained_layout.w_pad": 0.08, "text.hinting": "none", "axes.titley": 1.0}
-PAD = 0.08    # inches between what stands around panels
 NUMBERS = 6   # intervals at most between those along an axis
 BODY = {"ball-plane": "ball: ", "ball-axisymmetric": "ball as a body of revolution: "}
 STRESS = "von Mises stress [MPa]"
@@ -56,69 +46,20 @@ DASHED = (0, (4, 2))
 ORIGIN = np.zeros(2)
 # letters, as is all that pictures say: to parse formulas takes as long as to draw one
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-filterwarnings("ignore", "Glyph .* missing from", UserWarning)    # a letter that the font lacks is an empty box in the title
 
 
 def save(figure: plt.Figure, path: Path) -> None:
-    """Writes the figure, laid out and drawn once (savefig draws it twice), and closes it."""
-    figure.set_dpi(plt.rcParams["savefig.dpi"])
+    """Writes the figure and closes it."""
     if not figure.get_layout_engine():
-        arrange(figure)
-    figure.canvas.draw()
-    path.write_bytes(png(np.asarray(figure.canvas.buffer_rgba())[..., :3], figure.dpi))
-    plt.close(figure)
-
-
-def png(pixels: np.ndarray, dpi: float) -> bytes:
-    """The picture (height, width, 3) as a file. Of every row the differences from the one above are packed: libraries try all kinds of
-    differences, which takes twice as long."""
-    height, width, _ = pixels.shape
-    flat, rows = pixels.reshape(height, -1), np.full((height, 1 + 3 * width), 2, np.uint8)       # 2: from the row above
-    rows[0, 1:] = flat[0]
-    np.subtract(flat[1:], flat[:-1], out=rows[1:, 1:])
-    packer, per_metre = zlib.compressobj(1, strategy=zlib.Z_RLE), round(dpi / 0.0254)
-    parts = {b"IHDR": struct.pack(">2I5B", width, height, 8, 2, 0, 0, 0), b"pHYs": struct.pack(">2IB", per_metre, per_metre, 1),
-             b"IDAT": packer.compress(rows) + packer.flush(), b"IEND": b""}
-    return b"\x89PNG\r\n\x1a\n" + b"".join(struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
-                                           for name, data in parts.items())
-
-
-def arrange(figure: plt.Figure) -> None:
-    """The panels of the grid as large as what stands around them leaves room, below titles. Each is measured once: to
-    measure takes as long as to draw, and constrained_layout, which a figure of several grids asks for, does it twice."""
-    renderer, pad = figure.canvas.get_renderer(), PAD * figure.dpi
-    grid = figure.axes[0].get_gridspec()
-    # left and above, right and below [pixels]
-    before, after = ([[pad / 2] * count for count in (grid.ncols, grid.nrows)] for _ in range(2))
-    places = [(axes, axes.get_subplotspec().colspan.start, axes.get_subplotspec().rowspan.start) for axes in figure.axes]
+        figure.set_layout_engine("constrained")
     for axes in (one for panel in figure.axes for one in (panel, *panel.child_axes)):
         for axis in (axes.xaxis, axes.yaxis):
-            if type(axis.get_major_locator()) is AutoLocator:   # as many numbers whatever the size: they stay as they are measured
+            if type(axis.get_major_locator()) is AutoLocator:
                 axis.set_major_locator(MaxNLocator(NUMBERS, steps=(1, 2, 2.5, 5, 10)))
-    for axes, column, row in places:
-        around = [*axes.texts, *axes.child_axes, *(line for line in axes.lines if not line.get_clip_on()),
-                  *filter(None, [axes.get_legend()])]
-        outer, inner = axes.get_tightbbox(renderer, bbox_extra_artists=around, for_layout_only=True), axes.get_window_extent(renderer)
-        for side, k, room in ((before[0], column, inner.x0 - outer.x0), (after[0], column, outer.x1 - inner.x1),
-                              (before[1], row, outer.y1 - inner.y1), (after[1], row, inner.y0 - outer.y0)):
-            side[k] = max(side[k], room + pad / 2)
-    ends = [pad / 2, pad / 2]                                                                        # of the figure, above and below
-    for text in figure.texts:
-        text.set_y(1 - pad / figure.bbox.height)
-        ends[0] += text.get_window_extent(renderer).height + pad
-    (left, right), (top, bottom) = (
-        _cut(size, *edges, *sides) for size, edges, *sides in
-        ((figure.bbox.width, (pad / 2, pad / 2), before[0], after[0], grid.get_width_ratios()),
-         (figure.bbox.height, ends, before[1], after[1], grid.get_height_ratios())))
-    for axes, column, row in places:
-        axes.set_position((left[column], 1 - bottom[row], right[column] - left[column], bottom[row] - top[row]))
-
-
-def _cut(size: float, start: float, end: float, before: list[float], after: list[float], ratios: list[float]) -> np.ndarray:
-    """Where panels in a line begin and end, as shares of its size, which the spaces before and after each and at its ends leave to them."""
-    room = (size - start - end - sum(before) - sum(after)) * np.array(ratios) / sum(ratios)
-    ends = start + np.cumsum(before + room + after) - after
-    return np.array([ends - room, ends]) / size
+    with catch_warnings():
+        filterwarnings("ignore", "Glyph .* missing from", UserWarning)    # a letter that the font lacks is an empty box in the title
+        figure.savefig(path)
+    plt.close(figure)
 
 
 def material(one: dict[str, Value]) -> str:

@@ -1,0 +1,229 @@
+"""The Python interface: scenes as models, runs, sweeps, comparisons, figures."""
+
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import ffimpact as ff
+from ffimpact import scene as files
+from ffimpact.failure import of_code
+
+RUBBER = ff.NeoHookean(young=7e6, nu=0.45, density=1722)
+
+
+def drop(**entries) -> ff.Scene:
+    """A disc 1 mm above the floor."""
+    disc = ff.Disc(radius=0.05, material=RUBBER, position=(0, 0.051), velocity=(0, -8))
+    return ff.Scene(
+        bodies=[disc], obstacles=[ff.Plane()], contact=ff.Contact(friction_static=0.3), **entries
+    )
+
+
+@pytest.fixture(scope="module")
+def result(tmp_path_factory):
+    return ff.run(drop(), accuracy=0.1, fields=6, out=tmp_path_factory.mktemp("api") / "run")
+
+
+# ---- scenes
+
+
+@pytest.mark.parametrize("name", [name for name in files.built_in() if files.load(name).bodies])
+def test_a_built_in_scene_of_bodies_is_the_same_written_and_read_again(tmp_path, name):
+    """As objects it has the same bodies, obstacles and parameters as read from its file."""
+    scene, read = ff.Scene.load(name), files.load(name)
+    assert ff.Scene.load(scene.save(tmp_path / "scene.toml")) == scene
+    again = scene.read()
+    assert (
+        again.values == read.values
+        and again.contact == read.contact
+        and len(again.pairs) == len(read.pairs)
+    )
+    assert [(one.name, one.young, one.nu, one.density, one.mesh_size) for one in again.bodies] == [
+        (one.name, one.young, one.nu, one.density, one.mesh_size) for one in read.bodies
+    ]
+
+
+def test_numpy_and_plain_numbers_are_the_same():
+    disc = ff.Disc(
+        radius=np.float64(0.05),
+        material=RUBBER,
+        position=np.array([0, 0.051]),
+        velocity=np.array([0.0, -8]),
+    )
+    assert (
+        ff.Scene(bodies=[disc], obstacles=[ff.Plane()], contact=ff.Contact(friction_static=0.3))
+        == drop()
+    )
+
+
+def test_entries_are_set_by_dotted_names():
+    changed = drop().set(
+        **{"body.1.velocity.2": -4, "contact.friction_static": 0.1, "accuracy": 0.02}
+    )
+    assert (
+        changed.bodies[0].velocity == [0.0, -4.0]
+        and changed.contact.friction_static == 0.1
+        and changed.accuracy == 0.02
+    )
+    assert changed != drop()
+
+
+@pytest.mark.parametrize(
+    "make, words",
+    [
+        (lambda: ff.NeoHookean(yong=1, young=1, nu=0.3, density=1), ("yong", "young")),
+        (lambda: ff.NeoHookean(nu=0.3, density=1), ("young", "missing")),
+        (lambda: ff.Disc(radius="wide", position=(0, 0)), ("radius", "wide")),
+        (
+            lambda: ff.Scene(bodies=[ff.Disc(radius=-1, material=RUBBER, position=(0, 0))]),
+            ("body.1.radius", "-1", "1e-09"),
+        ),
+        (lambda: drop(accuracy=3), ("accuracy", "3", "0.4")),
+        (lambda: drop(accurcy=0.1), ("accurcy", "accuracy")),
+        (lambda: drop().set(**{"body.1.yong": 3}), ("body.1.yong", "young")),
+        (lambda: ff.Scene.load("disc-norml"), ("disc-norml", "disc-normal")),
+        (lambda: ff.run(3), ("scene", "3")),
+        (lambda: ff.sweep(drop(), {}), ("sweep",)),
+        (lambda: ff.sweep(drop(), {"body.1.velocity.2": -4}), ("body.1.velocity.2", "-4")),
+        (lambda: ff.sweep(drop(), {"body.1.velocity.7": [-4]}), ("body.1.velocity.7",)),
+    ],
+)
+def test_what_is_wrong_is_one_line_with_entry_and_value(tmp_path, monkeypatch, make, words):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(ff.BadInput) as caught:
+        make()
+    assert (
+        caught.value.code == 10
+        and "\n" not in str(caught.value)
+        and all(word in str(caught.value) for word in words)
+    )
+    assert not list(tmp_path.iterdir())
+
+
+def test_each_exit_code_has_its_exception():
+    kinds = {
+        1: ff.Failure,
+        10: ff.BadInput,
+        11: ff.StepFailed,
+        12: ff.MaterialFailed,
+        13: ff.NotInstalled,
+        14: ff.Unreadable,
+        124: ff.TooLong,
+    }
+    for code, kind in kinds.items():
+        failure = of_code(code, "why")
+        assert type(failure) is kind and failure.code == code and str(failure) == "why"
+
+
+# ---- results
+
+
+def test_numbers_have_errors_and_units(result):
+    """The impulse is that of the momentum; its error bar is the estimated share of it; a number that is not there is named."""
+    assert result["impulse"] == pytest.approx(
+        1722 * np.pi * 0.05**2 * (8 + result["rebound_vy"]), rel=1e-3
+    )
+    assert result.errors["impulse"] == pytest.approx(
+        result.summary["estimated_error"]["impulse"] * result["impulse"]
+    )
+    assert result.errors["rebound_vy"] == pytest.approx(
+        result.summary["estimated_error"]["rebound"] * 8, rel=0.01
+    )
+    assert result.units["impulse"] == "N s/m" and result.units["t"] == "s"
+    assert result.scene["body"][0]["young"] == 7e6 and isinstance(result.warnings, list)
+    with pytest.raises(ff.BadInput, match="impulse"):
+        result["impuls"]
+
+
+def test_tables(result):
+    assert isinstance(
+        result.history, pd.DataFrame
+    ) and result.history.normal_force.max() == pytest.approx(result["peak_force"])
+    assert list(result.contacts.body) == [1] and "impulse" in result.table.index
+    lines = repr(result).splitlines()
+    assert 5 < len(lines) <= 12 and any(
+        "impulse" in line and "±" in line and "N s/m" in line for line in lines
+    )
+    assert "<table>" in result._repr_html_()
+
+
+def test_figures_are_drawn_into_axes(result):
+    """Force and energies are those of the history; a given panel is drawn into and returned."""
+    plt = pytest.importorskip("matplotlib.pyplot")
+    figure, panels = plt.subplots(2)
+    assert (
+        result.plot.force(ax=panels[0]) is panels[0]
+        and result.plot.energies(ax=panels[1]) is panels[1]
+    )
+    assert panels[0].lines[0].get_ydata().max() == pytest.approx(1e-3 * result["peak_force"])
+    for ax in (result.plot.velocities(), result.plot.shapes()):
+        assert ax.has_data()
+    with pytest.raises(ff.BadInput, match="von_mises"):
+        result.plot.shapes(field="stress")
+    plt.close("all")
+
+
+def test_states_are_grids(result):
+    pytest.importorskip("pyvista")
+    assert (
+        len(result.fields) == len(result.fields.times) and result.fields[-1]["von_mises"].max() > 0
+    )
+
+
+def test_a_player_is_one_file(result, tmp_path):
+    pytest.importorskip("k3d")
+    path = result.view(tmp_path / "impact.html")
+    assert path.stat().st_size > 1e5 and "<script" in path.read_text()[:10_000]
+
+
+def test_a_run_that_is_there_is_not_made_again(result):
+    assert ff.run(drop(), accuracy=0.1, fields=6, out=result.folder).reused
+    assert ff.load(result.folder)["impulse"] == result["impulse"]
+    with pytest.raises(ff.Unreadable):
+        ff.load("nowhere")
+
+
+def test_comparison_says_what_agrees(result):
+    """A run agrees with itself; one with another impulse does not."""
+    other = ff.load(result.folder)
+    assert ff.compare(result, other).agree.all()
+    other.summary = other.summary | {"impulse": 2 * result["impulse"]}
+    assert not ff.compare(result, other, names=["impulse"]).agree.any()
+
+
+def test_a_sweep(tmp_path):
+    """A row for each combination, in order; a run that fails is a row with its code; what is there is not run again; error bars are drawn."""
+    values = {"body.1.velocity.2": [-2, -4], "contact.friction_static": [0.1]}
+    study = ff.sweep(drop(accuracy=0.2, fields=0), values, workers=2, out=tmp_path / "study")
+    assert list(study.table["body.1.velocity.2"]) == [-2, -4] and (study.table.exit == 0).all()
+    assert study.table.impulse[1] > 1.8 * study.table.impulse[0]
+    ax = study.plot(x="body.1.velocity.2", y="restitution", by="contact.friction_static")
+    assert ax.get_legend() and len(ax.containers) == 1
+    made = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("summary.json")}
+    ff.sweep(drop(accuracy=0.2, fields=0), values, workers=2, out=tmp_path / "study")
+    assert len(made) == 2 and made == {
+        path: path.stat().st_mtime_ns for path in tmp_path.rglob("summary.json")
+    }
+    with pytest.raises(ff.BadInput, match="impuls"):
+        study.plot(x="body.1.velocity.2", y="impuls")
+
+
+def test_importing_it_changes_nothing_global():
+    """Neither matplotlib's settings and docstrings, nor signals, nor filters of warnings."""
+    state = (
+        "import json, signal, warnings, matplotlib.pyplot, pandas, pydantic, scipy.spatial, matplotlib as mpl; from matplotlib.lines import Line2D; "
+        "state = lambda: [str(dict(mpl.rcParams)), str(signal.getsignal(signal.SIGINT)), str(signal.getsignal(signal.SIGTERM)), "
+        "str(warnings.filters), Line2D.set.__doc__]; before = state(); "
+    )
+    code = (
+        state
+        + "import ffimpact as ff; [getattr(ff, name) for name in ff.__all__]; import ffimpact.plot; print(json.dumps(before == state()))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-W", "default", "-c", code], capture_output=True, text=True
+    )
+    assert done.returncode == 0 and json.loads(done.stdout), done.stderr
