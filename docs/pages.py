@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 from ffimpact.freefem.describe import describe_results
+from ffimpact import schema
 from ffimpact.__main__ import start
 from ffimpact.places import ROOT, shown
 
@@ -61,7 +62,7 @@ def pages() -> dict[Path, str]:
     """The text of every page by its file: what stands between the marks of a part is made anew."""
     parts = {"docs/results.md": ("columns", results()), "docs/warnings.md": ("warnings", warnings()),
              "README.md": ("equations", equations()), "docs/method.md": ("equations", equations("../"))}
-    made = {}
+    made = {schema.FILE: schema.text()}
     for name, (part, text) in parts.items():
         begin, end = f"<!-- {part} -->\n", f"<!-- end of {part} -->\n"
         before, _, rest = (ROOT / name).read_text().partition(begin)

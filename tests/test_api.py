@@ -3,13 +3,17 @@
 import json
 import subprocess
 import sys
+import tomllib
 
+import jsonschema
 import numpy as np
 import pandas as pd
 import pytest
 
 import ffimpact as ff
 from ffimpact import scene as files
+from ffimpact import schema
+from ffimpact.__main__ import main
 from ffimpact.failure import of_code
 
 RUBBER = ff.NeoHookean(young=7e6, nu=0.45, density=1722)
@@ -227,3 +231,39 @@ def test_importing_it_changes_nothing_global():
         [sys.executable, "-W", "default", "-c", code], capture_output=True, text=True
     )
     assert done.returncode == 0 and json.loads(done.stdout), done.stderr
+
+
+# ---- the schema of scene files
+
+@pytest.fixture(scope="module")
+def validator():
+    told = json.loads(schema.text())
+    jsonschema.Draft202012Validator.check_schema(told)
+    return jsonschema.Draft202012Validator(told)
+
+
+@pytest.mark.parametrize("name", files.built_in())
+def test_built_in_scenes_are_valid_by_the_schema(validator, name):
+    """They name the schema, too, for editors."""
+    text = (files.SCENES / f"{name}.toml").read_text()
+    assert validator.is_valid(tomllib.loads(text))
+    assert text.startswith(f"#:schema {schema.FILE.name}\n")
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"accuracy": 3},
+        {"accurcy": 0.1},
+        {"body": [{"shape": "disc", "radius": 0.05, "position": [0, 1], "yong": 3}]},
+        {"body": [{"shape": "disc", "position": [0, 1]}]},
+        {"contact": {"regularization": "cubic"}},
+    ],
+)
+def test_the_schema_refuses_what_the_program_refuses(validator, changed):
+    assert validator.is_valid(drop().table()) and not validator.is_valid(drop().table() | changed)
+
+
+def test_the_command_prints_the_schema(capsys):
+    assert main(["schema"]) == 0
+    assert json.loads(capsys.readouterr().out) == schema.schema()

@@ -1,6 +1,7 @@
 """Command line: ffimpact COMMAND, or python -m ffimpact COMMAND; the commands are listed by --help."""
 
 import argparse
+import errno
 import gc
 import importlib
 import locale
@@ -18,6 +19,9 @@ Command = Callable[[list[str]], int | None]
 # the commands with a module of their own, which has a main(argv)
 OWN_MAIN = {"sweep": "ffimpact.sweeps.sweep", "friction-laws": "ffimpact.report.friction_laws",
             "compare": "ffimpact.report.compare", "movie": "ffimpact.report.movie"}
+HELP = {"sweep": "run a scene for every combination of some entries: a table and a figure", "friction-laws": "draw the friction laws",
+        "compare": "several runs in one figure, with a table", "movie": "a film of a scene"}
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 CHOICES = re.compile(r"[^', ]+")   # the words in argparse's own message
 
 
@@ -40,7 +44,8 @@ def guarded(run: Command, argv: list[str]) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
     except OSError as error:  # a full disk, a folder that was taken away
-        failure = Unreadable(f"{error.filename or 'the result folder'}: {error.strerror}; make room, or choose another --out")
+        advice = "make room, or choose another --out" if error.errno in FULL else "choose another --out"
+        failure = Unreadable(f"{error.filename or 'the result folder'}: {error.strerror or error}; {advice}")
         print(f"ffimpact: {failure}", file=sys.stderr)
         return failure.code
     except KeyboardInterrupt:
@@ -66,7 +71,7 @@ def _bad_usage(parser: argparse.ArgumentParser, message: str) -> None:
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="ffimpact", description="Impact of nonlinear deformable bodies.",
-                                     epilog="More commands, each with its own --help: " + ", ".join(OWN_MAIN))
+                                     epilog="Each command has its own --help.")
     parser.add_argument("--version", action="version", version=f"ffimpact {__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
@@ -87,11 +92,13 @@ def _parser() -> argparse.ArgumentParser:
     command.set_defaults(command=_list)
     command = commands.add_parser("parameters", help="list the parameters: default, unit, what is accepted")
     command.set_defaults(command=_parameters)
+    command = commands.add_parser("schema", help="print the JSON schema of scene files, with which editors complete and check them")
+    command.set_defaults(command=_schema)
     command = commands.add_parser("figures", help="draw the figures of a result folder again")
     command.add_argument("folder", metavar="DIR", type=Path)
     command.set_defaults(command=_figures)
     for name in OWN_MAIN:                              # for the list of what is accepted; main() calls them itself
-        commands.add_parser(name)
+        commands.add_parser(name, help=HELP[name])
     return parser
 
 
@@ -125,6 +132,11 @@ def _parameters(options: argparse.Namespace) -> None:
         default = p.default if isinstance(p.default, str) else f"{p.default:g}"
         only = f"; in {p.scripts[0]} only" if len(p.scripts) == 1 else ""
         print(f"{name:<21}{default:<17}{p.unit:<9}{p.help}; accepted: {p.accepted}{only}")
+
+
+def _schema(options: argparse.Namespace) -> None:
+    from .schema import text
+    print(text(), end="")
 
 
 def _figures(options: argparse.Namespace) -> None:
