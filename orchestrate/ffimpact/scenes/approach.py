@@ -292,6 +292,9 @@ def _first_touch(body: Body, other: Body | Obstacle, start: np.ndarray, pull: np
 
 def _within_reach(body: Body, other: Body | Obstacle, start: np.ndarray, pull: np.ndarray) -> Iterator[tuple[float, float]]:
     """From when to when the sphere around the body touches that around the other one, or some part of the obstacle."""
+    if isinstance(other, Body) and not pull.any():
+        yield from _passing(body.position - other.position, start, 1.01 * (body.outline.reach + other.outline.reach))
+        return
     parts = [[gate.trim() for gate in gates] for gates in _gates(body, other, start, pull)]
     roots = np.concatenate([gate.roots() for gates in parts for gate in gates if gate.degree() > 0] or [np.empty(0)])
     times = [0.0, *sorted(set(roots.real[(abs(roots.imag) <= 1e-6 * abs(roots)) & (roots.real > 0)].tolist())), math.inf]
@@ -299,6 +302,16 @@ def _within_reach(body: Body, other: Body | Obstacle, start: np.ndarray, pull: n
         middle = (begin + end) / 2 if end < math.inf else 2 * begin + 1
         if any(all(gate(middle) <= 0 for gate in gates) for gates in parts):
             yield begin, end
+
+
+def _passing(r: np.ndarray, v: np.ndarray, within: float) -> Iterator[tuple[float, float]]:
+    """From when to when |r + v t| <= within, t >= 0: none or one interval."""
+    square, along, beyond = v @ v, r @ v, r @ r - within**2
+    if square == 0:
+        yield from [(0.0, math.inf)] if beyond <= 0 else []
+    elif (discriminant := along**2 - square * beyond) >= 0:
+        first, last = (float((sign * math.sqrt(discriminant) - along) / square) for sign in (-1, 1))
+        yield from [(max(0.0, first), last)] if last > 0 else []
 
 
 def _gates(body: Body, other: Body | Obstacle, start: np.ndarray, pull: np.ndarray) -> Iterator[list[Polynomial]]:

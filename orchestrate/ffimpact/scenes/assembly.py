@@ -171,12 +171,24 @@ class Asker:
 
     def small(self, first: int, second: int) -> float:
         """The radius [m] of an obstacle where a body meets it, if less than half of the body's own, 0 at a sharp corner; else infinite."""
-        for one in self.met:
-            if (one.first, one.second) == (first, second) and second < 0 and not one.never:
-                body, obstacle = one.outlines
-                radius = obstacle.radius_at(body.points[obstacle.gap(body.points).argmin()], ASIDE * one.radius)
-                return radius if radius < one.radius / 2 else math.inf
-        return math.inf
+        one = self.first_met.get((first, second))
+        if second >= 0 or one is None:
+            return math.inf
+        body, obstacle = one.outlines
+        radius = obstacle.radius_at(body.points[obstacle.gap(body.points).argmin()], ASIDE * one.radius)
+        return radius if radius < one.radius / 2 else math.inf
+
+    @cached_property
+    def first_met(self) -> dict[tuple[int, int], Meeting]:
+        """The first meeting of each pair that may meet."""
+        return {(one.first, one.second): one for one in reversed(self.met) if not one.never}
+
+    @cached_property
+    def largest(self) -> tuple[float, ...]:
+        """The largest closing and sliding speed [m/s], and acceleration along and across the normal [m/s2]. No round-off: a
+        mesh follows every digit."""
+        return tuple(float(f"{max((getattr(one, name) for one in self.met), default=0.0):.6g}")
+                     for name in ("closing", "sliding", "pressing", "pulling"))
 
     @cached_property
     def pressed(self) -> float:
@@ -186,9 +198,7 @@ class Asker:
     def disc(self, bodies: list[Body], radius: float, slides: bool, presses: bool = True) -> dict[str, Value]:
         """A disc of this radius [m] and the softer body's material; straight on unless it `slides`; where it `presses` as wide
         a contact as moving supports make."""
-        # no round-off: a mesh follows every digit
-        along, across, pressing, pulling = (float(f"{max((getattr(one, name) for one in self.met), default=0.0):.6g}")
-                                            for name in ("closing", "sliding", "pressing", "pulling"))
+        along, across, pressing, pulling = self.largest
         along = max(along, self.pressed) if presses else along
         pressing = pressing if self.met else max(loaded_pull(body) for body in self.scene.bodies)
         soft = min(bodies, key=lambda body: body.young)
