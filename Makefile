@@ -6,7 +6,7 @@ SWEEPS := oblique friction-jump friction-steps slip-limit contact-time-svk law-c
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws $(SWEEPS) stick-slip verify paper movie docs pictures test robustness bench bench-quick scaling equal-errors promise disc-block-errors pairing-comparison oblique-angles viscoelastic rubber clean
+.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws $(SWEEPS) stick-slip verify paper movie docs pictures check test robustness bench bench-quick scaling equal-errors promise disc-block-errors pairing-comparison oblique-angles viscoelastic rubber clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z0-9-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
@@ -86,7 +86,13 @@ pictures: disc-normal disc-oblique ## the README's pictures, drawn again from th
 	[(drawing.draw(run := Path('results', name)), \
 	Image.open(run / f'figures/{figure}.png').convert('RGB').quantize(256).save(picture, optimize=True)) for name, (figure, picture) in runs.items()]"
 
-test: $(READY) ## run all tests, on two cores: some eight minutes
+CHECKED := $(addprefix orchestrate/ffimpact/,__init__.py api.py model.py plot.py result.py schema.py view.py)
+check: $(READY) ## style and types: ruff everywhere, its format and mypy --strict for the modules of the Python interface
+	@$(PYTHON) -m ruff check -q orchestrate examples benchmarks verification tests docs conftest.py
+	@$(PYTHON) -m ruff format -q --check $(CHECKED) tests/test_api.py conftest.py
+	@$(PYTHON) -m mypy --strict --follow-imports=silent $(CHECKED)
+
+test: $(READY) ## run all tests, on two cores: some seven minutes
 	@$(PYTHON) -m pytest -q -n 2 --dist worksteal $(ARGS)
 
 robustness: $(READY) ## the tests that make test leaves out, malformed input and kills; hard runs drawn at random, and every combination of hard parameters: nothing is silently wrong, lost or left behind

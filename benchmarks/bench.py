@@ -20,8 +20,8 @@ from ffimpact.progress import in_turn
 from ffimpact.report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE, save
 from ffimpact.sweeps import study
 from ffimpact.sweeps.sweep_figures import distance, force
-
 from verification import commands
+
 from . import peers
 
 LEVELS = (5.0, 1.0, 0.1)    # % of error

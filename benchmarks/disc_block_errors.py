@@ -11,8 +11,8 @@ from ffimpact.output import estimate
 from ffimpact.output.results import read_scene
 from ffimpact.progress import in_turn
 from ffimpact.sweeps import study
-
 from verification import commands
+
 from . import peers
 
 CASES = [{"law": law, "nu": nu, "penalty": k} for law, nu, k in itertools.product(("svk", "neohookean"), (0.3, 0.45), (1e9, 1e10))]

@@ -13,8 +13,8 @@ from ffimpact.input.parameters import Value
 from ffimpact.places import shown
 from ffimpact.progress import in_turn
 from ffimpact.sweeps import study
-
 from verification import commands
+
 from . import peers
 
 LEVELS = (1.0, 0.5, 0.1)    # % of error

@@ -21,9 +21,17 @@ from ffimpact.output.results import read_scene
 from ffimpact.progress import in_turn
 from ffimpact.report.figures import BLACK, BLUE, DASHED, GREEN, ORANGE, STYLE, save
 from ffimpact.sweeps import study
-
 from verification import commands, hertz
-from verification.oblique_ball import DENSITY, MASS, NU, RADIUS, RIGID, YOUNG, slides_throughout, springs
+from verification.oblique_ball import (
+    DENSITY,
+    MASS,
+    NU,
+    RADIUS,
+    RIGID,
+    YOUNG,
+    slides_throughout,
+    springs,
+)
 from verification.rigid_disc import STIFF
 
 INERTIA = {"disc": 2.0, "ball": 2.5}                      # R^2/k^2, k the radius of gyration; the scenes are <body>-oblique

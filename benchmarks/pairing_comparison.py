@@ -6,7 +6,6 @@ import pandas as pd
 
 from ffimpact.output.results import read_history, read_scene
 from ffimpact.sweeps import study
-
 from verification import commands
 
 RADIUS, SPEED, NU = 0.5, 10.0, 0.4                  # of the scene disc-block, section 3.2 of the paper

@@ -10,16 +10,15 @@ from pathlib import Path
 import pandas as pd
 
 from ffimpact import scene
-
-from ffimpact.running import run
 from ffimpact.failure import Failure, TooLong
 from ffimpact.input.parameters import Value, whole
 from ffimpact.output import estimate, notes
 from ffimpact.output.results import read_answers
+from ffimpact.running import run
 from ffimpact.scenes.finer import scaled
 from ffimpact.sweeps import study
-
 from verification import commands
+
 from . import draws
 
 # other scenes than those that sizes (seeds 1, 2, 5, 40; 7) and stated errors (60, 61, 64, 66 to 68, 74 to 77) are calibrated on

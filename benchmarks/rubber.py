@@ -10,8 +10,8 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from ffimpact.report.figures import BLUE, DASHED, GREY, ORANGE, STYLE, save
 from ffimpact.sweeps import study
-
 from verification import commands
+
 from . import peers
 
 NUS = (0.3, 0.4, 0.45, 0.47, 0.49, 0.499, 0.4999, 0.5)    # 0.5: law = incompressible

@@ -10,12 +10,10 @@ from resource import RUSAGE_CHILDREN, getrusage
 import pandas as pd
 
 from ffimpact import scene
-
-from ffimpact.running import run
 from ffimpact.freefem import freefem
 from ffimpact.output.results import read_json
+from ffimpact.running import run
 from ffimpact.sweeps import study
-
 from verification import commands
 
 

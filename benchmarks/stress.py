@@ -7,7 +7,6 @@ import pandas as pd
 
 from ffimpact.input.parameters import whole
 from ffimpact.sweeps import study
-
 from verification import commands
 
 AXES = {"law": ("svk", "neohookean"), "nu": (0.0, 0.3, 0.45, 0.49, 0.4999), "speed": (0.5, 4.0, 10.0), "penalty": (1e9, 1e10, 1e12),

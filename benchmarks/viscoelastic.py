@@ -23,7 +23,6 @@ import pandas as pd
 from ffimpact.progress import in_turn
 from ffimpact.report.figures import BLUE, GREEN, GREY, ORANGE, STYLE, save
 from ffimpact.sweeps import study
-
 from verification import commands
 
 YOUNG, NU, DENSITY, RADIUS = 7e6, 0.3, 1722.0, 0.05

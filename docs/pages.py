@@ -7,9 +7,9 @@ import shutil
 import sys
 from pathlib import Path
 
-from ffimpact.freefem.describe import describe_results
 from ffimpact import schema
 from ffimpact.__main__ import start
+from ffimpact.freefem.describe import describe_results
 from ffimpact.places import ROOT, shown
 
 TABLES = (("history.csv", "history", ("columns", "body_columns")), ("summary.json", "summary", ("summary", "body_summary")),

@@ -235,6 +235,7 @@ def test_importing_it_changes_nothing_global():
 
 # ---- the schema of scene files
 
+
 @pytest.fixture(scope="module")
 def validator():
     told = json.loads(schema.text())

@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 
 from ffimpact import scene
-
-from ffimpact.running import run
+from ffimpact.failure import BadInput
 from ffimpact.input import parameters
 from ffimpact.output import estimate, vtu
-from ffimpact.failure import BadInput
 from ffimpact.report import contact, figures, report
+from ffimpact.running import run
 from test_direct import call
 from triangles import areas
 

@@ -7,15 +7,14 @@ import pandas as pd
 import pytest
 
 from ffimpact import scene
-
-from ffimpact.running import run
+from ffimpact.failure import BadInput
 from ffimpact.freefem import freefem
+from ffimpact.freefem.describe import describe
 from ffimpact.input import parameters
 from ffimpact.mesh import mesh
 from ffimpact.output import estimate, results, vtu
-from ffimpact.freefem.describe import describe
-from ffimpact.failure import BadInput
 from ffimpact.report import compare, contact, figures, report
+from ffimpact.running import run
 from test_direct import COARSE, call
 
 SCRIPT = "ball-axisymmetric"

@@ -9,13 +9,14 @@ import tomllib
 import numpy as np
 import pytest
 
-from ffimpact.mesh import mesh
-from ffimpact.scenes import approach, assembly
-from ffimpact.scenes.entries import set_entry
 from ffimpact.failure import BadInput
 from ffimpact.geometry.outlines import ellipse_loop, polygon_loop, self_crossing
-from ffimpact.scene import SCENES, Scene, built_in, load, read as read_scene
 from ffimpact.input.tables import to_toml
+from ffimpact.mesh import mesh
+from ffimpact.scene import SCENES, Scene, built_in, load
+from ffimpact.scene import read as read_scene
+from ffimpact.scenes import approach, assembly
+from ffimpact.scenes.entries import set_entry
 from triangles import areas, smallest_angle
 
 DISC = {"name": "disc", "shape": "disc", "radius": 0.5, "position": [0, 1.5], "velocity": [0, -10]}

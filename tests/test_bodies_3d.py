@@ -6,16 +6,17 @@ import time
 import numpy as np
 import pytest
 
-from ffimpact.running import run
+from ffimpact.failure import BadInput
 from ffimpact.freefem import freefem
 from ffimpact.geometry import tumbling
 from ffimpact.input import parameters
-from ffimpact.mesh import curved, mesh, solid_file, solid_mesh, solids
-from ffimpact.scenes import approach, assembly, mirror
-from ffimpact.failure import BadInput
-from ffimpact.report import bodies, drawing, figures, report
-from ffimpact.scene import SCENES, Scene, load, read as read_scene
 from ffimpact.input.tables import to_toml
+from ffimpact.mesh import curved, mesh, solid_file, solid_mesh, solids
+from ffimpact.report import bodies, drawing, figures, report
+from ffimpact.running import run
+from ffimpact.scene import SCENES, Scene, load
+from ffimpact.scene import read as read_scene
+from ffimpact.scenes import approach, assembly, mirror
 from test_direct import call
 
 SCRIPT = "bodies-3d"

@@ -5,15 +5,16 @@ import math
 import numpy as np
 import pytest
 
-from ffimpact.running import run
+from ffimpact.failure import BadInput
 from ffimpact.freefem import freefem
 from ffimpact.input import parameters
-from ffimpact.mesh import mesh
-from ffimpact.scenes import assembly
-from ffimpact.failure import BadInput
-from ffimpact.report import report
-from ffimpact.scene import SCENES, Scene, load, read as read_scene
 from ffimpact.input.tables import to_toml
+from ffimpact.mesh import mesh
+from ffimpact.report import report
+from ffimpact.running import run
+from ffimpact.scene import SCENES, Scene, load
+from ffimpact.scene import read as read_scene
+from ffimpact.scenes import assembly
 from test_direct import call
 from triangles import areas
 

@@ -13,14 +13,13 @@ import pandas as pd
 import pytest
 
 from ffimpact import scene
-
-from ffimpact.running import run
+from ffimpact.failure import Failure, Unreadable
 from ffimpact.freefem import freefem
 from ffimpact.input import parameters
 from ffimpact.output import results
-from ffimpact.failure import Failure, Unreadable
-from verification.measure import prepared
+from ffimpact.running import run
 from test_cli import call, is_alive, start, wait_for
+from verification.measure import prepared
 
 COARSE = dict(law="neohookean", nu=0.4)
 SCENES = {   # flags of edp/disc-plane.edp, steps between checkpoints, rows of history that the last checkpoint must know

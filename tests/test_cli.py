@@ -14,10 +14,10 @@ from pathlib import Path
 
 import pytest
 
-from ffimpact.running import run
-from ffimpact.input import parameters
 from ffimpact.__main__ import main
 from ffimpact.failure import Unreadable
+from ffimpact.input import parameters
+from ffimpact.running import run
 
 ROOT = parameters.ROOT
 

@@ -5,12 +5,11 @@ import pandas as pd
 import pytest
 
 from ffimpact import scene
-
-from ffimpact.running import run
-from ffimpact.report import contact, report
-from ffimpact.scene import read as read_scene
-from ffimpact.report.figures import plt
 from ffimpact.output.results import RunResult
+from ffimpact.report import contact, report
+from ffimpact.report.figures import plt
+from ffimpact.running import run
+from ffimpact.scene import read as read_scene
 from verification import measure as runs
 
 PLANE = {"kind": "plane", "point": [0, 0]}

@@ -5,10 +5,9 @@ import pandas as pd
 import pytest
 
 from ffimpact import scene
-
-from ffimpact.running import run
 from ffimpact.failure import Unreadable
 from ffimpact.report import compare, impacts
+from ffimpact.running import run
 
 COARSE = {"law": "neohookean", "accuracy": 0.1, "fields": 0}
 OBLIQUE = COARSE | {"speed": 12, "angle": 60, "friction_static": 0.7, "friction_dynamic": 0.5, "slip_velocity": 0.1}

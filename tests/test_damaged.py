@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from ffimpact import __main__ as program, scene
-
-from ffimpact.running import run
+from ffimpact import __main__ as program
+from ffimpact import scene
 from ffimpact.report import report
+from ffimpact.running import run
 
 SET = ("--set", "accuracy=0.4", "fields=3", "modes=4")
 FILES = ("scene.toml", "history.csv", "contacts.csv", "modes.csv", "fields/contact.csv", "fields.pvd", "fields/0001.vtu", "summary.json")

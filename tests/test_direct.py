@@ -11,13 +11,12 @@ from pathlib import Path
 import pytest
 
 from ffimpact import scene
-
-from ffimpact.running import run
+from ffimpact.failure import Busy, Unreadable
 from ffimpact.freefem import freefem
 from ffimpact.input import parameters
 from ffimpact.mesh import mesh
 from ffimpact.output import folder, results
-from ffimpact.failure import Busy, Unreadable
+from ffimpact.running import run
 
 COARSE = ("-law", "neohookean", "-nu", "0.4", "-accuracy", "0.4")
 ODD = "it's; touch pwned #$(touch pwned)`touch pwned`\"\\ *"     # a name that a shell would make something of

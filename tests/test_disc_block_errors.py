@@ -5,7 +5,8 @@ import math
 import pandas as pd
 import pytest
 
-from benchmarks import disc_block_errors as block, peers
+from benchmarks import disc_block_errors as block
+from benchmarks import peers
 from ffimpact.sweeps import study
 
 CASE = block.PEER_CASES[0]

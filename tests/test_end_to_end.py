@@ -12,14 +12,14 @@ import numpy as np
 import pytest
 
 from ffimpact import scene
-
-from ffimpact.running import run
+from ffimpact.failure import Failure, NotInstalled
 from ffimpact.freefem import freefem
+from ffimpact.freefem.describe import describe, describe_results
 from ffimpact.input import parameters
 from ffimpact.output import results, vtu
-from ffimpact.freefem.describe import describe, describe_results
-from ffimpact.failure import Failure, NotInstalled
 from ffimpact.report import literature, report
+from ffimpact.running import run
+
 
 @pytest.fixture(scope="module")
 def result(tmp_path_factory):

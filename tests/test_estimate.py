@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from ffimpact.failure import Failure
 from ffimpact.input import parameters
 from ffimpact.output import estimate, notes
-from ffimpact.failure import Failure
 from ffimpact.output.results import Answers
 
 ANSWERS = {"impulse": 2.0, "rebound_vx": 1.0, "rebound_vy": 3.0, "rebound_spin": -8.0, "energy_initial": 5.0, "energy_final": 4.5, "vibration_energy": 1.0,

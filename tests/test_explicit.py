@@ -5,7 +5,6 @@ from functools import cache
 import pytest
 
 from ffimpact import scene
-
 from ffimpact.running import run
 from verification.measure import bodies, disc
 

@@ -5,8 +5,8 @@ import xml.etree.ElementTree as xml
 import numpy as np
 import pytest
 
-from ffimpact.output import vtu
 from ffimpact.failure import Unreadable
+from ffimpact.output import vtu
 from ffimpact.report import bodies, drawing, figures
 from triangles import areas
 

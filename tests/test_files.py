@@ -11,11 +11,10 @@ import numpy as np
 import pytest
 
 from ffimpact import scene
-
-from ffimpact.running import run
 from ffimpact.failure import BadInput
 from ffimpact.freefem.describe import describe
 from ffimpact.mesh import mesh, rounding, solid_file, solid_mesh
+from ffimpact.running import run
 from ffimpact.scenes import approach, assembly
 from ffimpact.scenes.scene import read
 from ffimpact.sweeps import sweep

@@ -9,11 +9,11 @@ import pandas as pd
 import pytest
 
 from ffimpact import scene
-
-from ffimpact.running import run
-from ffimpact.scenes import approach
 from ffimpact.failure import BadInput
-from ffimpact.scene import Scene, read as read_scene
+from ffimpact.running import run
+from ffimpact.scene import Scene
+from ffimpact.scene import read as read_scene
+from ffimpact.scenes import approach
 
 RUBBER = {"young": 7e6, "nu": 0.3, "density": 1722, "law": "neohookean", "accuracy": 0.1}
 STEEL = RUBBER | {"young": 2e11, "density": 7800}

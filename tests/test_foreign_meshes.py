@@ -10,13 +10,12 @@ import numpy as np
 import pytest
 
 from ffimpact import scene
-
-from ffimpact.running import run
+from ffimpact.failure import BadInput
 from ffimpact.freefem import freefem
+from ffimpact.freefem.describe import describe
 from ffimpact.mesh import gmsh_file, mesh
 from ffimpact.output import results
-from ffimpact.freefem.describe import describe
-from ffimpact.failure import BadInput
+from ffimpact.running import run
 from triangles import areas, whole_of
 
 RADIUS, DENSITY = 0.05, 1722.0

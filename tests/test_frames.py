@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from ffimpact import scene
-from ffimpact.scene import read
 from ffimpact.running.run import run
+from ffimpact.scene import read
 
 ANSWERS = ("impulse", "contact_time", "thresholded_contact_time", "peak_force", "friction_work", "vibration_energy", "max_pressure", "max_von_mises", "dofs", "steps")
 MATERIAL = {"law": "neohookean", "young": 7e6, "nu": 0.4, "density": 1722.0, "accuracy": 0.1}

@@ -10,14 +10,13 @@ import numpy as np
 import pytest
 
 from ffimpact import scene
-
-from ffimpact.running import run
+from ffimpact.__main__ import main
 from ffimpact.input import parameters
 from ffimpact.output import results, vtu
-from ffimpact.__main__ import main
 from ffimpact.report import compare, drawing, figures, report
-from ffimpact.sweeps import study
+from ffimpact.running import run
 from ffimpact.scenes.scene import RUN
+from ffimpact.sweeps import study
 
 COARSE = {"degree": 1, "mesh_size": 0.0125, "contact_mesh_size": 0.0125, "fields": 3}
 FRICTIONLESS = {"contact", "energies", "force", "shapes", "velocity"}

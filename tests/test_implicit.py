@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from ffimpact.geometry import implicit
 from ffimpact.failure import BadInput
+from ffimpact.geometry import implicit
 
 POINTS = np.random.default_rng(1).uniform(-0.3, 0.3, (500, 2))
 

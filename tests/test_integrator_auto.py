@@ -3,9 +3,8 @@
 import pytest
 
 from ffimpact import scene
-
-from ffimpact.running import run
 from ffimpact.output import results
+from ffimpact.running import run
 from verification.measure import disc
 
 BALL = {"law": "neohookean", "nu": 0.4, "accuracy": 0.1, "integrator": "auto"}

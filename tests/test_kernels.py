@@ -5,10 +5,9 @@ import os
 import pytest
 
 from ffimpact import scene
-
-from ffimpact.running import run
 from ffimpact.failure import BadInput
 from ffimpact.freefem import freefem, kernels
+from ffimpact.running import run
 from verification.measure import disc, measure, prepared
 from verification.test_residual_and_tangent import COARSE, MOONEY, OGDEN, kernels_are_the_scripts
 

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from ffimpact import scene
-
 from ffimpact.running import run
 from verification.measure import measure
 

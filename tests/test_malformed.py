@@ -9,12 +9,12 @@ from pathlib import Path
 
 import pytest
 
+from ffimpact.__main__ import main
 from ffimpact.failure import BadInput
 from ffimpact.freefem import freefem
 from ffimpact.input import parameters
-from ffimpact.scenes.entries import set_entry, toml_value
-from ffimpact.__main__ import main
 from ffimpact.input.tables import to_toml
+from ffimpact.scenes.entries import set_entry, toml_value
 
 LONG = "x" * 300                        # longer than a name may be
 NO_NUMBERS = ["x", "8x", "--8", "+-8", "1e", "e5", "1e+", ".", "-", "8.", "0x10", "nan", "inf", "-inf", "1,5", "1 2", "1_000", "８", "٣.٥", "½",

@@ -4,11 +4,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from ffimpact import scene
-
-from ffimpact.running import run
-from ffimpact.output import results
 from benchmarks import bench
+from ffimpact import scene
+from ffimpact.output import results
+from ffimpact.running import run
 
 
 def rows(**columns) -> pd.DataFrame:

@@ -7,11 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from ffimpact.running import run
-from ffimpact.scenes import approach, assembly
 from ffimpact.freefem.describe import describe
 from ffimpact.input.tables import to_toml
-from ffimpact.scene import Scene, read as read_scene
+from ffimpact.running import run
+from ffimpact.scene import Scene
+from ffimpact.scene import read as read_scene
+from ffimpact.scenes import approach, assembly
 
 DISC = {"name": "disc", "shape": "disc", "radius": 0.05, "position": [0, 0.0651], "velocity": [0, -3]}
 RUBBER = {"law": "neohookean", "young": 7e6, "nu": 0.3, "density": 1722, "accuracy": 0.1}

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from ffimpact.freefem import freefem
+from ffimpact.freefem.describe import describe
 from ffimpact.input import parameters
 from ffimpact.mesh import mesh
-from ffimpact.freefem.describe import describe
 from triangles import areas, smallest_angle
 
 CASES = [

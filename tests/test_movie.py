@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from ffimpact.output import results, vtu
 from ffimpact.__main__ import main
+from ffimpact.output import results, vtu
 from ffimpact.report import figures, movie
 
 FFMPEG = """#!/bin/sh

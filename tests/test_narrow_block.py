@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from ffimpact import scene
-
 from ffimpact.running import run
 from ffimpact.scene import read as read_scene
+
 
 def narrow(width: float, height: float, x: float, off: float, speed: float, friction: float) -> dict:
     """A block between two discs."""

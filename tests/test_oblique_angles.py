@@ -6,9 +6,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from ffimpact.__main__ import guarded
 from benchmarks import __main__ as measurements
 from benchmarks import oblique_angles as angles
+from ffimpact.__main__ import guarded
 from verification.oblique_ball import NU, slides_throughout, springs
 
 SLIDES, STICKS = 20.0, 60.0      # degrees, at a friction of 0.3

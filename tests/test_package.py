@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 
 import ffimpact
-from ffimpact.running import run
 from ffimpact.input.parameters import ROOT
+from ffimpact.running import run
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
 

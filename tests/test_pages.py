@@ -4,8 +4,8 @@ import re
 
 import pytest
 
-from ffimpact import scene
 import pages
+from ffimpact import scene
 from ffimpact.freefem.describe import describe_results
 from ffimpact.places import ROOT
 

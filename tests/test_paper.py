@@ -8,17 +8,41 @@ import pandas as pd
 import pytest
 
 import fake_freefem
+from examples.paper import bodies as paper_bodies
+from examples.paper import friction as paper_friction
+from examples.paper import judging as paper_judging
+from examples.paper import page as paper_page
+from examples.paper import paper, stick_slip
+from examples.paper.judging import AGREES, DIFFERS, OPEN, PARTLY, STATEMENTS, Finding, maxima
 from ffimpact import __version__, scene
-from ffimpact.running import run
 from ffimpact.__main__ import guarded
 from ffimpact.failure import Failure
-from examples.paper import paper, bodies as paper_bodies, friction as paper_friction, judging as paper_judging, page as paper_page
-from ffimpact.report import figures, report
-from examples.paper.judging import AGREES, DIFFERS, OPEN, PARTLY, STATEMENTS, Finding, maxima
 from ffimpact.input.parameters import ROOT
-from examples.paper import stick_slip
+from ffimpact.report import figures, report
+from ffimpact.running import run
 from ffimpact.sweeps import sweep, sweep_figures
-from paper_results import BLOCK, BLOCK_END, CHATTERS, END, IMPACT, JUMPS, KEPT, LEAKS, Memory, NEAR, PUSH, SLIDES, SMOOTH, base, forces, jump, pairs, speeds, steps, waves
+from paper_results import (
+    BLOCK,
+    BLOCK_END,
+    CHATTERS,
+    END,
+    IMPACT,
+    JUMPS,
+    KEPT,
+    LEAKS,
+    NEAR,
+    PUSH,
+    SLIDES,
+    SMOOTH,
+    Memory,
+    base,
+    forces,
+    jump,
+    pairs,
+    speeds,
+    steps,
+    waves,
+)
 
 FIND = {find.__name__: find for _, _, find in STATEMENTS}
 
@@ -287,7 +311,7 @@ EXACT = {"energy", "total_energy", "conserves", "accelerations"}                
 @pytest.mark.parametrize("name", sorted(set(FIND) - OTHERS))
 def test_lost_ellipticity_is_judged_by_one_rule(tmp_path, name):
     """Where every SVK run has lost ellipticity, no change of the results makes a statement on it agree, unless it is of exact conservation."""
-    for change, _, words in CASES[name]:
+    for change, _, _ in CASES[name]:
         given = base()
         change(given)
         for runs in (given["summary"], given["stick-slip"]):

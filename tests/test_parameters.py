@@ -5,9 +5,9 @@ import re
 import pytest
 
 from ffimpact import scene
-from ffimpact.input import parameters
-from ffimpact.freefem.describe import describe
 from ffimpact.failure import BadInput
+from ffimpact.freefem.describe import describe
+from ffimpact.input import parameters
 
 
 def test_every_row_of_the_table_is_read():

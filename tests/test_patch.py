@@ -9,11 +9,10 @@ import pandas as pd
 import pytest
 
 from ffimpact import scene
-
-from ffimpact.running import run
 from ffimpact.output import vtu
-from ffimpact.report import bodies, contact, figures
 from ffimpact.output.results import RunResult, body_names
+from ffimpact.report import bodies, contact, figures
+from ffimpact.running import run
 
 SCENES = {"disc": ("disc-normal", {}), "whole disc": ("disc-oblique", {}), "revolution": ("ball-axisymmetric", {"accuracy": 0.1}),
           "ball": ("ball", {"accuracy": 0.2}), "oblique ball": ("ball-oblique", {}),

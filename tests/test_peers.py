@@ -2,12 +2,11 @@
 
 import pytest
 
-from ffimpact import scene
-
-from ffimpact.running import run
-from ffimpact.input.parameters import ROOT
-from verification import measure
 from benchmarks import bench, equal_errors, peers
+from ffimpact import scene
+from ffimpact.input.parameters import ROOT
+from ffimpact.running import run
+from verification import measure
 
 
 def test_every_scene_has_its_script():

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from ffimpact.geometry import polyline
 from ffimpact.failure import BadInput
+from ffimpact.geometry import polyline
 
 SQUARE = [[0, 0], [0, 1], [1, 1], [1, 0]]        # clockwise
 POINTS = np.random.default_rng(1).uniform(-2, 3, (2000, 2))

@@ -8,12 +8,12 @@ import types
 import numpy as np
 import pytest
 
-from ffimpact import progress, scene
-from ffimpact.freefem import freefem
-from ffimpact.running import solver as told
-from ffimpact.failure import BadInput
-from ffimpact.input.parameters import ROOT
 from examples.paper import paper as paper_making
+from ffimpact import progress, scene
+from ffimpact.failure import BadInput
+from ffimpact.freefem import freefem
+from ffimpact.input.parameters import ROOT
+from ffimpact.running import solver as told
 from ffimpact.sweeps import study
 
 

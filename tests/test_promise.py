@@ -4,9 +4,9 @@
 import pandas as pd
 import pytest
 
+from benchmarks import draws, promise
 from ffimpact import scene
 from ffimpact.output import estimate
-from benchmarks import draws, promise
 
 ANSWERS = {"impulse": 2.0, "rebound_vx": 0.0, "rebound_vy": 7.0, "rebound_spin": 0.0, "energy_initial": 5.0, "energy_final": 4.5, "vibration_energy": 1.0,
            "friction_work": 0.5, "thresholded_contact_time": 3.9e-3, "contact_time": 4e-3, "peak_force": 7e4}

@@ -1,7 +1,6 @@
 """What figures must say: where time begins, when the contact ends, the paper's number, a scale; and the cut of a body in three dimensions."""
 
 import itertools
-import re
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -10,7 +9,6 @@ import pandas as pd
 import pytest
 from matplotlib.transforms import Bbox
 
-from ffimpact.input.parameters import ROOT
 from ffimpact.output import results, vtu
 from ffimpact.report import bodies, compare, figures, impacts
 from ffimpact.report.figures import plt

@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 
 from ffimpact import scene
-
-from ffimpact.running import run
 from ffimpact.failure import BadInput, Failure
 from ffimpact.output.results import Contents
 from ffimpact.report import drawing, impacts
+from ffimpact.running import run
 from verification.measure import bodies, disc
 
 RADIUS, YOUNG, NU, DENSITY, GRAVITY, ACCURACY = 0.05, 7e6, 0.4, 1722, 9.81, 0.1

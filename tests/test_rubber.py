@@ -1,7 +1,7 @@
 """make rubber: the verdict can fail, and two runs make a row each and a figure."""
 
-import pytest
 import pandas as pd
+import pytest
 
 from benchmarks import rubber
 

@@ -8,14 +8,13 @@ import numpy as np
 import pytest
 
 from ffimpact import scene
-
-from ffimpact.running import run
+from ffimpact.failure import Failure, NotInstalled, Unreadable
 from ffimpact.freefem import freefem
+from ffimpact.freefem.describe import describe
 from ffimpact.mesh import mesh
 from ffimpact.output import folder, results
-from ffimpact.freefem.describe import describe
 from ffimpact.report import figures
-from ffimpact.failure import Failure, NotInstalled, Unreadable
+from ffimpact.running import run
 
 
 def go(out: Path, overrides: dict | None = None, **options) -> results.RunResult:

@@ -9,20 +9,19 @@ import numpy as np
 import pytest
 
 from ffimpact import scene
-
-from ffimpact.running import run
 from ffimpact.__main__ import main
+from ffimpact.failure import BadInput, Failure
 from ffimpact.freefem import freefem
+from ffimpact.freefem.describe import describe
 from ffimpact.input import parameters
 from ffimpact.input.tables import to_toml
 from ffimpact.mesh import mesh
 from ffimpact.output import estimate, vtu
-from ffimpact.scenes import assembly, finer
-from ffimpact.freefem.describe import describe
-from ffimpact.failure import BadInput, Failure
 from ffimpact.report import bodies, drawing, figures, impacts, report
-from ffimpact.sweeps import sweep
+from ffimpact.running import run
 from ffimpact.scene import read as read_scene
+from ffimpact.scenes import assembly, finer
+from ffimpact.sweeps import sweep
 
 MINE = {"title": "A disc meets a soft one and a moving post", "law": "neohookean", "young": 7e6, "nu": 0.4, "density": 1722, "accuracy": 0.4, "fields": 3,
         "body": [{"name": "striker", "shape": "disc", "radius": 0.05, "position": [-0.052, 0], "velocity": [4, 0]},

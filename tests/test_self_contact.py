@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ffimpact.running import run
-from ffimpact.output import vtu
 from ffimpact.failure import BadInput, Failure
 from ffimpact.mesh import mesh
+from ffimpact.output import vtu
+from ffimpact.running import run
 from ffimpact.scene import read as read_scene
 from ffimpact.scenes import assembly
 

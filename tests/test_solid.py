@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 
 from ffimpact import scene
-
-from ffimpact.running import run
-from ffimpact.output import vtu
 from ffimpact.__main__ import main
 from ffimpact.input.parameters import ROOT
+from ffimpact.output import vtu
 from ffimpact.report import contact, drawing, figures, movie, solid
+from ffimpact.running import run
 from triangles import areas
 
 COARSE = {"mesh_size": 0.025, "contact_mesh_size": 0.012, "accuracy": 0.1, "fields": 5}

@@ -6,12 +6,10 @@ from contextlib import contextmanager
 import pytest
 
 from ffimpact import scene
-
-from ffimpact.running import run
+from ffimpact.failure import Failure
 from ffimpact.freefem import freefem
 from ffimpact.output import estimate, results
-from ffimpact.running import solver
-from ffimpact.failure import Failure
+from ffimpact.running import run, solver
 from test_checkpoint import EFFORT
 from test_kills import at_work
 

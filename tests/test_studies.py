@@ -8,12 +8,12 @@ import sys
 import pandas as pd
 import pytest
 
-from ffimpact.running import run
-from ffimpact.output import results
-from verification import commands
 from benchmarks import pairing_comparison, stress
+from ffimpact.output import results
+from ffimpact.running import run
 from ffimpact.sweeps import study
 from test_cli import is_alive, start, wait_for
+from verification import commands
 
 POINTS = [{"speed": speed, "dt": dt} for speed in (4.0, 8.0) for dt in (0.0, 1e-4)]
 BASE = {"mesh_size": 0.02, "contact_mesh_size": 0.01, "fields": 0}
@@ -85,8 +85,8 @@ def test_interruption_is_clean(fake, tmp_path, number, code):
 def test_missing_freefem_is_said_once(tmp_path, monkeypatch, capsys):
     """Without FreeFem++ a study does not fail point by point."""
     monkeypatch.setenv("FREEFEM", str(tmp_path / "nothing"))
-    from ffimpact.__main__ import guarded
     from benchmarks import __main__ as measurements
+    from ffimpact.__main__ import guarded
     assert guarded(measurements.main, ["stress", "--quick", "3", "--out", str(tmp_path)]) == 13
     assert capsys.readouterr().err.count("make setup") == 1
 

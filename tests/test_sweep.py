@@ -14,15 +14,14 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from ffimpact.running import run
+from ffimpact.__main__ import main
+from ffimpact.failure import BadInput
+from ffimpact.freefem.describe import describe_results
 from ffimpact.input import parameters
 from ffimpact.output import results
-from ffimpact.__main__ import main
-from ffimpact.freefem.describe import describe_results
-from ffimpact.failure import BadInput
 from ffimpact.report.figures import plt
-from ffimpact.sweeps import study
-from ffimpact.sweeps import sweep, sweep_figures
+from ffimpact.running import run
+from ffimpact.sweeps import study, sweep, sweep_figures
 from test_cli import call, is_alive, start, wait_for
 
 COARSE = "[set]\nmesh_size = 0.02\ncontact_mesh_size = 0.01\n"

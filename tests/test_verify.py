@@ -9,10 +9,10 @@ import time
 import pandas as pd
 import pytest
 
-from verification import verify
+from examples.paper import page as paper
 from ffimpact.__main__ import guarded
 from ffimpact.failure import Failure
-from examples.paper import page as paper
+from verification import verify
 from verification.case import Case, Row
 
 

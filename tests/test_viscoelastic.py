@@ -3,9 +3,9 @@
 import pandas as pd
 import pytest
 
-from ffimpact.__main__ import guarded
 from benchmarks import __main__ as measurements
 from benchmarks import viscoelastic as study
+from ffimpact.__main__ import guarded
 
 
 def test_theory(monkeypatch):

@@ -4,12 +4,11 @@ import numpy as np
 import pytest
 
 from ffimpact import scene
-
-from ffimpact.running import run
 from ffimpact.failure import BadInput
 from ffimpact.freefem.describe import describe
 from ffimpact.output import vtu
 from ffimpact.report import drawing
+from ffimpact.running import run
 from verification.measure import bodies, disc, measure
 
 IMPACT = {"law": "neohookean", "nu": 0.4999, "speed": 4, "accuracy": 0.1, "tolerance": 1e-15}

@@ -5,17 +5,15 @@ import re
 
 import numpy as np
 import pandas as pd
-import pages
 import pytest
 
+import pages
 from ffimpact import scene
-
-from ffimpact.running import run
 from ffimpact.freefem import freefem
 from ffimpact.output import notes, results
 from ffimpact.report import drawing, report
-from ffimpact.sweeps import study
-from ffimpact.sweeps import sweep
+from ffimpact.running import run
+from ffimpact.sweeps import study, sweep
 from verification import measure
 
 COARSE = dict(accuracy=0.1, mesh_size=0.02, contact_mesh_size=0.006, dt=5e-5)

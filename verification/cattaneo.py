@@ -10,8 +10,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
-from ffimpact.mesh import mesh
 from ffimpact.failure import Failure
+from ffimpact.mesh import mesh
 from ffimpact.report.figures import BLACK, BLUE, GREY, ORANGE
 
 from .case import Row

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pandas as pd
 
-from ffimpact.running import run
 from ffimpact.output.folder import result_folder
 from ffimpact.places import RESULTS, shown
+from ffimpact.running import run
 from ffimpact.sweeps import study
 
 

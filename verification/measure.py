@@ -11,13 +11,13 @@ from pathlib import Path
 
 import numpy as np
 
+from ffimpact.failure import Failure
 from ffimpact.freefem import freefem
 from ffimpact.input import dimension, parameters
-from ffimpact.output import results
-from ffimpact.scenes import assembly
-from ffimpact.failure import Failure
 from ffimpact.input.parameters import ROOT, Value
+from ffimpact.output import results
 from ffimpact.scene import read as read_scene
+from ffimpact.scenes import assembly
 
 from . import solids
 

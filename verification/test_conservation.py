@@ -2,6 +2,7 @@
 
 import pytest
 
+
 @pytest.mark.few(1)
 @pytest.mark.parametrize("law", ["svk", "neohookean"])
 def test_spinning_disc_keeps_energy_and_momenta(measure, law):

@@ -7,10 +7,10 @@ import pandas as pd
 import pytest
 
 from ffimpact import scene
-
-from ffimpact.running import run
 from ffimpact.report import impacts
-from verification import measure as runs, modes, solids
+from ffimpact.running import run
+from verification import measure as runs
+from verification import modes, solids
 
 NU = 0.3
 SLOW = {"law": "neohookean", "nu": NU, "speed": 0.2, "fields": 0}

@@ -15,13 +15,13 @@ import numpy as np
 import pandas as pd
 from matplotlib.ticker import NullLocator
 
-from ffimpact.running import run
 from ffimpact.failure import BadInput, Failure
 from ffimpact.freefem import freefem
 from ffimpact.output.results import read_frame
 from ffimpact.places import ROOT, shown
 from ffimpact.report.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE, save
 from ffimpact.report.literature import REFERENCE
+from ffimpact.running import run
 from ffimpact.sweeps import study
 
 from . import commands

@@ -12,8 +12,8 @@ from resource import RUSAGE_CHILDREN, getrusage
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from ffimpact import scene  # noqa: E402
-from ffimpact.running import run  # noqa: E402
 from ffimpact.output.results import read_history  # noqa: E402
+from ffimpact.running import run  # noqa: E402
 
 parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
 parser.add_argument("--scene", required=True)

@@ -10,10 +10,9 @@ import math
 
 import getfem
 import numpy as np
+import peer
 import scipy.sparse
 import scipy.sparse.linalg
-
-import peer
 
 DISC, CIRCLE, SYMMETRY, ARC = -1, 1, 2, 3      # regions
 SLOW = 0.4                  # contraction of the residual's work from which the tuned form makes a new factorisation

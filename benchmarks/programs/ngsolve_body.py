@@ -15,10 +15,9 @@ from dataclasses import dataclass
 from importlib import metadata
 
 import ngsolve as ng
+import peer
 from netgen.occ import WorkPlane
 from ngsolve import BND, Det, Grad, Id, IfPos, InnerProduct, Inv, Trace, Variation, ds, dx, log, y
-
-import peer
 
 TINY = 1e-30
 SLOW = 0.4                  # contraction of the residual's work from which the tuned form makes a new factorisation

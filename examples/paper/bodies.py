@@ -3,7 +3,19 @@
 import numpy as np
 
 from ffimpact.output.results import mechanical_energy
-from .judging import CONSTANT, DIFFERS, Lost, Results, both_times, finished, graded, lost, states, when
+
+from .judging import (
+    CONSTANT,
+    DIFFERS,
+    Lost,
+    Results,
+    both_times,
+    finished,
+    graded,
+    lost,
+    states,
+    when,
+)
 
 BLOCK = {"svk": "disc-block", "neohookean": "disc-block-neohookean"}
 MOMENTUM = 1e-8             # of the disc's momentum: below, that of both bodies is kept

@@ -13,10 +13,26 @@ import pandas as pd
 from ffimpact.output.results import mechanical_energy
 from ffimpact.report.friction_laws import VALUES
 from ffimpact.report.impacts import spectrum
-from . import stick_slip
 from ffimpact.sweeps import study
 from ffimpact.sweeps.sweep_figures import bars
-from .judging import CONSTANT, LAWS, OPEN, History, Lost, Results, both, finished, graded, lost, maxima, of_laws, states, touching
+
+from . import stick_slip
+from .judging import (
+    CONSTANT,
+    LAWS,
+    OPEN,
+    History,
+    Lost,
+    Results,
+    both,
+    finished,
+    graded,
+    lost,
+    maxima,
+    of_laws,
+    states,
+    touching,
+)
 
 JUMP, SPEED, ANGLE = "friction-jump", 12.0, 60.0   # m/s, degrees from the plane: the paper's normal incidence is pi/2
 FLAT = 30.0                 # degrees from the plane, as if the paper's pi/3 were from the normal

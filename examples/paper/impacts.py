@@ -7,6 +7,7 @@ import pandas as pd
 
 from ffimpact.sweeps import sweep_figures
 from ffimpact.sweeps.sweep_figures import distance, force
+
 from .judging import AGREES, DIFFERS, OPEN, Lost, Results, bar, finished, graded, lost, states, when
 
 SVK, NEO, FORCES = "contact-time-svk", "contact-time-neohookean", "law-comparison"

@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 
 from ffimpact.sweeps import sweep_figures
+
 from .judging import Lost, Results, both, finished, graded, of_laws, states
 
 STIFFNESS, SLIP = "calibrate", "slip-limit"

@@ -7,14 +7,14 @@ from pathlib import Path
 
 import pandas as pd
 
-from verification import verify
-
 from ffimpact import __version__, scene
 from ffimpact.input import parameters
 from ffimpact.output.results import read_frame, read_json, read_scene
 from ffimpact.report.figures import GREEN, ORANGE, STYLE
 from ffimpact.running.run import code_hash
 from ffimpact.sweeps import study, sweep
+from verification import verify
+
 from .judging import AGREES, DIFFERS, OPEN, PARTLY, Finding
 
 COLOURS = {AGREES: GREEN, DIFFERS: ORANGE, PARTLY: "#b8860b", OPEN: "#777777"}

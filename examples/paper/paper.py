@@ -15,8 +15,6 @@ from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from pathlib import Path
 
-from verification import verify
-
 from ffimpact import scene
 from ffimpact.__main__ import guarded
 from ffimpact.failure import BadInput, Failure, Unreadable
@@ -24,8 +22,13 @@ from ffimpact.output.folder import result_folder
 from ffimpact.places import RESULTS, ROOT, shown
 from ffimpact.progress import Line
 from ffimpact.sweeps import study, sweep
+from verification import verify
+
+# isort: off
 from . import judging, stick_slip
-from . import limits, friction, impacts, pairs, bodies, times   # noqa: F401: these register the statements, in this order
+# these register the statements, in this order
+from . import limits, friction, impacts, pairs, bodies, times  # noqa: F401
+# isort: on
 from .page import COLOURS, page, verification
 
 # the runs, and the pictures of them on the page

@@ -15,10 +15,10 @@ from matplotlib.patches import Rectangle
 
 from ffimpact.__main__ import start
 from ffimpact.failure import Unreadable
-from ffimpact.report.figures import LAWS, ORANGE, SMALL, STYLE, save
 from ffimpact.output.folder import result_folder
 from ffimpact.output.results import read_history
 from ffimpact.places import RESULTS, shown
+from ffimpact.report.figures import LAWS, ORANGE, SMALL, STYLE, save
 from ffimpact.sweeps import study
 
 AXES = {"angle": (60.0, 30.0), "slip_velocity": (0.03, 0.3, 1.0, 3.0), "penalty": (1e8, 1e9, 1e10), "nu": (0.3, 0.4, 0.45)}

@@ -13,6 +13,7 @@ import numpy as np
 import pandas as pd
 
 from ffimpact.sweeps import sweep_figures
+
 from .bodies import BALL, BALL_NEO, DISC, DISC_NEO
 from .judging import Results, bar, both_times, finished, graded, loaded, lost, states, when
 

@@ -193,10 +193,10 @@ def sweep(
     )
 
 
-def _listed(name: str, value: Any) -> Sequence[Any]:
+def _listed(name: str, value: Any) -> list[Any]:
     if isinstance(value, str) or not hasattr(value, "__len__"):
         raise BadInput(f"sweep: {name}: '{value}' is no list of values (accepted: [1, 2, 3])")
-    return value
+    return list(value)
 
 
 def _point(wanted: Any, folder: Path) -> Result | Failure:

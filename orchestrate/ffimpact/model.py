@@ -80,7 +80,7 @@ Vector = Annotated[
 ]  # a component for each axis: 2 in the plane, 3 in space
 Point = Annotated[float | list[float], BeforeValidator(_plain)]  # of revolution also y alone
 Points = Annotated[list[list[float]], BeforeValidator(_plain)]
-Function = float | str | dict  # of t [s]: a number, an expression, {csv = FILE}
+Function = float | str | dict[str, str]  # of t [s]: a number, an expression, {csv = FILE}
 Functions = Annotated[Any, BeforeValidator(_plain)]  # of each axis
 
 
@@ -98,7 +98,7 @@ class Entries(BaseModel):
     def __repr_args__(self) -> list[tuple[str | None, Any]]:
         return [(name, value) for name, value in self if value is not None]
 
-    def table(self) -> dict:
+    def table(self) -> dict[str, Any]:
         """The table of a TOML file: without what is left open."""
         return {name: _table(value) for name, value in self if value is not None}
 
@@ -196,7 +196,9 @@ LAWS = {
 class Support(Entries):
     """A part of a body's boundary that is held or moved (docs/supports-and-loads.md)."""
 
-    where: str | dict = Field(description="a side, the name of a group of a mesh, or a region")
+    where: str | dict[str, Any] = Field(
+        description="a side, the name of a group of a mesh, or a region"
+    )
     fix: str | None = Field(None, description="all, x, y, z or normal")
     motion: Functions | None = Field(
         None, description="displacement [m], a function of t for each axis"
@@ -215,7 +217,9 @@ class Gas(Entries):
 class Load(Entries):
     """A stress on a part of a body's boundary: one of traction, pressure, gas."""
 
-    where: str | dict = Field(description="a side, the name of a group of a mesh, or a region")
+    where: str | dict[str, Any] = Field(
+        description="a side, the name of a group of a mesh, or a region"
+    )
     traction: Functions | None = Field(
         None, description="per reference area [Pa], a function of t for each axis"
     )
@@ -254,10 +258,11 @@ class Body(Entries):
     mass: Number | None = Field(None, description="of a rigid body [kg, in the plane kg/m]")
     inertia: Point | None = Field(None, description="of a rigid body [kg m2]")
 
-    def table(self) -> dict:
+    def table(self) -> dict[str, Any]:
         """A table [[body]], its material in it."""
         found = super().table()
-        return {"shape": self.shape} | found.pop("material", {}) | found
+        material: dict[str, Any] = found.pop("material", {})
+        return {"shape": self.shape} | material | found
 
 
 class Disc(Body):
@@ -401,7 +406,7 @@ class Obstacle(Entries):
     friction_static: Number | None = None
     friction_dynamic: Number | None = None
 
-    def table(self) -> dict:
+    def table(self) -> dict[str, Any]:
         """A table [[obstacle]]."""
         return {"kind": self.kind} | super().table()
 
@@ -555,7 +560,7 @@ class Scene(Entries):
             else PLANE_STRAIN
         )
 
-    def table(self) -> dict:
+    def table(self) -> dict[str, Any]:
         """The tables of its TOML file."""
         axes = self.kind.axes
         found = {
@@ -603,7 +608,7 @@ class Scene(Entries):
             raise BadInput(f"{path}: {error}") from None
 
     @classmethod
-    def of(cls, given: dict, folder: Path = Path(".")) -> Scene:
+    def of(cls, given: dict[str, Any], folder: Path = Path(".")) -> Scene:
         """The scene of tables as a TOML file has them: what stands at the top for all bodies is each one's own afterwards."""
         reading.read(given, folder, "scene")  # all that is wrong, by the names of the file
         given = copy.deepcopy(given)
@@ -627,7 +632,7 @@ class Scene(Entries):
         return isinstance(other, Scene) and self.table() == other.table()
 
 
-def _body(given: dict, own: dict) -> Body:
+def _body(given: dict[str, Any], own: dict[str, Any]) -> Body:
     """The body of a table [[body]] with what stands at the top of the file in it."""
     rigid = given.get("rigid")
     material = {

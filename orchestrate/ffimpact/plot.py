@@ -102,7 +102,10 @@ class Plots:
             triangles = np.vstack([triangles, triangles + len(points)])
             points, values = np.vstack([points, points * [-1, 1]]), np.concatenate([values, values])
         drawn = ax.tripcolor(
-            Triangulation(*points.T, triangles), values, shading="gouraud", rasterized=True
+            Triangulation(points[:, 0], points[:, 1], triangles),
+            values,
+            shading="gouraud",
+            rasterized=True,
         )
         unit = UNITS.get(field, "Pa")
         ax.figure.colorbar(

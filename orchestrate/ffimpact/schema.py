@@ -15,7 +15,7 @@ from .scenes.bodies import MATERIAL, SIZES
 
 __all__ = ["FILE", "schema", "text"]
 
-FILE = Path(__file__).parent / "scenes/scene.schema.json"       # what the built-in scenes name
+FILE = Path(__file__).parent / "scenes/scene.schema.json"  # what the built-in scenes name
 DRAFT = "https://json-schema.org/draft/2020-12/schema"
 
 
@@ -28,7 +28,11 @@ def schema() -> dict[str, Any]:
         | shared
         | {
             "script": {"type": "string"},
-            "body": {"type": "array", "minItems": 1, "items": {"oneOf": [body(one) for one in BODIES]}},
+            "body": {
+                "type": "array",
+                "minItems": 1,
+                "items": {"oneOf": [body(one) for one in BODIES]},
+            },
             "obstacle": {"type": "array", "items": {"oneOf": [obstacle(one) for one in OBSTACLES]}},
             "contact": {
                 "type": "object",
@@ -39,7 +43,9 @@ def schema() -> dict[str, Any]:
         "required": ["body"],
         "additionalProperties": False,
     }
-    scripts = sorted({script for one in parameters.table().values() for script in one.scripts} - set(SCRIPTS))
+    scripts = sorted(
+        {script for one in parameters.table().values() for script in one.scripts} - set(SCRIPTS)
+    )
     case = {
         "type": "object",
         "properties": {"title": {"type": "string"}, "script": {"enum": scripts}}
@@ -56,12 +62,19 @@ def text() -> str:
 
 def rule(one: Parameter) -> dict[str, Any]:
     """What is accepted of a parameter, with its unit and meaning."""
-    told = {"description": f"{one.help} [{one.unit}]" if one.unit not in ("", "-") else one.help, "default": one.default}
+    told = {
+        "description": f"{one.help} [{one.unit}]" if one.unit not in ("", "-") else one.help,
+        "default": one.default,
+    }
     if one.kind == "word":
         return told | {"enum": list(one.words)}
     if one.kind == "numbers":
         return told | {"type": ["string", "number", "array"]}
-    number = {"type": "integer" if one.kind == "int" else "number", "minimum": one.low, "maximum": one.high}
+    number = {
+        "type": "integer" if one.kind == "int" else "number",
+        "minimum": one.low,
+        "maximum": one.high,
+    }
     return told | ({"anyOf": [number, {"enum": list(one.words)}]} if one.words else number)
 
 
@@ -76,7 +89,11 @@ def entries(model: type[Entries], leave: tuple[str, ...] = ()) -> dict[str, Any]
         if name in known and not (model in BODIES.values() and name == "radius"):
             found[name] = rule(known[name])
         else:
-            told = {key: value for key, value in own.get(name, {}).items() if key not in ("title", "default")}
+            told = {
+                key: value
+                for key, value in own.get(name, {}).items()
+                if key not in ("title", "default")
+            }
             found[name] = _without_null(told) or {"description": field.description or ""}
     return found
 
@@ -92,7 +109,12 @@ def _without_null(told: dict[str, Any]) -> dict[str, Any]:
 def tables(model: type[Entries]) -> dict[str, Any]:
     """A list of tables of a model."""
     needed = [name for name, field in model.model_fields.items() if field.is_required()]
-    one = {"type": "object", "properties": entries(model), "required": needed, "additionalProperties": False}
+    one = {
+        "type": "object",
+        "properties": entries(model),
+        "required": needed,
+        "additionalProperties": False,
+    }
     return {"type": "array", "items": one}
 
 

@@ -4,8 +4,8 @@ import copy
 import json
 from functools import cache
 
-from . import freefem
 from ..failure import BadInput, NotInstalled
+from . import freefem
 
 
 def describe(values: dict | None = None, script: str = "disc-plane") -> dict:

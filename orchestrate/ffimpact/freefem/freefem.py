@@ -15,9 +15,9 @@ from functools import cache, partial
 from pathlib import Path
 from typing import NamedTuple, TextIO
 
-from . import kernels
 from ..failure import BadInput, NotInstalled
 from ..places import INSTALLED, ROOT
+from . import kernels
 
 CORES = len(os.sched_getaffinity(0))
 OLDEST = (4, 9)                          # the version in the banner; Debian's 4.11 calls itself 4.9

@@ -124,7 +124,7 @@ class Loop:
         """Signed distances (n,) of points from the loop, negative inside."""
         if self.radius:
             return np.linalg.norm(points - self.centre, axis=1) - self.radius
-        import shapely      # here: a disc needs none
+        import shapely  # here: a disc needs none
         distance = shapely.distance(shapely.LinearRing(self.sides), shapely.points(points))
         return np.where(shapely.contains_xy(shapely.Polygon(self.sides), *points.T), -distance, distance)
 

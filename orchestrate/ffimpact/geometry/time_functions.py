@@ -15,8 +15,8 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
 from ..failure import BadInput, brief
-from . import implicit
 from ..input.tables import LONGEST, Table
+from . import implicit
 
 __all__ = ["TimeFunction", "constant", "farthest", "functions", "of_csv", "of_entry", "of_table"]
 

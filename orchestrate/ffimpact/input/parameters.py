@@ -93,7 +93,7 @@ def with_unit(text: str, unit: str) -> str:
 @cache
 def table() -> dict[str, Parameter]:
     """All parameters by name, in the order of the table."""
-    from ..freefem.describe import describe                        # it looks for FreeFem++: only when the table is wanted
+    from ..freefem.describe import describe  # it looks for FreeFem++: only when the table is wanted
     rows = {}
     for row in describe()["parameters"]:
         words = row.pop("words", [])

@@ -7,12 +7,19 @@ from pathlib import Path
 
 import numpy as np
 
-from ..input import parameters
-from . import gmsh_file, mesh
-from ..freefem.describe import describe
 from ..failure import BadInput, brief
-from ..geometry.outlines import Loop, Outline, circle_loop, ellipse_loop, polygon_loop, self_crossing
+from ..freefem.describe import describe
+from ..geometry.outlines import (
+    Loop,
+    Outline,
+    circle_loop,
+    ellipse_loop,
+    polygon_loop,
+    self_crossing,
+)
+from ..input import parameters
 from ..input.tables import LONGEST, SHORTEST, Table
+from . import gmsh_file, mesh
 
 SHAPES = {"disc": ("radius",), "ellipse": ("semi_axes",), "rectangle": ("width", "height"), "ring": ("radius", "inner_radius"),
           "polygon": ("vertices", "holes"), "mesh": ("file", "scale")}
@@ -68,7 +75,7 @@ def _outline(table: Table) -> Outline:
 
 def _polygon(table: Table) -> Outline:
     """The polygon with its holes; BadInput where it crosses itself, or a hole is not inside it and apart from the others."""
-    import shapely      # here: other bodies need none
+    import shapely  # here: other bodies need none
     outer, holes = table.points("vertices"), table.polygons("holes")
     named = [(f"{table.path}.vertices", outer), *((f"{table.path}.holes.{k}", hole) for k, hole in enumerate(holes, 1))]
     for path, corners in named:

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from . import mesh
 from ..failure import BadInput
+from . import mesh
 
 TRIANGLES = {2: 3, 9: 6}        # gmsh's types of element that are read: their nodes, of which the first three are the corners
 LINES = {1: 2, 8: 3}            # likewise, the first two are the ends

@@ -10,10 +10,18 @@ from pathlib import Path
 
 import numpy as np
 
-from . import flat, mesh
 from ..failure import BadInput
-from ..geometry.outlines import Loop, Outline, TubeOutline, circle_loop, cross, ellipse_loop, signed_area
+from ..geometry.outlines import (
+    Loop,
+    Outline,
+    TubeOutline,
+    circle_loop,
+    cross,
+    ellipse_loop,
+    signed_area,
+)
 from ..input.tables import LONGEST, Table
+from . import flat, mesh
 
 SHAPES = {"ball": ("radius",), "shell": ("radius", "inner_radius"), "ellipsoid": ("semi_axes",),
           "cylinder": ("radius", "height"), "polygon": ("vertices",), "tube": ("radius", "inner_radius", "height"),
@@ -144,7 +152,7 @@ def boundary(outline: Outline) -> list[tuple[Callable[[np.ndarray], np.ndarray],
             ends = [lower, upper]
         else:
             curves += [(_straight(ends[1], upper), None)]
-            curves += [((lambda s, piece=piece: loop.at(piece, 1 - s)), loop) for piece in pieces[::-1]]
+            curves += [((lambda s, loop=loop, piece=piece: loop.at(piece, 1 - s)), loop) for piece in pieces[::-1]]
             ends[1] = lower
     return [*curves, (_straight(ends[1], ends[0]), None)]
 

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from . import mesh
 from ..failure import BadInput
+from . import mesh
 from .mesh import FREE, Sizes, boundary, in_own_process, pieces
 from .solid_mesh import SolidMesh, cell_volumes, cells_of, generate
 

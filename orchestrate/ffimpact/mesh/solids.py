@@ -10,11 +10,11 @@ from pathlib import Path
 
 import numpy as np
 
-from ..geometry import outlines, tumbling
-from . import curved, mesh, solid_file
 from ..failure import BadInput, brief
-from .solid_mesh import MOST_CELLS, Sizes, SolidMesh, expected_cells, mesh_shape
+from ..geometry import outlines, tumbling
 from ..input.tables import Table
+from . import curved, mesh, solid_file
+from .solid_mesh import MOST_CELLS, Sizes, SolidMesh, expected_cells, mesh_shape
 
 SHAPES = {"ball": ("radius",), "box": ("width", "height", "depth"), "cylinder": ("radius", "height"), "mesh": ("file", "scale")}
 MOTION = ("angle", "turn", "spin")

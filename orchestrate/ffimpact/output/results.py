@@ -20,7 +20,7 @@ from ..failure import Unreadable, brief
 from ..input.parameters import Value
 
 if TYPE_CHECKING:
-    from pandas import DataFrame   # takes longer to load than a run: only where a table is wanted
+    from pandas import DataFrame  # takes longer to load than a run: only where a table is wanted
 
 # what is read again
 WRITTEN = ("scene.toml", "history.csv", "contacts.csv", "modes.csv", "fields.pvd", "fields/*.vtu", "fields/contact.csv")

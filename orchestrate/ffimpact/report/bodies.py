@@ -8,14 +8,43 @@ import numpy as np
 from matplotlib.transforms import AffineDeltaTransform
 
 from ..input import dimension
+from ..input.parameters import Value
 from ..output import vtu
+from ..output.results import body_names, mechanical_energy, suffixes
 from ..scenes import obstacles
 from ..scenes.obstacles import Obstacle
-from ..input.parameters import Value
-from ..output.results import body_names, mechanical_energy, suffixes
-from .figures import (BAND, BLACK, BLUE, COLOURED, GREEN, GREY, ORANGE, ORIGIN, PURPLE, SHAPES, VISCOUS, Body, amid, as_written,
-                      balance_error, deformed, end_of_contact, evenly, flight, friction_force, goes_along, is_half, least, legend, material,
-                      over_time, per_metre, plt, rolling, side_by_side)
+from .figures import (
+    BAND,
+    BLACK,
+    BLUE,
+    COLOURED,
+    GREEN,
+    GREY,
+    ORANGE,
+    ORIGIN,
+    PURPLE,
+    SHAPES,
+    VISCOUS,
+    Body,
+    amid,
+    as_written,
+    balance_error,
+    deformed,
+    end_of_contact,
+    evenly,
+    flight,
+    friction_force,
+    goes_along,
+    is_half,
+    least,
+    legend,
+    material,
+    over_time,
+    per_metre,
+    plt,
+    rolling,
+    side_by_side,
+)
 
 ALONE = ("disc-plane", "ball-axisymmetric", "ball-plane")     # scripts of one body on the plane
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, "#56b4e9", "#e69f00")    # of bodies

@@ -8,13 +8,26 @@ import numpy as np
 
 from .. import progress, scene
 from ..failure import BadInput, Failure
-from ..output.folder import result_folder
 from ..input.parameters import overrides
-from ..places import RESULTS, shown
+from ..output.folder import result_folder
 from ..output.results import RunResult, body_names, mechanical_energy, suffixes
+from ..places import RESULTS, shown
 from ..running.run import run
 from . import report
-from .figures import ABOVE, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE, numbers_of_the_paper, per_metre, touched, save
+from .figures import (
+    ABOVE,
+    BLUE,
+    GREEN,
+    GREY,
+    LAWS,
+    ORANGE,
+    PURPLE,
+    STYLE,
+    numbers_of_the_paper,
+    per_metre,
+    save,
+    touched,
+)
 
 
 def main(argv: list[str]) -> int:

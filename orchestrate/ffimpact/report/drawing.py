@@ -11,7 +11,8 @@ from ..input import dimension
 from ..input.parameters import Value
 from ..output import vtu
 from ..output.results import Contents, body_names, check_files, read_history, read_json, read_scene
-from . import bodies, contact as contacts, impacts, solid
+from . import bodies, impacts, solid
+from . import contact as contacts
 from .figures import BODY, STYLE, as_written, is_half, material, per_metre, plt, save, touched
 
 LETTERS, MOST_LINES = 14, 4       # of a title: letters an inch, lines of each of its parts

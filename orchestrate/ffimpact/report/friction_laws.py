@@ -6,9 +6,9 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import pandas as pd
 
+from ..failure import Failure, Unreadable
 from ..freefem import freefem
 from ..input import parameters
-from ..failure import Failure, Unreadable
 from ..output.folder import result_folder
 from ..places import RESULTS, shown
 from .figures import BELOW, BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE, legend, save

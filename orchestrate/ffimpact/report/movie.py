@@ -16,15 +16,29 @@ from matplotlib.patheffects import withStroke
 from PIL import Image
 
 from .. import progress, scene
-from ..output import vtu
 from ..failure import BadInput, NotInstalled, Unreadable
 from ..input.parameters import overrides, whole
-from ..places import RESULTS, shown
+from ..output import vtu
 from ..output.results import RunResult, suffixes
+from ..places import RESULTS, shown
 from ..running.run import run
 from . import bodies, contact, solid
 from .drawing import title
-from .figures import BLACK, BLUE, GREY, ORANGE, STRESS, STYLE, Body, deformed, diameter, draw_body, is_half, legend, per_metre
+from .figures import (
+    BLACK,
+    BLUE,
+    GREY,
+    ORANGE,
+    STRESS,
+    STYLE,
+    Body,
+    deformed,
+    diameter,
+    draw_body,
+    is_half,
+    legend,
+    per_metre,
+)
 
 SECONDS = 8.0     # of the film
 MOST = 400        # frames, 50 a second: players show a faster GIF slower

@@ -11,7 +11,6 @@ from ..output.results import RunResult, body_names, suffixes
 from ..places import shown
 from . import literature
 
-
 LEFT_OUT_AT_ZERO = ("external_work", "friction_work", "creep_work", "rotation_energy", "impulse_ratio", "rebound_vx", "rebound_vz",
                     "rebound_spin_x", "rebound_spin_y", "rebound_spin", "sliding_time", "sticking_time", "reverse_slip_time",
                     "unsolved_jumps")
@@ -92,7 +91,7 @@ def draw(result: RunResult) -> None:
     if result.reused and (result.folder / "figures/energies.png").exists():
         return
     try:
-        from . import drawing   # matplotlib: only where something is drawn
+        from . import drawing  # matplotlib: only where something is drawn
         drawing.draw(result.folder)
     except Exception as error:
         why = f"{error.filename or result.folder}: {error.strerror}" if isinstance(error, OSError) and error.strerror else repr(error)

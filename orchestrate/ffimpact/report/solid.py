@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 from matplotlib.cm import ScalarMappable
 
-from ..output import vtu
 from ..input.parameters import Value
+from ..output import vtu
 from ..places import shown
 from .bodies import obstacles_of
 from .contact import PRESSURE

@@ -16,19 +16,38 @@ from functools import cache
 from pathlib import Path
 
 from .. import __version__
-from ..freefem import freefem
-from ..mesh import gmsh_file, mesh
-from ..output import estimate as estimates, notes
 from ..failure import BadInput, Failure, TooLong, Unreadable
-from ..output.folder import checkpoints, clear, failed_beside, finished_in, replace, result_folder, staging, unfinished
+from ..freefem import freefem
 from ..input.parameters import Value
+from ..input.tables import to_toml
+from ..mesh import gmsh_file, mesh
+from ..output import estimate as estimates
+from ..output import notes
+from ..output.folder import (
+    checkpoints,
+    clear,
+    failed_beside,
+    finished_in,
+    replace,
+    result_folder,
+    staging,
+    unfinished,
+)
+from ..output.results import (
+    RunResult,
+    check_files,
+    files_of,
+    read_answers,
+    read_json,
+    read_scene,
+    read_summary,
+    write_json,
+)
 from ..places import INSTALLED, PACKAGE, RESULTS, ROOT, shown
 from ..progress import Line
-from ..output.results import RunResult, check_files, files_of, read_answers, read_json, read_scene, read_summary, write_json
 from ..scene import Scene
 from ..scenes.bodies import SIZES
 from .solver import FAILURES, USED, Solver, runs
-from ..input.tables import to_toml
 
 ENTRANCE = "scenes/assembly"           # the module that makes flags, mesh and scene.dat, with all that it imports
 # of these: what asks, starts, says and reads, and does not decide a result

@@ -15,12 +15,12 @@ from pathlib import Path
 
 import numpy as np
 
-from ..freefem import freefem
-from ..output import estimate
 from ..failure import Failure, NotInstalled, Unreadable, of_code
+from ..freefem import freefem
 from ..input.parameters import Value
-from ..progress import Line
+from ..output import estimate
 from ..output.results import read_history, read_json, read_summary, write_json
+from ..progress import Line
 from ..scene import Scene
 from ..scenes.assembly import prepare
 from ..scenes.finer import scaled

@@ -10,15 +10,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from ..geometry import polyline
-from .bodies import Body
-from ..input.dimension import PLANE_STRAIN
 from ..failure import BadInput
-from .scene import Scene, gap_between
+from ..geometry import polyline
+from ..geometry.outlines import Outline, Shape
+from ..input.dimension import PLANE_STRAIN
 from ..mesh import mesh
+from .bodies import Body
 from .conditions import WHOLE
 from .obstacles import Obstacle
-from ..geometry.outlines import Outline, Shape
+from .scene import Scene, gap_between
 
 STEPS = 2000                 # of bodies within reach of each other: what has not met by then is not known to
 # of the smaller thickness: a gap from an obstacle without parts to be within reach of, that is followed no further

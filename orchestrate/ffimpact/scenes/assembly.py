@@ -15,20 +15,20 @@ from pathlib import Path
 
 import numpy as np
 
+from ..failure import BadInput
+from ..freefem.describe import describe
+from ..geometry.outlines import Loop, TubeOutline, rotation
+from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID
+from ..input.parameters import Value
+from ..input.tables import to_toml
 from ..mesh import mesh, revolution, solid_mesh, solids
+from ..mesh.mesh import AXIS, FREE, Curve, Sizes, mesh_body, nearest
 from .approach import Meeting, loaded_pull, meetings, refuse_nothing, refuse_sinking, turned
 from .bodies import DAMPING, MATERIAL, STIFF, Body
 from .front import Front, fronts
-from ..freefem.describe import describe
-from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID
-from ..failure import BadInput
-from ..mesh.mesh import AXIS, FREE, Curve, Sizes, mesh_body, nearest
 from .mirror import COPIES, FOLDED, copies
 from .parts import sections
 from .scene import OWN, SELF_CONTACT, Pair, Scene
-from ..geometry.outlines import Loop, TubeOutline, rotation
-from ..input.parameters import Value
-from ..input.tables import to_toml
 
 ROUND = 0.5                  # largest element size on a circle or ellipse, over its smaller semi-axis
 LIKE = ("radius", "young", "nu", "density", "speed", "angle", "spin")

@@ -8,17 +8,17 @@ from types import ModuleType
 
 import numpy as np
 
-from ..input import parameters
-from ..mesh import flat, mesh, revolution, solids
-from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
 from ..failure import BadInput, brief, unknown
 from ..geometry import tumbling
 from ..geometry.outlines import Outline
+from ..input import parameters
+from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
+from ..input.parameters import Value
+from ..input.tables import LONGEST, SHORTEST, Table
+from ..mesh import flat, mesh, revolution, solids
 from ..mesh.solid_file import GEOMETRIES
 from ..mesh.solid_mesh import SolidMesh
 from ..mesh.solids import Solid
-from ..input.parameters import Value
-from ..input.tables import LONGEST, SHORTEST, Table
 from .conditions import Load, Support, read_loads, read_supports
 
 GEOMETRY = {PLANE_STRAIN: flat, AXISYMMETRIC: revolution, SOLID: solids}     # SHAPES with their entries, shape(), MOTION, motion()

@@ -13,9 +13,9 @@ import numpy as np
 
 from ..failure import BadInput, brief, unknown
 from ..geometry import time_functions
+from ..geometry.time_functions import TimeFunction, farthest, functions
 from ..input.dimension import AXISYMMETRIC, SOLID, Dimension
 from ..input.tables import LONGEST, SHORTEST, Table, listed
-from ..geometry.time_functions import TimeFunction, farthest, functions
 
 __all__ = ["Load", "Part", "Support", "inlined", "read_loads", "read_supports"]
 

@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from ..geometry import implicit
-from .bodies import Body
-from ..input.dimension import SOLID
 from ..failure import BadInput
-from .obstacles import Obstacle
+from ..geometry import implicit
+from ..input.dimension import SOLID
 from ..input.parameters import Parameter
+from .bodies import Body
+from .obstacles import Obstacle
 
 COPIES = {"full": 1, "half": 2, "quarter": 4}
 FOLDED = {1: (), 2: (2,), 4: (0, 2)}      # the axes across which what is computed is one side

@@ -7,14 +7,14 @@ from pathlib import Path
 
 import numpy as np
 
+from ..failure import BadInput, brief, unknown
 from ..geometry import implicit, polyline, time_functions, tumbling
 from ..geometry.time_functions import TimeFunction, farthest, functions
-from .bodies import checked_name
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
-from ..failure import BadInput, brief, unknown
+from ..input.tables import Table, placeholder
 from ..mesh import solids, surface_file
 from ..mesh.revolution import mirrored, on_axis
-from ..input.tables import Table, placeholder
+from .bodies import checked_name
 
 KINDS = {
     PLANE_STRAIN: {"plane": ("point", "normal"), "circle": ("centre", "radius"), "bowl": ("centre", "radius"),

@@ -7,8 +7,8 @@ import numpy as np
 
 from ..failure import BadInput, brief
 from ..geometry.outlines import rotation
-from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
 from ..geometry.time_functions import TimeFunction
+from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
 from ..mesh import mesh
 from ..mesh.mesh import Mesh
 from ..mesh.solid_mesh import SolidMesh

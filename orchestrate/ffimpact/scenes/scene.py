@@ -19,7 +19,6 @@ from ..input.dimension import AXISYMMETRIC, SOLID, Dimension
 from ..input.parameters import Parameter, Value
 from ..input.tables import Table, listed
 from ..mesh.solid_file import takes_in_others
-from ..output import estimate
 from . import bodies, conditions, mirror, obstacles
 from .bodies import MATERIAL, SIZES, Body
 from .entries import release, set_entry, toml_value

@@ -16,14 +16,14 @@ from typing import Any, TypeVar
 import pandas as pd
 
 from .. import scene, stopping
-from ..running import run
-from ..freefem import freefem
 from ..failure import BadInput, Busy, Failure, TooLong, Unreadable
-from ..mesh import mesh
+from ..freefem import freefem
 from ..input.parameters import Value
-from ..progress import Line, forward
+from ..mesh import mesh
 from ..output.folder import failed_beside
 from ..output.results import read_json
+from ..progress import Line, forward
+from ..running import run
 
 CORES = freefem.CORES
 STOPS = (signal.SIGTERM, signal.SIGHUP, signal.SIGINT)

@@ -33,9 +33,9 @@ import numpy as np
 import pandas as pd
 
 from .. import scene
-from ..input import dimension, parameters
 from ..failure import BadInput, Busy, Failure, Unreadable, brief, suggestion, unknown
 from ..freefem.describe import describe_results
+from ..input import dimension, parameters
 from ..input.parameters import Value
 from ..output.folder import result_folder
 from ..places import RESULTS, shown

@@ -20,11 +20,25 @@ import numpy as np
 import pandas as pd
 from matplotlib.ticker import LogLocator, NullLocator
 
-from ..input import parameters
 from ..failure import BadInput, brief, suggestion, unknown
-from ..report import report
-from ..report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, SMALL, STYLE, as_written, legend, numbers_of_the_paper, save
+from ..input import parameters
 from ..output.results import read_history
+from ..report import report
+from ..report.figures import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    LAWS,
+    ORANGE,
+    PURPLE,
+    SMALL,
+    STYLE,
+    as_written,
+    legend,
+    numbers_of_the_paper,
+    save,
+)
 from . import study
 
 KINDS = {"lines": ("x", "y", "by"), "map": ("x", "y", "colour", "by", "panel", "level", "band"), "histories": ("y", "panel", "by")}
