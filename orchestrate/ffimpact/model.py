@@ -80,7 +80,7 @@ Vector = Annotated[
 ]  # a component for each axis: 2 in the plane, 3 in space
 Point = Annotated[float | list[float], BeforeValidator(_plain)]  # of revolution also y alone
 Points = Annotated[list[list[float]], BeforeValidator(_plain)]
-Function = float | str | dict[str, str]  # of t [s]: a number, an expression, {csv = FILE}
+Function = float | str | dict[str, Any]  # of t [s]: a number, an expression, a CSV file, a table
 Functions = Annotated[Any, BeforeValidator(_plain)]  # of each axis
 
 
