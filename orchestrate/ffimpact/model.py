@@ -11,7 +11,6 @@ left open: the program chooses it.
 from __future__ import annotations
 
 import copy
-import difflib
 import hashlib
 import json
 from pathlib import Path
@@ -21,8 +20,9 @@ import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
 from . import scene as files
-from .failure import BadInput, brief
+from .failure import BadInput, brief, suggestion
 from .input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
+from .input.parameters import with_unit
 from .input.tables import to_toml
 from .scenes import scene as reading
 from .scenes.bodies import MATERIAL, SIZES
@@ -112,19 +112,20 @@ def _table(value: Any) -> Any:
 def _bad(model: type[BaseModel], error: ValidationError) -> BadInput:
     """The first thing that pydantic refuses, in the words of this program: entry, value, what is accepted."""
     first = error.errors()[0]
-    name = ".".join(str(part) for part in first["loc"]) or model.__name__
+    parts = [part + 1 if isinstance(part, int) else part for part in first["loc"]]
+    name, entry = ".".join(map(str, parts)) or model.__name__, model.__name__
+    given, field = first["input"], model.model_fields.get(str(parts[0])) if parts else None
     if first["type"] == "extra_forbidden":
-        near = difflib.get_close_matches(name, model.model_fields, 1)
-        hint = f"; did you mean {near[0]}?" if near else ""
+        near = suggestion(name, model.model_fields)
+        accepted = ", ".join(model.model_fields)
         return BadInput(
-            f"{model.__name__}: {name}: no such entry, set to '{brief(first['input'])}'{hint} "
-            f"(accepted: {', '.join(model.model_fields)})"
+            f"{entry}: {name}: no such entry, set to '{brief(given)}'{near} (accepted: {accepted})"
         )
+    meaning = f" (accepted: {field.description})" if field and field.description else ""
     if first["type"] == "missing":
-        return BadInput(f"{model.__name__}: {name}: is missing")
-    return BadInput(
-        f"{model.__name__}: {name}: '{brief(first['input'])}' is not accepted ({first['msg']})"
-    )
+        return BadInput(f"{entry}: {name}: is missing{meaning}")
+    unit = (isinstance(given, str) and with_unit(given, "")) or f"is not accepted: {first['msg']}"
+    return BadInput(f"{entry}: {name}: '{brief(given)}' {unit}{meaning}")
 
 
 # ---- materials
