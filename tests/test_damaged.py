@@ -50,7 +50,7 @@ def refused(capsys, name: str, *arguments: str) -> str:
     return said
 
 
-@pytest.mark.few(4)
+@pytest.mark.few(2)
 @pytest.mark.parametrize("name", FILES)
 def test_a_damaged_result_is_one_line(whole, tmp_path, capsys, name):
     """Every damage of every file that is read again is refused by `figures` and by `run`, which names the file and what to do."""

@@ -60,7 +60,7 @@ def test_loss_is_that_of_the_first_mode(nu):
     assert describe({"nu": nu, "loss": 0.1})["used"]["viscosity"] == pytest.approx(0.1 * radius * np.sqrt(mu * rho) / 2.35)
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(2)
 @pytest.mark.parametrize("script, flags", [("disc-plane", {}), ("disc-plane", {"law": "svk"}), ("ball-axisymmetric", {"angle": None}),
                                            ("ball-plane", {"end_time": 5e-4})])
 @pytest.mark.parametrize("damping", [{"viscosity": 20, "bulk_viscosity": 10}, {"relaxation_modulus": 2e6, "relaxation_time": 1e-3}], ids=["viscous", "relaxing"])

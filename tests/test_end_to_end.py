@@ -210,6 +210,7 @@ def test_no_description_without_freefem(tmp_path, monkeypatch):
         describe({"speed": 1.25})
 
 
+@pytest.mark.robustness
 def test_own_mesh_of_a_slow_impact_gives_what_gmsh_gives(tmp_path):
     """At 1e-5 of the bar's sound speed, where the contact is 1/220 of the radius, direct runs on own meshes of half the disc and all of
     it agree with Python's on gmsh's to the accuracy asked."""

@@ -68,6 +68,7 @@ def test_obstacle_is_the_built_in_one(extended):
         assert ellipse[name] == pytest.approx(circle[name], abs=2e-3 * size), name
 
 
+@pytest.mark.robustness
 def test_friction_law_has_its_closed_form(extended):
     """A block on an incline creeps at the speed at which the law holds it."""
     folder = extended("A friction law")

@@ -364,7 +364,7 @@ def test_another_mass_than_the_file_is_a_warning(tmp_path):
         assert len(warned) == said and ("mass:" in str(result.summary["warnings"])) == said
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("spin", [60, -200])
 def test_body_that_is_not_round_turns_on_its_way_down(tmp_path, spin):
     """An ellipse that falls turning lands when and as one does that is marched all the way down."""

@@ -35,6 +35,7 @@ def told(given: dict, folder: Path) -> dict[str, float]:
     return {name: summary[name] for name in ANSWERS} | spins | {f"error of {name}": value for name, value in summary["estimated_error"].items()}
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("given", [scene.load("two-discs").given | {"accuracy": 0.1}, ON_PLANE], ids=["two discs", "a body on a plane"])
 def test_no_answer_and_no_stated_error_depends_on_the_frame(given, tmp_path):
     """At 60 m/s, and turned by 37 degrees 1 km away, a scene has the answers and the stated errors that it has at rest, to 1e-3 of themselves."""

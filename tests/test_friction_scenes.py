@@ -143,6 +143,7 @@ def test_flight_is_rigid_motion(oblique):
     assert turned == pytest.approx(h["spin"][-1] * wait) and moved.t == pose.t + wait
 
 
+@pytest.mark.robustness
 def test_compare_runs_reports_and_draws(fake, tmp_path, capsys):
     """Each scene is run once, with a coarser run for its error, and reported, then compared in one picture; a second time all is there."""
     arguments = ["compare", "disc-oblique-svk", "disc-oblique", "--out", str(tmp_path / "both"), "--set", "fields=0"]

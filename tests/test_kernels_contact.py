@@ -17,7 +17,7 @@ CASES = {"plane": (DISC, {}), "plane-steady": (DISC, STEADY), "plane-jumping": (
          "space-jumping": (BALL, JUMPING), "many": (FINER, STEADY)}
 
 
-@pytest.mark.few(2)
+@pytest.mark.robustness
 @pytest.mark.parametrize("case", CASES)
 def test_tractions_and_solutions_are_those_of_the_scripts(case):
     """Under all laws, anywhere in the step and with springs: tractions and their derivatives to round-off, solutions as far as the scripts take them, and each

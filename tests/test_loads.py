@@ -141,6 +141,7 @@ def test_thin_bodies_breathe_as_membranes(tmp_path, shape, filled):
         assert np.abs(run.history["gas_pressure_2"] - pressure).max() < 1e-9 * AMBIENT
 
 
+@pytest.mark.robustness
 def test_a_gas_begins_in_equilibrium(tmp_path):
     """A ring flies at rest in itself: its hoop stress E e h/R bears what is left of the gauge pressure,
     which is that in the undeformed cavity, once the cavity has grown with the strain e."""

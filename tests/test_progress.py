@@ -144,7 +144,7 @@ def test_a_forecast_is_renewed_by_the_pace_of_the_run(monkeypatch, pace):
         assert all(0.8 * low <= total <= 1.25 * high for (low, high), total in zip(found[-1], (minutes, steps)))
 
 
-@pytest.mark.few(1)
+@pytest.mark.robustness
 @pytest.mark.parametrize("script, flags, apart", [("disc-plane", {"accuracy": 0.003}, 1), ("disc-block", {"accuracy": 0.01, "end_time": 3e-3}, 2)])
 def test_scripts_report_the_share_of_their_steps(tmp_path, script, flags, apart):
     """Near half of its steps a script says so, to a fifth; with them it reports unknowns, and how far the waves of its bodies are apart."""

@@ -79,6 +79,7 @@ def test_at_rest_the_contact_is_hertz(fallen):
     assert end["max_pressure"] == pytest.approx(2 * load / (math.pi * a), rel=0.0005 / a / 4)
 
 
+@pytest.mark.robustness
 def test_a_ball_comes_to_rest(tmp_path):
     """As a body of revolution: its contact is Hertz' circle, a^3 = 3 P R (1 - nu^2)/(4 E), to an element."""
     found = disc(tmp_path, "ball-axisymmetric", **FALL | {"height": 0.02, "contact_mesh_size": 0.001, "loss": 2})

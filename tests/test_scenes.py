@@ -95,6 +95,7 @@ def test_the_folder_of_a_scene_of_ones_own(mine, tmp_path):
     assert s["rebound_vx_2"] != 0 and s["energy_drift"] < 1e-8 and s["estimated_error"] is not None
 
 
+@pytest.mark.robustness
 def test_entries_are_set_on_the_command_line(mine, capsys):
     """--set body.2.young=... arrives in the scene as used, and a direct run on the folder's files gives the same answer."""
     found, path = mine

@@ -155,6 +155,7 @@ def test_picture_and_film(ball, symmetry):
     figures.plt.close(stage.figure)
 
 
+@pytest.mark.robustness
 def test_whole_ball_is_cut_for_figures_and_films(ball, no_pyvista, tmp_path):
     """Without a plane of symmetry in the mesh, and without PyVista: the cut is a disc of the ball's radius, one closed outline; its shapes are drawn."""
     result = ball("full")

@@ -115,6 +115,7 @@ def test_bad_files_are_one_line(tmp_path, text, words):
     assert error.value.code == 10
 
 
+@pytest.mark.robustness
 def test_unknown_sweep_and_run():
     """Exit code 10, one line, what there is."""
     code, _, err = call("sweep", "nothing")
@@ -257,6 +258,7 @@ def test_killed_driver_leaves_nothing_running_and_is_taken_up(fake, tmp_path, mo
     pd.testing.assert_frame_equal(table(out), table(calm))
 
 
+@pytest.mark.robustness
 def test_killed_freefem_costs_its_point_only(fake, tmp_path, monkeypatch):
     """kill -9 of a FreeFem++: its point fails and says so, the others go on; the same command runs that point only."""
     path, out = write(tmp_path, DRAWN), tmp_path / "out"

@@ -17,7 +17,7 @@ SCENES = {"disc": ("disc-plane", RUBBED), "svk": ("disc-plane", {"law": "svk", "
           "space": ("ball-plane", RUBBED | {"end_time": 5e-4}), "two bodies": ("disc-block", RUBBED | {"end_time": 1e-3})}
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", SCENES)
 def test_an_impact_keeps_energy_and_momenta(tmp_path, name):
     """At nu = 0.4999 the balances close to 1e-9, with kernels as without; the summary says that volume is projected."""
@@ -71,7 +71,7 @@ def test_linear_elements_are_refused(tmp_path):
 HELD = {"law": "incompressible", "nu": 0.5, "accuracy": 0.1, "speed": 4}
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", SCENES)
 def test_incompressible_bodies_keep_their_volume(tmp_path, name):
     """J = 1: the mean volume of every element stays to 1e-6, energy and momenta to 1e-9, with kernels as without."""

@@ -22,7 +22,7 @@ def test_order_in_space(law, degree):
     assert order(coarse.error, fine.error) == pytest.approx(fine.order, abs=0.15) and fine.order == degree + 1
 
 
-@pytest.mark.few(4)
+@pytest.mark.few(2)
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("integrator", manufactured.ORDERS)
 def test_order_in_time(integrator, law):
@@ -32,7 +32,7 @@ def test_order_in_time(integrator, law):
     assert order(coarse.error, fine.error) == pytest.approx(fine.order, abs=0.15) and fine.order == (1 if integrator == "backward-euler" else 2)
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("body", ["disc", "axisymmetric"])
 def test_order_in_space_on_the_disc(law, body):

@@ -152,6 +152,7 @@ def pressed(measure, folder: Path, below: tuple, above: tuple, penalty: float) -
     return measure("pressed-3d", **write(scene, folder), penalty=penalty, integrator="backward-euler", dt=10, end_time=30, tolerance=1e-10, accuracy=0.05, out=folder)
 
 
+@pytest.mark.robustness
 def test_unlike_meshes_carry_a_constant_pressure(measure, tmp_path):
     """V16: two blocks pressed together. The unevenness goes with penalty times element size over E: to 1 % where that is a quarter; like meshes to 1e-6."""
     like, unlike = pressed(measure, tmp_path / "like", (3, 2, 3), (3, 2, 3), 10), pressed(measure, tmp_path / "unlike", (4, 2, 4), (3, 2, 3), 1)

@@ -19,7 +19,7 @@ def test_cooks_membrane_locks_without():
     assert 0 < 2 * errors[0] < errors[1]
 
 
-@pytest.mark.few(1)
+@pytest.mark.robustness
 @pytest.mark.parametrize("law, nu", [("neohookean", 0.4999), ("incompressible", 0.5)])
 def test_a_manufactured_motion_at_its_order(measure, law, nu):
     """V1: order 2 in the displacement, 1 in the pressure, those of one pressure an element, at nu = 0.4999 and J = 1; at the former as many iterations on
