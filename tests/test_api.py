@@ -90,6 +90,24 @@ def test_entries_are_set_by_dotted_names():
         (lambda: drop(accurcy=0.1), ("accurcy", "accuracy")),
         (lambda: drop().set(**{"body.1.yong": 3}), ("body.1.yong", "young")),
         (lambda: ff.Scene.load("disc-norml"), ("disc-norml", "disc-normal")),
+        (lambda: ff.NeoHookean(youngs=2e6, nu=0.4, density=1), ("youngs", "young")),
+        (lambda: ff.Disc(radius=True, position=(0, 0)), ("radius", "true")),
+        (lambda: ff.Disc(radius="5 cm", position=(0, 0)), ("radius", "5 cm", "unit")),
+        (
+            lambda: ff.Scene(
+                bodies=[ff.Disc(radius=0.05, position=(0, 1))], obstacles=[ff.Plane()]
+            ),
+            ("body.1.material", "missing"),
+        ),
+        (
+            lambda: ff.Scene(
+                bodies=[ff.Disc(radius=0.05, material=RUBBER, position=(0, 1, 0))],
+                obstacles=[ff.Plane()],
+            ),
+            ("body.1.shape", "disc", "dimension", "3d"),
+        ),
+        (lambda: ff.run(drop(), entries=["a"]), ("entries", "a")),
+        (lambda: ff.sweep(drop(), {"accuracy": [0.1]}, workers=0), ("workers", "0")),
         (lambda: ff.run(3), ("scene", "3")),
         (lambda: ff.sweep(drop(), {}), ("sweep",)),
         (lambda: ff.sweep(drop(), {"body.1.velocity.2": -4}), ("body.1.velocity.2", "-4")),
@@ -197,6 +215,38 @@ def test_comparison_says_what_agrees(result):
     assert ff.compare(result, other).agree.all()
     other.summary = other.summary | {"impulse": 2 * result["impulse"]}
     assert not ff.compare(result, other, names=["impulse"]).agree.any()
+
+
+def test_a_result_is_of_one_run(tmp_path):
+    """Where another run has taken its place in the folder, what is read later says so."""
+    first = ff.run(drop(), accuracy=0.2, estimate=False, out=tmp_path / "run")
+    ff.run(drop(), {"body.1.velocity.2": -4}, accuracy=0.2, estimate=False, out=tmp_path / "run")
+    with pytest.raises(ff.Unreadable, match="another run"):
+        _ = first.history
+
+
+def test_states_are_as_many_as_the_scene_says(tmp_path):
+    """None where it says none; some where it is left open."""
+    none = ff.run(drop(fields=0), accuracy=0.3, estimate=False, out=tmp_path / "none")
+    some = ff.run(drop(), accuracy=0.3, estimate=False, out=tmp_path / "some")
+    assert len(none.fields) == 0 < len(some.fields) <= 41
+
+
+def test_friction_is_drawn_and_bodies_have_their_names(tmp_path):
+    """Of two discs that meet off their centres."""
+    disc = {"radius": 0.03, "material": RUBBER}
+    pair = [
+        ff.Disc(name="a", position=(-0.031, 0.01), velocity=(2, 0), **disc),
+        ff.Disc(name="b", position=(0.031, -0.01), velocity=(-2, 0), **disc),
+    ]
+    scene = ff.Scene(bodies=pair, contact=ff.Contact(friction_static=0.5), accuracy=0.2)
+    found = ff.run(scene, estimate=False, out=tmp_path / "run")
+    assert [line.get_label() for line in found.plot.force().lines] == ["normal", "friction"]
+    labels = {line.get_label() for line in found.plot.velocities().lines}
+    assert labels == {"vx a", "vx b", "vy a", "vy b"}
+    assert "rebound_vx" not in found.table.index and "rebound_vx_2" in found.table.index
+    compared = ff.compare(found, str(found.folder), names="impulse")
+    assert compared.agree.isna().all() and list(compared.index) == ["impulse"]
 
 
 def test_a_sweep(tmp_path):

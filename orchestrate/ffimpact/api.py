@@ -51,7 +51,11 @@ def run(
     again, unless `force`. With `estimate` a second run estimates the errors. Raises the exceptions of ffimpact: BadInput,
     StepFailed and so on. A run keeps STATES states where the scene leaves `fields` open.
     """
-    given = dict(entries or {}) | more
+    if not isinstance(entries or {}, Mapping):
+        raise BadInput(f"entries: '{entries}' is no table (accepted: {{\"body.1.young\": 2e6}})")
+    given = {
+        name: value for name, value in (dict(entries or {}) | more).items() if value is not None
+    }
     wanted, place = _wanted(scene, given)
     found = running.run(
         wanted, given, out or place, force=force, progress=progress, estimate=estimate
@@ -69,7 +73,10 @@ def _wanted(scene: Scene | str | Path, given: dict[str, Any]) -> tuple[Any, Path
         raise BadInput(
             f"scene: '{scene}' is none (accepted: a Scene, the name of a built-in one, the path of a TOML file)"
         )
-    if not wanted.values.get("fields"):
+    left_open = (
+        scene.fields is None if isinstance(scene, Scene) else not wanted.values.get("fields")
+    )
+    if left_open:
         given.setdefault("fields", STATES)
     told = json.dumps(
         [scene.table() if isinstance(scene, Scene) else "", given], sort_keys=True, default=str
@@ -160,6 +167,12 @@ def sweep(
     """
     if not values or not all(len(_listed(name, one)) for name, one in values.items()):
         raise BadInput("sweep: nothing varies (accepted: one value or more of each entry)")
+    if workers is not None and not (isinstance(workers, int) and workers >= 1):
+        raise BadInput(f"workers: '{workers}' (accepted: a whole number from 1 on)")
+    if not isinstance(values, Mapping):
+        raise BadInput(
+            f"sweep: '{values}' is no table (accepted: {{\"body.1.young\": [1e6, 2e6]}})"
+        )
     given = dict(more)
     wanted, place = _wanted(scene, given)
     points = [dict(zip(values, combination)) for combination in itertools.product(*values.values())]

@@ -13,6 +13,7 @@ from __future__ import annotations
 import copy
 import hashlib
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Self
 
@@ -74,7 +75,29 @@ def _plain(value: Any) -> Any:
     return {key: _plain(one) for key, one in value.items()} if isinstance(value, dict) else value
 
 
-Number = Annotated[float, BeforeValidator(_plain)]
+def _number(value: Any) -> Any:
+    if isinstance(value, bool | np.bool_):
+        raise ValueError("true and false are no numbers")
+    return _plain(value)
+
+
+def _several(value: Any) -> Any:
+    """One table as a list of one."""
+    return [value] if isinstance(value, Entries) else value
+
+
+def _text(value: Any) -> Any:
+    """Numbers as a text with commas between them."""
+    if isinstance(value, int | float):
+        return f"{value}"
+    return (
+        ", ".join(map(str, _plain(value)))
+        if isinstance(value, list | tuple | np.ndarray)
+        else value
+    )
+
+
+Number = Annotated[float, BeforeValidator(_number)]
 Vector = Annotated[
     list[float], BeforeValidator(_plain)
 ]  # a component for each axis: 2 in the plane, 3 in space
@@ -109,10 +132,23 @@ def _table(value: Any) -> Any:
     return [_table(one) for one in value] if isinstance(value, list | tuple) else _plain(value)
 
 
+TYPES = (
+    "float",
+    "int",
+    "str",
+    "list[float]",
+    "dict[str,any]",
+    "dict[str,str]",
+)  # in pydantic's places
+
+
 def _bad(model: type[BaseModel], error: ValidationError) -> BadInput:
     """The first thing that pydantic refuses, in the words of this program: entry, value, what is accepted."""
-    first = error.errors()[0]
-    parts = [part + 1 if isinstance(part, int) else part for part in first["loc"]]
+    every = error.errors()
+    first = next((one for one in every if one["type"] == "extra_forbidden"), every[0])
+    parts = [
+        part + 1 if isinstance(part, int) else part for part in first["loc"] if part not in TYPES
+    ]
     name, entry = ".".join(map(str, parts)) or model.__name__, model.__name__
     given, field = first["input"], model.model_fields.get(str(parts[0])) if parts else None
     if first["type"] == "extra_forbidden":
@@ -142,7 +178,7 @@ class Material(Entries):
     young: Number = Field(description="Young's modulus [Pa]")
     nu: Number = Field(description="Poisson's ratio; 0.5: J = 1")
     density: Number = Field(description="reference density [kg/m3]")
-    law_parameters: str | None = Field(
+    law_parameters: Annotated[str | None, BeforeValidator(_text)] = Field(
         None, description="what the law takes beyond young and nu, separated by commas"
     )
     viscosity: Number | None = Field(None, description="viscosity [Pa s]")
@@ -252,8 +288,8 @@ class Body(Entries):
     contact_mesh_size: Number | None = Field(
         None, description="element size where it may touch [m]"
     )
-    support: list[Support] | None = None
-    load: list[Load] | None = None
+    support: Annotated[list[Support] | None, BeforeValidator(_several)] = None
+    load: Annotated[list[Load] | None, BeforeValidator(_several)] = None
     rigid: bool | None = Field(None, description="moves without deforming")
     density: Number | None = Field(None, description="of a rigid body without a material [kg/m3]")
     mass: Number | None = Field(None, description="of a rigid body [kg, in the plane kg/m]")
@@ -503,7 +539,7 @@ class Contact(Entries):
     pairing: str | None = Field(None, description="closest-point (9), or pairwise (14), (15)")
     pairing_range: Number | None = Field(None, description="epsilon of (14) [m]")
     self_contact: str | None = Field(None, description="auto, on or off")
-    pair: list[Pair] | None = None
+    pair: Annotated[list[Pair] | None, BeforeValidator(_several)] = None
 
 
 # ---- the scene
@@ -512,8 +548,8 @@ class Contact(Entries):
 class Scene(Entries):
     """Bodies, obstacles, contact, and how the run is to be made. Entries are those of a TOML file, under the same names."""
 
-    bodies: list[Body]
-    obstacles: list[Obstacle] = []
+    bodies: Annotated[list[Body], BeforeValidator(_several)]
+    obstacles: Annotated[list[Obstacle], BeforeValidator(_several)] = []
     contact: Contact = Contact()
     title: str | None = None
     dimension: str | None = Field(
@@ -543,7 +579,21 @@ class Scene(Entries):
 
     @model_validator(mode="after")
     def _is_accepted(self) -> Self:
-        self.read()
+        for k, body in enumerate(self.bodies, 1):
+            if body.material is None and not body.rigid:
+                raise BadInput(
+                    f"body.{k}.material: is missing "
+                    "(accepted: NeoHookean(young=..., nu=..., density=...), say)"
+                )
+        try:
+            self.read()
+        except BadInput as error:
+            if self.dimension or ".shape:" not in str(error):
+                raise
+            raise BadInput(
+                f"{error}; dimension = '{self.kind.name}' follows from the shapes, "
+                "and from positions with three components"
+            ) from None
         return self
 
     @property
@@ -625,9 +675,12 @@ class Scene(Entries):
             **given,
         )
 
-    def set(self, **entries: Any) -> Scene:
-        """The same scene with entries set by their dotted names: scene.set(**{"body.1.velocity.2": -4, "accuracy": 0.01})."""
-        return type(self).of(self.read().override(_plain(entries)).given, self.folder)
+    def set(self, values: Mapping[str, Any] | None = None, /, **entries: Any) -> Scene:
+        """The same scene with entries set by their dotted names: scene.set(**{"body.1.velocity.2": -4, "accuracy": 0.01}),
+        or scene.set({...})."""
+        return type(self).of(
+            self.read().override(_plain(dict(values or {}) | entries)).given, self.folder
+        )
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Scene) and self.table() == other.table()

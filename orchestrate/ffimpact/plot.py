@@ -12,6 +12,7 @@ from matplotlib.tri import Triangulation
 from .failure import BadInput, Unreadable
 from .input.dimension import per_metre
 from .output import vtu
+from .output.results import body_names
 from .report.bodies import draw_obstacles, obstacles_of
 from .report.figures import is_half
 
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Plots"]
 
-MS, KN = 1e3, 1e-3
+MS = 1e3
 UNITS = {
     "displacement": "m",
     "velocity": "m/s",
@@ -43,13 +44,15 @@ class Plots:
         self.per = per_metre(result["provenance"]["script"])
 
     def force(self, ax: Axes | None = None) -> Axes:
-        """Normal and tangential force [kN] over time [ms]."""
+        """Normal force and friction [N or kN] over time [ms]."""
         history, ax = self.result.history, _axes(ax)
-        ax.plot(MS * history.t, KN * history.normal_force, label="normal")
-        for name in ("tangential_force", "tangential_force_z"):
+        unit, factor = ("kN", 1e-3) if history.normal_force.max() >= 1e3 else ("N", 1.0)
+        ax.plot(MS * history.t, factor * history.normal_force, label="normal")
+        for name in ("friction_force", "friction_force_z"):
             if name in history and history[name].any():
-                ax.plot(MS * history.t, KN * history[name], label=name.replace("_", " "))
-        return _labelled(ax, f"force [kN{self.per}]")
+                label = "friction" if name == "friction_force" else "friction, z"
+                ax.plot(MS * history.t, factor * history[name], label=label)
+        return _labelled(ax, f"force [{unit}{self.per}]")
 
     def energies(self, ax: Axes | None = None) -> Axes:
         """Energies, and the work of friction and viscosity, [J] over time [ms]."""
@@ -57,24 +60,20 @@ class Plots:
         for name, label in ENERGIES.items():
             if name in history and history[name].any():
                 ax.plot(MS * history.t, history[name], label=label)
-        ax.plot(
-            MS * history.t,
-            history.kinetic + history.elastic + history.contact,
-            "k--",
-            label="mechanical",
-        )
+        mechanical = history.kinetic + history.elastic + history.contact
+        ax.plot(MS * history.t, mechanical, "k--", label="mechanical")
         return _labelled(ax, f"energy [J{self.per}]")
 
     def velocities(self, ax: Axes | None = None) -> Axes:
         """Velocities of the bodies' centres of mass [m/s] over time [ms]."""
         history, ax = self.result.history, _axes(ax)
-        names = [
-            name for name in history if name[:2] in ("vx", "vy", "vz") and name[2:3] in ("", "_")
-        ]
-        several = [name for name in names if "_" in name]
-        for name in several or names:
-            if history[name].any():
-                ax.plot(MS * history.t, history[name], label=name.replace("_", " of body "))
+        several = "vx_1" in history
+        names = body_names(self.result.scene) if several else [""]
+        for k, body in enumerate(names, 1):
+            for axis in "xyz":
+                name = f"v{axis}_{k}" if several else f"v{axis}"
+                if name in history and history[name].any():
+                    ax.plot(MS * history.t, history[name], label=f"v{axis} {body}".rstrip())
         return _labelled(ax, "velocity [m/s]")
 
     def shapes(

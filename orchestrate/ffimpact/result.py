@@ -7,6 +7,7 @@ result["impulse"], result.errors["impulse"], result.units["impulse"]
 from __future__ import annotations
 
 import re
+import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from html import escape
@@ -18,7 +19,7 @@ import pandas as pd
 from .failure import BadInput, NotInstalled, Unreadable, unknown
 from .freefem.describe import describe_results
 from .output import vtu
-from .output.results import check_files, read_answers, read_scene, read_summary
+from .output.results import check_files, read_answers, read_summary
 from .report import report
 
 if TYPE_CHECKING:
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Result", "compare", "load"]
 
+LINES = 9  # of numbers that are printed
 SHOWN = (
     "impulse",
     "peak_force",
@@ -87,20 +89,37 @@ class Result:
             if isinstance(value, int | float) and not isinstance(value, bool)
         ]
 
+    def __contains__(self, name: object) -> bool:
+        return name in self.summary
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.keys())
+
+    def __len__(self) -> int:
+        return len(self.keys())
+
+    def _path(self, name: str) -> Path:
+        """A file of the folder; Unreadable where another run has taken the place of this one."""
+        if read_summary(self.folder) != self.summary:
+            raise Unreadable(
+                f"{self.folder}: holds another run by now (accepted: load('{self.folder}'))"
+            )
+        return self.folder / name
+
     @cached_property
     def scene(self) -> dict[str, Any]:
         """Every entry as it was used: result.scene["body"][0]["young"]."""
-        return read_scene(self.folder)
+        return tomllib.loads(self._path("scene.toml").read_text("utf-8"))
 
     @cached_property
     def history(self) -> pd.DataFrame:
         """A row for each step, SI units: columns t, normal_force, kinetic ..."""
-        return pd.read_csv(self.folder / "history.csv")
+        return pd.read_csv(self._path("history.csv"))
 
     @cached_property
     def contacts(self) -> pd.DataFrame:
         """A row for each interval of contact of a body and its partner."""
-        path = self.folder / "contacts.csv"
+        path = self._path("contacts.csv")
         return pd.read_csv(path) if path.exists() else pd.DataFrame()
 
     @property
@@ -161,33 +180,28 @@ class Result:
 
     @property
     def table(self) -> pd.DataFrame:
-        """The main numbers: value, error, unit."""
+        """The main numbers: value, error, unit; of several bodies those of each."""
         names = [
             name
             for name in self.keys()
-            if re.sub(r"_[0-9]+$", "", name) in SHOWN and self[name] is not None
+            if _bare(name) in SHOWN and self[name] is not None and f"{name}_1" not in self.summary
         ]
-        names.sort(key=lambda name: SHOWN.index(re.sub(r"_[0-9]+$", "", name)))
-        return pd.DataFrame(
-            {
-                "value": [self[name] for name in names],
-                "error": [self.errors.get(name) for name in names],
-                "unit": [self.units.get(name, "") for name in names],
-            },
-            index=pd.Index(names, name="number"),
-        )
+        names.sort(key=lambda name: SHOWN.index(_bare(name)))
+        columns = {
+            "value": [self[name] for name in names],
+            "error": [self.errors.get(name) for name in names],
+            "unit": [self.units.get(name, "") for name in names],
+        }
+        return pd.DataFrame(columns, index=pd.Index(names, name="number"))
 
     def __repr__(self) -> str:
         rows = [
             f"  {name:<26}{row['value']:>12.5g}{_bar(row['error'])} {_unit(row['unit'])}".rstrip()
             for name, row in self.table.iterrows()
         ]
-        more = [
-            f"  warning: {sentence}"
-            for sentence in report.told(self.summary)
-            if sentence.lstrip().startswith("warning")
-        ]
-        return "\n".join([f"Result in {self.folder}", *rows[:9], *more])
+        told = [line for line in report.told(self.summary) if line.startswith("  warning")]
+        more = [f"  and {len(rows) - LINES} more: result.table"] if len(rows) > LINES else []
+        return "\n".join([f"Result in {self.folder}", *rows[:LINES], *more, *told])
 
     def _repr_html_(self) -> str:
         rows = "".join(
@@ -216,6 +230,11 @@ class Result:
         return view(self, path, field)
 
 
+def _bare(name: str) -> str:
+    """The name of a number without that of its body."""
+    return re.sub(r"_[0-9]+$", "", name)
+
+
 def _bar(error: float | None) -> str:
     return "" if error is None or pd.isna(error) else f" ± {error:.2g}"
 
@@ -235,6 +254,9 @@ class Fields(Sequence["pyvista.UnstructuredGrid"]):
     def __len__(self) -> int:
         return len(self.series)
 
+    def __repr__(self) -> str:
+        return f"{len(self)} states of {self.folder}"
+
     def __getitem__(self, index: Any) -> Any:
         try:
             import pyvista
@@ -252,30 +274,33 @@ def load(folder: str | Path) -> Result:
     return Result(folder)
 
 
-def compare(*results: Result, names: Sequence[str] = ()) -> pd.DataFrame:
-    """The main numbers of several runs side by side, each with its error; `agree` says whether all lie within their error bars.
+def compare(*results: Result | str | Path, names: Sequence[str] | str = ()) -> pd.DataFrame:
+    """The main numbers of several runs side by side, each with its error, in the order given.
 
-    `names`: which numbers; the main ones of the first run by default.
+    `agree` says whether all of them lie within their error bars, None where one has no estimate.
+    `names`: which numbers; by default the main ones that all runs have. The folders are in
+    `.attrs["folders"]`.
     """
-    if len(results) < 2:
-        raise BadInput(f"compare: '{len(results)}' results (accepted: two or more)")
-    rows = list(names) or [
-        name for name in results[0].table.index if all(name in one.summary for one in results)
-    ]
+    runs = [one if isinstance(one, Result) else load(one) for one in results]
+    if len(runs) < 2:
+        raise BadInput(f"compare: '{len(runs)}' results (accepted: two or more)")
+    chosen = [names] if isinstance(names, str) else list(names)
+    rows = chosen or [name for name in runs[0].table.index if all(name in one for one in runs)]
     found = pd.DataFrame(index=pd.Index(rows, name="number"))
-    labels = list(_labels(results))
-    for label, one in zip(labels, results):
-        found[label] = [one[name] for name in rows]
-        found[f"error of {label}"] = [one.errors.get(name) for name in rows]
-    found["unit"] = [results[0].units.get(name, "") for name in rows]
-    lows = [[one[name] - one.errors.get(name, 0.0) for one in results] for name in rows]
-    highs = [[one[name] + one.errors.get(name, 0.0) for one in results] for name in rows]
-    found["agree"] = [max(low) <= min(high) for low, high in zip(lows, highs)]
+    for k, one in enumerate(runs, 1):
+        found[f"run {k}"] = [one[name] for name in rows]
+        found[f"error {k}"] = [one.errors.get(name) for name in rows]
+    found["unit"] = [runs[0].units.get(name, "") for name in rows]
+    found["agree"] = [_agree(runs, name) for name in rows]
+    found.attrs["folders"] = [str(one.folder) for one in runs]
     return found
 
 
-def _labels(results: Sequence[Result]) -> Iterator[str]:
-    """Names of the folders, told apart where they are the same."""
-    names = [one.folder.name for one in results]
-    for k, name in enumerate(names):
-        yield name if names.count(name) == 1 else str(results[k].folder)
+def _agree(runs: Sequence[Result], name: str) -> bool | None:
+    """Whether all error bars of a number have a value in common."""
+    if not all(name in one.errors for one in runs):
+        return None
+    return bool(
+        max(one[name] - one.errors[name] for one in runs)
+        <= min(one[name] + one.errors[name] for one in runs)
+    )

@@ -27,6 +27,8 @@ def view(result: Result, path: str | Path | None = None, field: str = "von_mises
         import k3d
     except ImportError:
         raise NotInstalled("view: needs k3d; install it: pip install k3d") from None
+    if path is not None and Path(path).suffix.lower() not in (".html", ".htm"):
+        raise BadInput(f"view: '{path}' is no HTML file (accepted: a name that ends in .html)")
     series = vtu.series(result.folder / "fields.pvd")
     if not series:
         raise Unreadable(f"{result.folder}: has no states (accepted: a run with fields = 60, say)")
