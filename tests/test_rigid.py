@@ -79,6 +79,13 @@ def test_it_is_the_limit_of_a_stiff_disc(tmp_path):
     assert rigid["energy_drift"] < 1e-9 and rigid["momentum_drift"] < 1e-10
 
 
+def test_a_rigid_body_is_asked_for_no_material(tmp_path):
+    """The stiffness that stands for rigidity is no material of the user's."""
+    steel = BLOCK.replace("young = 1e6", "young = 2e11")
+    summary, _ = run(tmp_path, DISC + "position = [0, 0.0501]\nvelocity = [0, -50]\n" + steel, accuracy=0.3)
+    assert not [one for one in summary["warnings"] if one.startswith("density")]
+
+
 def test_fields_show_where_a_rigid_body_is(tmp_path):
     """Without stress, of volume 1, as far from its reference as its centre: a translation of all nodes."""
     text = DISC + "position = [0, 0.0501]\nvelocity = [0, -1]\n" + BLOCK
