@@ -78,10 +78,8 @@ def _wanted(scene: Scene | str | Path, given: dict[str, Any]) -> tuple[Any, Path
     )
     if left_open:
         given.setdefault("fields", STATES)
-    told = json.dumps(
-        [scene.table() if isinstance(scene, Scene) else "", given], sort_keys=True, default=str
-    )
-    own = f"-{hashlib.sha256(told.encode()).hexdigest()[:8]}" if isinstance(scene, Scene) else ""
+    told = [scene.table() if isinstance(scene, Scene) else "", given]
+    own = f"-{_digits(told)}" if isinstance(scene, Scene) else ""
     return wanted, RESULTS / f"{wanted.name}{own}"
 
 
@@ -165,32 +163,28 @@ def sweep(
     Each run is a process `ffimpact run` in a folder of its own below `out`; what is finished there is not run again. A run that
     fails is a row with its exit code and message.
     """
-    if not values or not all(len(_listed(name, one)) for name, one in values.items()):
-        raise BadInput("sweep: nothing varies (accepted: one value or more of each entry)")
-    if workers is not None and not (isinstance(workers, int) and workers >= 1):
-        raise BadInput(f"workers: '{workers}' (accepted: a whole number from 1 on)")
-    if not isinstance(values, Mapping):
-        raise BadInput(
-            f"sweep: '{values}' is no table (accepted: {{\"body.1.young\": [1e6, 2e6]}})"
-        )
+    _check(values, workers)
     given = dict(more)
     wanted, place = _wanted(scene, given)
     points = [dict(zip(values, combination)) for combination in itertools.product(*values.values())]
-    told = json.dumps(
-        {name: list(one) for name, one in values.items()}, sort_keys=True, default=str
-    )
-    folder = (
-        Path(out)
-        if out
-        else place.with_name(f"{place.name}-sweep-{hashlib.sha256(told.encode()).hexdigest()[:8]}")
-    )
+    told = {name: list(one) for name, one in values.items()}
+    folder = Path(out) if out else place.with_name(f"{place.name}-sweep-{_digits(told)}")
     scenes = [wanted.override(given | point) for point in points]  # BadInput before anything is run
     folder.mkdir(parents=True, exist_ok=True)
+    outcomes = _side_by_side(scenes, folder, workers or freefem.CORES)
+    return Study(
+        list(values),
+        points,
+        [one if isinstance(one, Result) else None for one in outcomes],
+        [one if isinstance(one, Failure) else None for one in outcomes],
+    )
+
+
+def _side_by_side(scenes: list[Any], folder: Path, workers: int) -> list[Result | Failure]:
+    """What each scene comes to, some at a time, with a line of progress."""
     outcomes: list[Result | Failure] = []
-    with (
-        Line(folder.name, {k: 1.0 for k in range(len(points))}) as line,
-        ThreadPoolExecutor(workers or freefem.CORES) as pool,
-    ):
+    line = Line(folder.name, {k: 1.0 for k in range(len(scenes))})
+    with line, ThreadPoolExecutor(workers) as pool:
         tasks = [pool.submit(_point, one, folder / f"{k:03d}") for k, one in enumerate(scenes, 1)]
         try:
             for k, task in enumerate(tasks):
@@ -198,12 +192,25 @@ def sweep(
                 line.at(k, 1.0, f"{k + 1} of {len(tasks)} done")
         finally:
             pool.shutdown(cancel_futures=True)
-    return Study(
-        list(values),
-        points,
-        [one if isinstance(one, Result) else None for one in outcomes],
-        [one if isinstance(one, Failure) else None for one in outcomes],
-    )
+    return outcomes
+
+
+def _check(values: Any, workers: Any) -> None:
+    """BadInput where a sweep cannot be made of these values."""
+    if not isinstance(values, Mapping):
+        raise BadInput(
+            f"sweep: '{values}' is no table (accepted: {{\"body.1.young\": [1e6, 2e6]}})"
+        )
+    if not values or not all(len(_listed(name, one)) for name, one in values.items()):
+        raise BadInput("sweep: nothing varies (accepted: one value or more of each entry)")
+    if workers is not None and not (isinstance(workers, int) and workers >= 1):
+        raise BadInput(f"workers: '{workers}' (accepted: a whole number from 1 on)")
+
+
+def _digits(told: Any) -> str:
+    """Eight digits that tell it from others."""
+    text = json.dumps(told, sort_keys=True, default=str)
+    return hashlib.sha256(text.encode()).hexdigest()[:8]
 
 
 def _listed(name: str, value: Any) -> list[Any]:
