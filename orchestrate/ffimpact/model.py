@@ -11,8 +11,6 @@ left open: the program chooses it.
 from __future__ import annotations
 
 import copy
-import hashlib
-import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Self
@@ -631,11 +629,6 @@ class Scene(Entries):
     def read(self, name: str = "scene") -> reading.Scene:
         """What the program makes of it; BadInput where it does not accept it."""
         return reading.read(self.table(), self.folder, name)
-
-    @property
-    def hash(self) -> str:
-        """Eight digits that tell it from other scenes."""
-        return hashlib.sha256(json.dumps(self.table(), sort_keys=True).encode()).hexdigest()[:8]
 
     def save(self, path: str | Path) -> Path:
         """Writes its TOML file."""
