@@ -51,7 +51,7 @@ from .solver import FAILURES, USED, Solver, runs
 
 ENTRANCE = "scenes/assembly"           # the module that makes flags, mesh and scene.dat, with all that it imports
 # of these: what asks, starts, says and reads, and does not decide a result
-HARMLESS = {"failure", "places", "freefem/describe", "freefem/freefem", "output/estimate", "output/results"}
+HARMLESS = {"failure", "places", "freefem/describe", "freefem/freefem"}
 ESTIMATING = ("output/estimate", "output/notes", "output/results", "scenes/finer")   # what decides the stated errors besides
 
 
