@@ -79,6 +79,37 @@ def test_it_is_the_limit_of_a_stiff_disc(tmp_path):
     assert rigid["energy_drift"] < 1e-9 and rigid["momentum_drift"] < 1e-10
 
 
+PUSHED = """
+end_time = 0.02
+[[body]]
+shape = "rectangle"
+width = 0.1
+height = 0.1
+rigid = true
+mass = 10
+position = [0, 0.5]
+[[body.load]]
+where = "top"
+traction = [1000, 500]
+""" + FLOOR
+
+
+def test_a_load_moves_a_rigid_body_from_rest(tmp_path):
+    """v = F t/m, though there is no energy at the start to hold a residual against."""
+    summary, _ = run(tmp_path, "young = 1e6\nnu = 0.3\ndensity = 1000\naccuracy = 0.2\n" + PUSHED)
+    assert summary["rebound_vx"] == pytest.approx(0.2, rel=1e-9)
+    assert summary["rebound_vy"] == pytest.approx(0.1, rel=1e-9)
+    assert summary["energy_drift"] < 1e-9
+
+
+def test_a_rigid_ring_bears_a_gas(tmp_path):
+    """It falls as without the gas, whatever its pressure."""
+    ring = PUSHED.replace('"rectangle"\nwidth = 0.1\nheight = 0.1', '"ring"\nradius = 0.05\ninner_radius = 0.04\nvelocity = [0, -1]')
+    gas = ring.replace('where = "top"\ntraction = [1000, 500]', 'where = "inner"\ngas = {gauge_pressure = 1e5}')
+    summary, _ = run(tmp_path, "accuracy = 0.2\n" + gas)
+    assert summary["rebound_vy"] == pytest.approx(-1, rel=1e-9) and summary["energy_drift"] < 1e-9
+
+
 def test_a_rigid_body_is_asked_for_no_material(tmp_path):
     """The stiffness that stands for rigidity is no material of the user's."""
     steel = BLOCK.replace("young = 1e6", "young = 2e11")
