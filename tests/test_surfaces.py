@@ -121,7 +121,7 @@ def test_a_fine_surface_is_read_whole(tmp_path):
 
 
 @pytest.mark.parametrize("what, named", [
-    ('file = "none.stl"', "obstacle.1.file"), ('file = "scene.toml"', "obstacle.1.file"), ('file = "open.stl"', "not closed"),
+    ('scale = 1', "obstacle.1.file: is missing"), ('file = "none.stl"', "obstacle.1.file"), ('file = "scene.toml"', "obstacle.1.file"), ('file = "open.stl"', "not closed"),
     ('file = "text.stl"', "obstacle.1.file"), ('file = "slab.stl"\nscale = -1', "obstacle.1.scale"),
     ('file = "slab.stl"\nrounding = -1', "obstacle.1.rounding"), ('fil = "slab.stl"', "obstacle.1.fil")])
 def test_wrong_files(tmp_path, capsys, what, named):

@@ -202,6 +202,8 @@ def _plane(table: Table, dimension: Dimension) -> tuple[float, ...]:
 
 def _surface(table: Table, dimension: Dimension, folder: Path) -> tuple[float, ...]:
     """Turned about the origin of the file's coordinates, then moved."""
+    if "file" not in table:
+        raise BadInput(f"{table.at('file')}: is missing (accepted: the path of an STL file or a mesh)")
     try:
         points, triangles = surface_file.read(folder / table.text("file", ""))
     except BadInput as error:
