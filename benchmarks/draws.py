@@ -245,3 +245,64 @@ def _box(chance: random.Random, speed: float) -> Point:
 
 FASTEST_FLAT = 0.03          # speed over sqrt(E/density)
 FLAT_SHAPES = {"block-wall": _block, "two-bars": _bars, "polygon-wall": _polygon, "cylinder-wall": _cylinder, "box-wall": _box}
+
+
+# ---- supports, loads, rigid bodies and obstacles that move
+
+HELD_MIXTURE = {"drop-weight": 18, "disc-beam": 10, "hollow-ball": 16, "roller": 16}   # how many of sixty
+HELD_ACCURACIES = (0.01, 0.02, 0.05)
+FASTEST_HELD = 0.06          # speed over sqrt(E/density)
+
+
+def held(seed: int, count: int) -> list[tuple[str, Point]]:
+    """About `count` scenes with supports, loads, rigid bodies and obstacles that move: scene and overrides."""
+    found = []
+    for scene, share in HELD_MIXTURE.items():
+        chance = random.Random(f"{seed} {scene}")
+        many = max(1, round(count * share / 60))
+        for k in range(many):
+            young, density, nu = MATERIALS[chance.choice(list(MATERIALS))]
+            speed = bar_speed(young, density) * FASTEST_HELD * math.exp(-chance.uniform(0, math.log(20)))
+            point = {"young": young, "density": density, "nu": nu, "law": chance.choice(["svk", "neohookean"]),
+                     "accuracy": chance.choice(HELD_ACCURACIES)}
+            shape = HELD_SHAPES[scene](chance, speed, bar_speed(young, density), point)
+            point |= {name: _round(value) if isinstance(value, float) else value for name, value in shape.items()}
+            found.append(((k + 0.5) / many, scene, point))
+    return [(scene, point) for _, scene, point in sorted(found, key=lambda one: one[0])]
+
+
+def _weight(chance: random.Random, speed: float, c: float, material: Point) -> Point:
+    """A rigid disc, 2 to 40 times the mass that it would have of the block's material, on a block that lies on the ground."""
+    radius, width, height = 0.03 * chance.choice([0.5, 1.0, 2.0]), 0.15 * chance.choice([0.5, 1.0]), 0.04 * chance.choice([0.5, 1.0, 2.0])
+    mass = material["density"] * width * height * math.exp(chance.uniform(0, math.log(10)))
+    lasts = 8 * height / c * (mass / (material["density"] * width * height)) ** 0.5 + 4 * height / c
+    return {"body.1.radius": radius, "body.1.mass": mass, "body.1.position.2": 1.01 * radius + height, "body.1.velocity.2": -speed,
+            "body.2.width": width, "body.2.height": height, "body.2.position.2": height / 2, "end_time": lasts,
+            "gravity": chance.choice([0.0, 2e-4]) * c**2 / height, "obstacle.1.friction_static": chance.choice([0.1, 0.4, 0.8])}
+
+
+def _on_beam(chance: random.Random, speed: float, c: float, material: Point) -> Point:
+    width, height, radius = 0.2 * chance.choice([1.0, 1.5]), 0.04 * chance.choice([1.0, 1.5]), 0.05 * chance.choice([0.5, 1.0])
+    return {"body.1.radius": radius, "body.1.position.2": height / 2 + 1.02 * radius, "body.1.velocity.2": -speed,
+            "body.2.width": width, "body.2.height": height, "body.1.young": material["young"] * chance.choice([1.0, 1.0, 5.0])}
+
+
+def _hollow(chance: random.Random, speed: float, c: float, material: Point) -> Point:
+    inner = 0.05 * chance.choice([0.6, 0.7, 0.8])
+    return {"body.1.inner_radius": inner, "body.1.velocity.2": -speed,
+            "body.1.load.1.gas.gauge_pressure": material["young"] * chance.choice([0.002, 0.01, 0.02]),
+            "body.1.load.1.gas.exponent": chance.choice([1.0, 1.4])}
+
+
+def _roller(chance: random.Random, speed: float, c: float, material: Point) -> Point:
+    """As fast as `speed` at the first touch."""
+    deep, height = 0.001 * chance.uniform(1.5, 5.0), 0.04 * chance.choice([0.5, 1.0])
+    lasts = _round(math.pi * deep / speed)
+    static = chance.choice([0.1, 0.3, 0.7])
+    return {"body.1.height": height, "obstacle.1.centre.2": 0.051 + height / 2, "end_time": lasts,
+            "obstacle.1.motion.2": f"-{deep:.3g}*sin(pi*t/{lasts})",
+            "obstacle.1.rotation": f"-{chance.choice([0.0, 10.0, 60.0]) / lasts:.4g}*t",
+            "contact.friction_static": static, "contact.friction_dynamic": static * chance.choice([0.7, 1.0])}
+
+
+HELD_SHAPES = {"drop-weight": _weight, "disc-beam": _on_beam, "hollow-ball": _hollow, "roller": _roller}
