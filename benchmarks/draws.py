@@ -250,7 +250,7 @@ FLAT_SHAPES = {"block-wall": _block, "two-bars": _bars, "polygon-wall": _polygon
 # ---- supports, loads, rigid bodies and obstacles that move
 
 HELD_MIXTURE = {"drop-weight": 18, "disc-beam": 10, "hollow-ball": 16, "roller": 16}   # how many of sixty
-HELD_ACCURACIES = (0.01, 0.02, 0.05)
+HELD_ACCURACIES = (0.02, 0.05, 0.1)
 FASTEST_HELD = 0.06          # speed over sqrt(E/density)
 
 

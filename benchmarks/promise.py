@@ -26,8 +26,9 @@ SEED, COUNT = 69, 240
 COARSE = 73, 180            # seed and scenes at coarse accuracies, for which estimate.ALIKE is calibrated on seed 71, stated errors on 78
 FLAT = 79, 60               # seed and scenes with faces that strike flat, for which estimate.FRONT is calibrated on seeds 303, 304
 HELD = 84, 60               # seed and scenes with supports, loads, rigid bodies, obstacles that move
-# elements and steps of the reference are so many times smaller than the first run's; 3 where it is no matter of hours
-FINER = {"ball": 2, "box-wall": 2}
+# elements and steps of the reference are 3 times smaller than the first run's; where that is a matter of hours twice smaller than
+# those of the answer, which finer runs may have made
+TWICE = ("ball", "box-wall", *draws.HELD_MIXTURE)
 STEPS_GROW = 0.0576         # accuracy from which on steps are 0.3 of a transit of waves (sizes.idp): finer ones are asked for from there
 LIMIT = 1800.0              # seconds a scene may take
 KEPT = 0.95                 # share of the scenes in which the promise must be kept, and of the cases that a stated error must cover
@@ -133,16 +134,15 @@ def _compared(wanted: scene.Scene, folder: Path) -> dict:
     with tempfile.TemporaryDirectory() as place:
         stage, finer = Path(place) / "run", Path(place) / "finer"
         solve({}, stage)
-        factor = 1 / FINER.get(wanted.name, 3)
         used = read_answers(stage).used
-        reference = scaled(wanted, wanted.values, used | {"accuracy": min(STEPS_GROW, used["accuracy"])}, factor)
         found = estimate.settle(stage, wanted.values | wanted.sizes, True, solve, read_answers, partial(scaled, wanted))
         seconds, answers = paid[0], read_answers(stage)
-        solve(reference, finer)
+        twice = wanted.name in TWICE
+        used, factor = (answers.used, 1 / 2) if twice else (used, 1 / 3)
+        solve(scaled(wanted, wanted.values, used | {"accuracy": min(STEPS_GROW, used["accuracy"])}, factor), finer)
         best = read_answers(finer).summary | {"largest_energy": answers.summary["largest_energy"]}
     # the reference has itself the share `factor` of an error of first order, of flat strikes, else its square
-    finer = factor * estimate.COARSER**found["refinements"]
-    left = 1 - factor if answers.summary["front_rise"] else 1 - finer**2 if wanted.name in draws.HELD_MIXTURE else 1.0
+    left = 1 - factor if answers.summary["front_rise"] else 1 - factor**2 if twice else 1.0
     apart = {name: error / left for name, error in
              estimate.difference(best, answers.summary, answers.speed, answers.used.get("radius")).items()}
     stated = found["estimated_error"]

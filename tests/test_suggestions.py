@@ -71,7 +71,7 @@ def test_a_unit_in_a_scene_file_is_named(tmp_path, line, said):
     assert error.value.code == 10
 
 
-@pytest.mark.parametrize("top, said", [({"smooth": True}, "body.1.smooth: no such entry, set to 'true' (accepted: name, shape, "),
+@pytest.mark.parametrize("top, said", [({"smooth": True}, "body.1.smooth: no such entry, set to 'true' (accepted: shape, radius, "),
                                        ({"radius": True}, "body.1.radius: 'true' is not a number (accepted: "),
                                        ({"shape": True}, "body.1.shape: 'true' is not known (accepted: disc|"),
                                        ({"law": False}, "body.1.law: 'false' is not known (accepted: svk|")])

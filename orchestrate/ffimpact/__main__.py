@@ -36,7 +36,8 @@ def guarded(run: Command, argv: list[str]) -> int:
     try:
         return run(argv) or 0
     except Failure as failure:
-        print(f"ffimpact: {failure}", file=sys.stderr)
+        for message in failure.messages:
+            print(f"ffimpact: {message}", file=sys.stderr)
         if failure.folder:
             print(f"files of the failed run: {shown(failure.folder)}")
         return failure.code

@@ -1,8 +1,11 @@
 """Expected failures: one line for the user and an exit code (the table in the run contract)."""
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
+from typing import Self, TypeVar
+
+T = TypeVar("T")
 
 MORE = " ..."  # behind a text that is cut
 MOST = 200     # characters of a value that a message repeats
@@ -19,9 +22,14 @@ class Failure(Exception):
     code = 1
     folder: Path | None = None
 
-    def __init__(self, message: str, code: int | None = None):
-        super().__init__(" ".join(message.splitlines()))   # one line, whatever the user's text had in it
+    def __init__(self, *messages: str, code: int | None = None):
+        self.messages = tuple(" ".join(one.splitlines()) for one in messages)   # a line each, whatever the user's text had in it
+        super().__init__("\n".join(self.messages))
         self.code = self.code if code is None else code
+
+    def within(self, place: str) -> Self:
+        """The same of an entry in `place`, a file or a table."""
+        return type(self)(*(f"{place}: {one}" for one in self.messages), code=self.code)
 
 
 def brief(value) -> str:
@@ -93,4 +101,17 @@ class Busy(Unreadable):
 def of_code(code: int, message: str) -> Failure:
     """The failure of an exit code."""
     kinds = {one.code: one for one in (StepFailed, MaterialFailed, TooLong, BadInput, NotInstalled, Unreadable)}
-    return kinds[code](message) if code in kinds else Failure(message, code)
+    return kinds[code](message) if code in kinds else Failure(message, code=code)
+
+
+def gathered(acts: Iterable[Callable[[], T]]) -> list[T]:
+    """What each of some acts returns; one BadInput with all that they find wrong."""
+    found, messages = [], []
+    for act in acts:
+        try:
+            found.append(act())
+        except BadInput as error:
+            messages += error.messages
+    if messages:
+        raise BadInput(*messages)
+    return found

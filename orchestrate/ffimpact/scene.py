@@ -63,4 +63,4 @@ def load(name: str | Path) -> Scene:
     try:
         return read(given, path.parent, path.stem)
     except BadInput as error:
-        raise BadInput(f"{path}: {error}") if path.parent != SCENES else error from None
+        raise error.within(str(path)) if path.parent != SCENES else error from None

@@ -1,4 +1,4 @@
-"""The JSON schema of scene files, from the models of model.py and the table of parameters: editors
+"""The JSON schema of scene files, from the models of input/models.py and the table of parameters: editors
 complete and check TOML files with it (ffimpact schema)."""
 
 from __future__ import annotations
@@ -7,11 +7,11 @@ import json
 from pathlib import Path
 from typing import Any
 
+from pydantic.json_schema import models_json_schema
+
 from .input import parameters
 from .input.dimension import SCRIPTS
-from .input.parameters import Parameter
-from .model import BODIES, OBSTACLES, Contact, Entries, Load, Material, Pair, Scene, Support
-from .scenes.bodies import MATERIAL, SIZES
+from .input.models import BODIES, OBSTACLES, Contact, Top
 
 __all__ = ["FILE", "schema", "text"]
 
@@ -21,38 +21,34 @@ DRAFT = "https://json-schema.org/draft/2020-12/schema"
 
 def schema() -> dict[str, Any]:
     """The schema of a scene file: one of bodies and obstacles in tables, or one of the paper's cases."""
-    shared = {name: rule(parameters.PARAMETERS[name]) for name in (*MATERIAL, *SIZES)}
-    of_bodies = {
-        "type": "object",
-        "properties": entries(Scene, leave=("bodies", "obstacles", "contact", "folder"))
-        | shared
-        | {
-            "script": {"type": "string"},
-            "body": {
-                "type": "array",
-                "minItems": 1,
-                "items": {"oneOf": [body(one) for one in BODIES]},
-            },
-            "obstacle": {"type": "array", "items": {"oneOf": [obstacle(one) for one in OBSTACLES]}},
-            "contact": {
-                "type": "object",
-                "properties": entries(Contact, leave=("pair",)) | {"pair": tables(Pair)},
-                "additionalProperties": False,
-            },
-        },
-        "required": ["body"],
-        "additionalProperties": False,
+    models = [Top, Contact, *BODIES.values(), *OBSTACLES.values()]
+    _, made = models_json_schema([(one, "validation") for one in models])
+    known: dict[str, Any] = {name: _plain(one) for name, one in made["$defs"].items()}
+    for word, table in (("shape", BODIES), ("kind", OBSTACLES)):
+        for name, model in table.items():
+            one = known[model.__name__]
+            one["properties"] = {word: {"const": name}} | one["properties"]
+            one["required"] = [word, *one.get("required", [])]
+    of_bodies = known.pop("Top")
+    of_bodies["properties"] |= {
+        "body": {"type": "array", "minItems": 1, "items": {"oneOf": _references(BODIES)}},
+        "obstacle": {"type": "array", "items": {"oneOf": _references(OBSTACLES)}},
+        "contact": {"$ref": "#/$defs/Contact"},
     }
+    of_bodies["required"] = ["body"]
     scripts = sorted(
-        {script for one in parameters.PARAMETERS.values() for script in one.scripts} - set(SCRIPTS)
+        {name for one in parameters.PARAMETERS.values() for name in one.scripts} - set(SCRIPTS)
     )
     case = {
         "type": "object",
         "properties": {"title": {"type": "string"}, "script": {"enum": scripts}}
-        | {name: rule(parameters.PARAMETERS[name]) for name in parameters.names()},
+        | {
+            name: one.schema() | {"description": one.meaning}
+            for name, one in parameters.PARAMETERS.items()
+        },
         "additionalProperties": False,
     }
-    return {"$schema": DRAFT, "title": "ffimpact scene", "oneOf": [of_bodies, case]}
+    return {"$schema": DRAFT, "title": "ffimpact scene", "oneOf": [of_bodies, case], "$defs": known}
 
 
 def text() -> str:
@@ -60,87 +56,26 @@ def text() -> str:
     return json.dumps(schema(), indent=1, ensure_ascii=False) + "\n"
 
 
-def rule(one: Parameter) -> dict[str, Any]:
-    """What is accepted of a parameter, with its unit and meaning."""
-    told = {
-        "description": f"{one.help} [{one.unit}]" if one.unit not in ("", "-") else one.help,
-        "default": one.default,
-    }
-    if one.kind == "word":
-        return told | {"enum": list(one.words)}
-    if one.kind == "numbers":
-        return told | {"type": ["string", "number", "array"]}
-    number = {
-        "type": "integer" if one.kind == "int" else "number",
-        "minimum": one.low,
-        "maximum": one.high,
-    }
-    return told | ({"anyOf": [number, {"enum": list(one.words)}]} if one.words else number)
+def _references(table: dict[str, Any]) -> list[dict[str, str]]:
+    return [{"$ref": f"#/$defs/{model.__name__}"} for model in table.values()]
 
 
-def entries(model: type[Entries], leave: tuple[str, ...] = ()) -> dict[str, Any]:
-    """The entries of a model: those that are parameters by their rule, the others by their type."""
-    known = parameters.PARAMETERS
-    own = model.model_json_schema(mode="validation").get("properties", {})
-    found: dict[str, Any] = {}
-    for name, field in model.model_fields.items():
-        if name in leave:
-            continue
-        if name in known and not (model in BODIES.values() and name == "radius"):
-            found[name] = rule(known[name])
-        else:
-            told = {
-                key: value
-                for key, value in own.get(name, {}).items()
-                if key not in ("title", "default")
-            }
-            found[name] = _without_null(told) or {"description": field.description or ""}
+def _plain(made: Any) -> Any:
+    """Without null, which TOML has not, and titles that repeat names."""
+    if isinstance(made, list):
+        return [_plain(one) for one in made]
+    if not isinstance(made, dict):
+        return made
+    kinds = [one for one in made.get("anyOf", []) if one != {"type": "null"}]
+    found = {
+        name: _plain(value)
+        for name, value in made.items()
+        if name != "anyOf"
+        and not (name == "title" and isinstance(value, str))
+        and not (name == "default" and value is None)
+    }
+    if len(kinds) == 1:
+        found |= _plain(kinds[0])
+    elif kinds:
+        found["anyOf"] = _plain(kinds)
     return found
-
-
-def _without_null(told: dict[str, Any]) -> dict[str, Any]:
-    """A type that may be left out, not null: TOML has none."""
-    kinds = [one for one in told.pop("anyOf", []) if one != {"type": "null"}]
-    if kinds and not any("$ref" in str(one) for one in kinds):
-        told |= kinds[0] if len(kinds) == 1 else {"anyOf": kinds}
-    return {key: value for key, value in told.items() if "$ref" not in str(value)}
-
-
-def tables(model: type[Entries]) -> dict[str, Any]:
-    """A list of tables of a model."""
-    needed = [name for name, field in model.model_fields.items() if field.is_required()]
-    one = {
-        "type": "object",
-        "properties": entries(model),
-        "required": needed,
-        "additionalProperties": False,
-    }
-    return {"type": "array", "items": one}
-
-
-def body(shape: str) -> dict[str, Any]:
-    """A table [[body]] of a shape."""
-    model = BODIES[shape]
-    own = entries(model, leave=("material", "support", "load"))
-    needed = [name for name, field in model.model_fields.items() if field.is_required()]
-    return {
-        "type": "object",
-        "properties": {"shape": {"const": shape}}
-        | entries(Material)
-        | own
-        | {"support": tables(Support), "load": tables(Load)},
-        "required": ["shape", *(name for name in needed if name != "position"), "position"],
-        "additionalProperties": False,
-    }
-
-
-def obstacle(kind: str) -> dict[str, Any]:
-    """A table [[obstacle]] of a kind."""
-    model = OBSTACLES[kind]
-    needed = [name for name, field in model.model_fields.items() if field.is_required()]
-    return {
-        "type": "object",
-        "properties": {"kind": {"const": kind}} | entries(model),
-        "required": ["kind", *needed],
-        "additionalProperties": False,
-    }

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..input.tables import SHORTEST
+from ..input.rules import SHORTEST
 
 SAMPLES = 400                # points on a loop where its shape is wanted as a polygon
 CHUNK = 500                  # points at a time, against as many segments as there are

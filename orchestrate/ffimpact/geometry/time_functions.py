@@ -15,7 +15,7 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
 from ..failure import BadInput, brief
-from ..input.tables import LONGEST, Table
+from ..input.rules import LONGEST
 from . import implicit
 
 __all__ = ["TimeFunction", "constant", "farthest", "functions", "of_csv", "of_entry", "of_table"]
@@ -118,10 +118,9 @@ def of_csv(entry: str, path: Path, columns: str) -> dict[str, list[float]]:
     return {name: [float(row[k]) for row in rows[1:]] for k, name in enumerate(rows[0])}
 
 
-def functions(table: Table, key: str, names: str, end_time: float) -> tuple[TimeFunction, ...]:
-    """The entry `key` of a table as a function for each of the names: a list of them, one alone, or
-    a table {t, ...}. BadInput, naming the entry."""
-    entry, given = table.at(key), table.given[key]
+def functions(entry: str, given: object, names: str, end_time: float) -> tuple[TimeFunction, ...]:
+    """An entry as a function for each of the names: a list of them, one alone, or a table {t, ...}.
+    BadInput, naming the entry."""
     if isinstance(given, dict):
         if set(given) != {"t", *names}:
             raise BadInput(f"{entry}: '{brief(given)}' is no table (accepted: t and {', '.join(names)})")

@@ -1,13 +1,22 @@
 """What one entry of a scene accepts, and the words for what it does not."""
 
+from __future__ import annotations
+
 import math
 import re
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
+from pydantic_core import CoreSchema, core_schema
 
 from ..failure import BadInput, brief, suggestion, unknown
 
-__all__ = ["Parameter", "Value", "integer", "numbers", "real", "with_unit", "word"]
+if TYPE_CHECKING:
+    from .dimension import Dimension
+
+__all__ = ["Parameter", "Rule", "Value", "integer", "numbers", "plain", "real", "with_unit", "word"]
 
 Value = float | int | str
 
@@ -37,14 +46,59 @@ OTHER_UNITS = {
 }
 
 
+class Rule:
+    """What an entry of a model accepts: Annotated[float, rule]."""
+
+    accepted: str  # in the words of messages
+    meaning: str = ""
+
+    def checked(self, given: Any, of: Dimension | None) -> Any:
+        """The value as the program uses it. BadInput where it is not accepted, with what follows the entry's name:
+        ": 'x' is not a number (accepted: ...)", or ".2: ..." of a component. `of`: the scene's dimension, where it is known."""
+        raise NotImplementedError
+
+    def accepted_in(self, of: Dimension | None) -> str:
+        """What is accepted in a dimension."""
+        return self.accepted
+
+    def schema(self) -> dict[str, Any]:
+        """The same as JSON schema."""
+        raise NotImplementedError
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        return core_schema.with_info_plain_validator_function(self._validated)
+
+    def __get_pydantic_json_schema__(
+        self, core: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        return self.schema() | ({"description": self.meaning} if self.meaning else {})
+
+    def _validated(self, given: Any, info: ValidationInfo) -> Any:
+        try:
+            return self.checked(plain(given), (info.context or {}).get("of"))
+        except BadInput as error:
+            raise ValueError(str(error)) from None
+
+
+def plain(value: Any) -> Any:
+    """Arrays and numbers of numpy as lists and numbers, tuples as lists: what TOML has."""
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    if isinstance(value, list | tuple):
+        return [plain(one) for one in value]
+    return {key: plain(one) for key, one in value.items()} if isinstance(value, dict) else value
+
+
 @dataclass(frozen=True)
-class Parameter:
+class Parameter(Rule):
     """One entry. `kind` is real, int, word or numbers (text, separated by commas); `low`/`high` bound numbers, `words`
     lists the words that are accepted, beside numbers too (auto); `scripts` those that take it."""
 
     name: str
     kind: str
-    default: Value
+    default: Any  # None: there is none
     unit: str
     help: str
     low: float = 0.0
@@ -53,7 +107,28 @@ class Parameter:
     scripts: tuple[str, ...] = ()
 
     @property
-    def accepted(self) -> str:
+    def meaning(self) -> str:  # type: ignore[override]
+        """What it is, with its unit."""
+        return f"{self.help} [{self.unit}]" if self.unit not in ("", "-") else self.help
+
+    def checked(self, given: Any, of: Dimension | None) -> Value:
+        return replace(self, name="").check(given)
+
+    def schema(self) -> dict[str, Any]:
+        told = {} if self.default is None else {"default": self.default}
+        if self.kind == "word":
+            return told | {"enum": list(self.words)}
+        if self.kind == "numbers":
+            return told | {"type": ["string", "number", "array"]}
+        number = {
+            "type": "integer" if self.kind == "int" else "number",
+            "minimum": self.low,
+            "maximum": self.high,
+        }
+        return told | ({"anyOf": [number, {"enum": list(self.words)}]} if self.words else number)
+
+    @property
+    def accepted(self) -> str:  # type: ignore[override]
         """What is accepted, in the words of the error messages."""
         if self.kind == "numbers":
             return "none, or numbers separated by commas"
@@ -65,8 +140,7 @@ class Parameter:
 
     def check(self, given: Any) -> Value:
         """`given` (text, a TOML value or a number of numpy) as float, int or word; BadInput where it is not accepted."""
-        if type(given).__module__ == "numpy" and hasattr(given, "item"):
-            given = given.tolist()
+        given = plain(given)
         if isinstance(given, str) and given in self.words:
             return given
         if self.kind == "word":

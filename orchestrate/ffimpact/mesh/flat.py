@@ -17,42 +17,39 @@ from ..geometry.outlines import (
     polygon_loop,
     self_crossing,
 )
-from ..input import parameters
-from ..input.tables import LONGEST, SHORTEST, Table
+from ..input.models import Body, Mesh, Polygon, Ring
+from ..input.rules import LONGEST, SHORTEST
 from . import gmsh_file, mesh
 
-SHAPES = {"disc": ("radius",), "ellipse": ("semi_axes",), "rectangle": ("width", "height"), "ring": ("radius", "inner_radius"),
-          "polygon": ("vertices", "holes"), "mesh": ("file", "scale")}
 LOOPS = {"disc": lambda radius: (circle_loop(radius),), "ring": lambda radius, inner: (circle_loop(radius), circle_loop(inner)),
          "ellipse": lambda semi_axes: (ellipse_loop(*semi_axes),),
          "rectangle": lambda *sides: (Loop(np.array(sides) / 2 * [[-1, -1], [1, -1], [1, 1], [-1, 1]]),)}
-MOTION = ("angle", "speed", "direction", "spin")      # entries beside position and velocity
 
 
-def shape(table: Table, folder: Path) -> tuple[Outline, mesh.Mesh | None]:
+def shape(body: Body, folder: Path) -> tuple[Outline, mesh.Mesh | None]:
     """The outline of a body, and its mesh where a file brings it, both about the centre of area."""
-    found = mesh_file(table, folder, "disc-plane") if table.given["shape"] == "mesh" else None
-    outline = mesh_outline(found) if found else _outline(table)
+    found = mesh_file(body, folder, "disc-plane") if isinstance(body, Mesh) else None
+    outline = mesh_outline(found) if found else _outline(body)
     centre = outline.area_centre
     return outline.placed(-centre, 0.0), found and found.moved(-centre)
 
 
-def motion(table: Table) -> dict:
+def motion(body: Body) -> dict:
     """Where a body is at the start and how it moves: position [m], angle [rad], velocity [m/s], spin [rad/s]."""
-    return {"position": table.numbers("position"), "angle": math.radians(table.number("angle", -36000, 36000, 0.0)),
-            "velocity": _velocity(table), "spin": float(table.parameter("spin", parameters.PARAMETERS["spin"]))}
+    return {"position": np.array(body.position), "angle": math.radians(body.angle or 0.0), "velocity": _velocity(body),
+            "spin": body.spin or 0.0}
 
 
-def _velocity(table: Table) -> np.ndarray:
-    if "velocity" in table and ("speed" in table or "direction" in table):
-        raise BadInput(f"{table.path}.velocity: '{brief(table.given['velocity'])}' stands beside speed or direction (accepted: velocity, "
+def _velocity(body: Body) -> np.ndarray:
+    speed, degrees = body.speed, body.direction
+    if body.velocity is not None and (speed is not None or degrees is not None):
+        raise BadInput(f"{body.at('velocity')}: '{body.given('velocity')}' stands beside speed or direction (accepted: velocity, "
                        f"or speed with direction)")
-    if ("speed" in table) != ("direction" in table):
-        missing = "direction" if "speed" in table else "speed"
-        raise BadInput(f"{table.path}.{missing}: is missing (accepted: speed [m/s] with direction [deg], counter-clockwise from x)")
-    if "speed" not in table:
-        return table.numbers("velocity", (0.0, 0.0))
-    speed, degrees = table.number("speed", 0), table.number("direction", -36000, 36000)
+    if (speed is None) != (degrees is None):
+        missing = "direction" if degrees is None else "speed"
+        raise BadInput(f"{body.at(missing)}: is missing (accepted: speed [m/s] with direction [deg], counter-clockwise from x)")
+    if speed is None or degrees is None:
+        return np.array(body.velocity or [0.0, 0.0])
     return speed * np.array([_sin(degrees + 90), _sin(degrees)])
 
 
@@ -63,21 +60,19 @@ def _sin(degrees: float) -> float:
 
 # ---- shapes
 
-def _outline(table: Table) -> Outline:
-    kind = table.given["shape"]
-    if kind == "polygon":
-        return _polygon(table)
-    sizes = table.lengths(SHAPES[kind])
-    if kind == "ring" and sizes[1] >= sizes[0]:
-        raise BadInput(f"{table.path}.inner_radius: {sizes[1]:g} is not less than the radius {sizes[0]:g}")
-    return Outline(LOOPS[kind](*sizes))
+def _outline(body: Body) -> Outline:
+    if isinstance(body, Polygon):
+        return _polygon(body)
+    if isinstance(body, Ring) and body.inner_radius >= body.radius:
+        raise BadInput(f"{body.at('inner_radius')}: {body.inner_radius:g} is not less than the radius {body.radius:g}")
+    return Outline(LOOPS[body.shape](*body.sizes))
 
 
-def _polygon(table: Table) -> Outline:
+def _polygon(body: Polygon) -> Outline:
     """The polygon with its holes; BadInput where it crosses itself, or a hole is not inside it and apart from the others."""
     import shapely  # here: other bodies need none
-    outer, holes = table.points("vertices"), table.polygons("holes")
-    named = [(f"{table.path}.vertices", outer), *((f"{table.path}.holes.{k}", hole) for k, hole in enumerate(holes, 1))]
+    outer, holes = np.array(body.vertices), [np.array(one) for one in body.holes or []]
+    named = [(body.at("vertices"), outer), *((f"{body.at('holes')}.{k}", hole) for k, hole in enumerate(holes, 1))]
     for path, corners in named:
         check_simple(path, corners)
     areas = [shapely.Polygon(corners) for _, corners in named]
@@ -102,12 +97,12 @@ def check_simple(path: str, corners: np.ndarray) -> None:
 
 # ---- mesh files
 
-def mesh_file(table: Table, folder: Path, script: str) -> mesh.Mesh:
+def mesh_file(body: Mesh, folder: Path, script: str) -> mesh.Mesh:
     """The mesh of a body's file, checked as any mesh file of edp/<script>.edp is, which also says what lies on circles: a whole body in the
     plane, or half a meridian plane, or what of it is to the right of an axis that it does not reach."""
-    name, file = table.text("file", ""), None
+    name, file = body.file or "", None
     if "\0" in name or not _may_be_read(folder / name):
-        raise BadInput(f"{table.path}.file: {brief(repr(name))} is no file (accepted: FreeFEM's or gmsh's .msh)")
+        raise BadInput(f"{body.at('file')}: {brief(repr(name))} is no file (accepted: FreeFEM's or gmsh's .msh)")
     try:
         text = gmsh_file.load(folder / name)
         with tempfile.NamedTemporaryFile(suffix=".msh") as file:
@@ -129,9 +124,9 @@ def mesh_file(table: Table, folder: Path, script: str) -> mesh.Mesh:
             mesh.write(replace(found, labels=labels), Path(file.name))
             said = describe({"mesh": file.name, "radius": size / 2 if SHORTEST < size < LONGEST else 1.0}, script)
     except BadInput as error:
-        raise BadInput(f"{table.path}.file: {str(error).removeprefix('mesh: ').replace(file.name if file else name, name)}") from None
+        raise BadInput(f"{body.at('file')}: {str(error).removeprefix('mesh: ').replace(file.name if file else name, name)}") from None
     hubs = np.array([*said["circles"], [math.nan] * 3])[said["circle_of"], :2]
-    return replace(found, hubs=hubs).scaled(mesh.scale_of(table))
+    return replace(found, hubs=hubs).scaled(body.scale or 1.0)
 
 
 def _may_be_read(path: Path) -> bool:

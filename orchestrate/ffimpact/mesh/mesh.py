@@ -24,7 +24,6 @@ from typing import ClassVar
 import numpy as np
 
 from ..failure import BadInput, NotInstalled
-from ..input.tables import Table
 from ..places import INSTALLED, PACKAGE
 
 FREE, AXIS = 1, 2          # boundary labels
@@ -375,8 +374,3 @@ def read(path: Path) -> Mesh:
     regions = np.unique(triangles[:, 3]).astype(int)
     return Mesh(points[:, :2], triangles[:, :3].astype(int) - 1, edges[:, :2].astype(int) - 1, edges[:, 2].astype(int),
                 region=int(regions[0]) if len(regions) == 1 else 0)
-
-
-def scale_of(table: Table) -> float:
-    """Metres per unit of length in the file of a [[body]] table."""
-    return table.number("scale", 1e-9, 1e9, 1.0)

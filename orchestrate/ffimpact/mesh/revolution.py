@@ -20,82 +20,63 @@ from ..geometry.outlines import (
     ellipse_loop,
     signed_area,
 )
-from ..input.tables import LONGEST, Table
+from ..input.models import Body, Mesh, Polygon, Shell, Torus, Tube
 from . import flat, mesh
 
-SHAPES = {"ball": ("radius",), "shell": ("radius", "inner_radius"), "ellipsoid": ("semi_axes",),
-          "cylinder": ("radius", "height"), "polygon": ("vertices",), "tube": ("radius", "inner_radius", "height"),
-          "torus": ("radius", "section"),
-          "mesh": ("file", "scale")}
 LOOPS = {"ball": circle_loop, "ellipsoid": lambda semi_axes: ellipse_loop(*semi_axes),
          "cylinder": lambda r, height: Loop(np.array([r, height / 2]) * [[0, -1], [1, -1], [1, 1], [0, 1], [-1, 1], [-1, -1]])}
-MOTION = ()
 
 
-def shape(table: Table, folder: Path) -> tuple[Outline, mesh.Mesh | None]:
+def shape(body: Body, folder: Path) -> tuple[Outline, mesh.Mesh | None]:
     """The section of a body, and the mesh of its half x >= 0 where a file brings it, both about the centre of volume."""
-    if table.given["shape"] == "mesh":
-        half = flat.mesh_file(table, folder, "ball-axisymmetric")
+    if isinstance(body, Mesh):
+        half = flat.mesh_file(body, folder, "ball-axisymmetric")
         if not (half.labels == mesh.AXIS).any():
-            return _tube_mesh(table, half)
+            return _tube_mesh(body, half)
         half.points[np.unique(half.edges[half.labels == mesh.AXIS]), 0] = 0.0      # what a file has of the axis to round-off
         centre = np.array([0.0, _centre_of_volume(half.points[half.triangles])])
         half = half.moved(-centre)
         return flat.mesh_outline(whole(half)), half
-    if table.given["shape"] == "shell":
-        radius, inner = _radii(table)
-        return Outline((circle_loop(radius), circle_loop(inner))), None
-    loop = _tube_loop(table) or _loop(table)
+    if isinstance(body, Shell):
+        _check_radii(body)
+        return Outline((circle_loop(body.radius), circle_loop(body.inner_radius))), None
+    loop = _tube_loop(body) or _loop(body)
     if loop.polygon[:, 0].min() > 0:
         centre = np.array([0.0, _loop_centre(loop)])
         return TubeOutline((loop.placed(-centre, 0.0), image(loop).placed(-centre, 0.0))), None
     return Outline((loop.placed(np.array([0.0, -_loop_centre(loop)]), 0.0),)), None
 
 
-def motion(table: Table) -> dict:
+def motion(body: Body) -> dict:
     """Where a body is at the start and how it moves along the axis."""
-    return {"position": on_axis(table, "position"), "angle": 0.0, "velocity": on_axis(table, "velocity", (0.0, 0.0)), "spin": 0.0}
+    return {"position": np.array(body.position), "angle": 0.0, "velocity": np.array(body.velocity or [0.0, 0.0]), "spin": 0.0}
 
 
-def on_axis(table: Table, key: str, default: tuple[float, float] | None = None) -> np.ndarray:
-    """A place on the axis, or a vector along it, (2,): [0, y], or y alone."""
-    if key in table and not isinstance(table.given[key], list):
-        return np.array([0.0, table.number(key, -LONGEST)])
-    found = table.numbers(key, default)
-    if found[0] != 0:
-        raise BadInput(f"{table.at(key)}: x is {found[0]:g}, off the axis of revolution (accepted: [0, y], or y alone)")
-    return found
-
-
-def _loop(table: Table) -> Loop:
+def _loop(body: Body) -> Loop:
     """The outline of a section, with corners where it crosses the axis."""
-    kind = table.given["shape"]
-    if kind == "polygon":
-        return Loop(closed_over_axis(f"{table.path}.vertices", table.points("vertices")))
-    return LOOPS[kind](*table.lengths(SHAPES[kind]))
+    if isinstance(body, Polygon):
+        return Loop(closed_over_axis(body.at("vertices"), np.array(body.vertices)))
+    return LOOPS[body.shape](*body.sizes)
 
 
-def _radii(table: Table) -> tuple[float, float]:
-    """Outer and inner radius [m] of a hollow body."""
-    radius, inner = table.number("radius"), table.number("inner_radius")
-    if not inner < radius:
-        raise BadInput(f"{table.at('inner_radius')}: {inner:g} m is no smaller than radius (accepted: below {radius:g} m)")
-    return radius, inner
+def _check_radii(body: Shell | Tube) -> None:
+    """BadInput where a hollow body has no wall."""
+    if not body.inner_radius < body.radius:
+        raise BadInput(f"{body.at('inner_radius')}: {body.inner_radius:g} m is no smaller than radius (accepted: below {body.radius:g} m)")
 
 
-def _tube_loop(table: Table) -> Loop | None:
+def _tube_loop(body: Body) -> Loop | None:
     """The loop of a section to the right of the axis, that does not reach it; None of another body."""
-    kind = table.given["shape"]
-    if kind == "torus":
-        radius, section = table.lengths(SHAPES[kind])
-        if not section < radius:
-            raise BadInput(f"{table.at('section')}: {section:g} m reaches the axis (accepted: below radius, {radius:g} m)")
-        return circle_loop(section).placed(np.array([radius, 0.0]), 0.0)
-    if kind == "tube":
-        (radius, inner), height = _radii(table), table.number("height")
-        return Loop(np.array([[inner, -height / 2], [radius, -height / 2], [radius, height / 2], [inner, height / 2]]))
-    if kind == "polygon" and (right := table.points("vertices"))[:, 0].min() > 0:
-        flat.check_simple(f"{table.path}.vertices", right)
+    if isinstance(body, Torus):
+        if not body.section < body.radius:
+            raise BadInput(f"{body.at('section')}: {body.section:g} m reaches the axis (accepted: below radius, {body.radius:g} m)")
+        return circle_loop(body.section).placed(np.array([body.radius, 0.0]), 0.0)
+    if isinstance(body, Tube):
+        _check_radii(body)
+        inner, outer, half = body.inner_radius, body.radius, body.height / 2
+        return Loop(np.array([[inner, -half], [outer, -half], [outer, half], [inner, half]]))
+    if isinstance(body, Polygon) and (right := np.array(body.vertices))[:, 0].min() > 0:
+        flat.check_simple(body.at("vertices"), right)
         return Loop(right if signed_area(right) > 0 else right[::-1])
     return None
 
@@ -107,15 +88,15 @@ def image(loop: Loop) -> Loop:
     return Loop(loop.corners[::-1] * [-1, 1])
 
 
-def _tube_mesh(table: Table, half: mesh.Mesh) -> tuple[TubeOutline, mesh.Mesh]:
+def _tube_mesh(body: Mesh, half: mesh.Mesh) -> tuple[TubeOutline, mesh.Mesh]:
     """The section and the mesh of a body from a file that does not reach the axis."""
     if half.points[:, 0].min() <= 0:
-        raise BadInput(f"{table.at('file')}: it lies down to x = {half.points[:, 0].min():g} m (accepted: to the right of the axis, "
+        raise BadInput(f"{body.at('file')}: it lies down to x = {half.points[:, 0].min():g} m (accepted: to the right of the axis, "
                        f"or with edges of the label {mesh.AXIS} on it)")
     half = half.moved(-np.array([0.0, _centre_of_volume(half.points[half.triangles])]))
     outline = flat.mesh_outline(half)
     if len(outline.loops) > 1:
-        raise BadInput(f"{table.at('file')}: a section that does not reach the axis and has a hole (accepted: without holes)")
+        raise BadInput(f"{body.at('file')}: a section that does not reach the axis and has a hole (accepted: without holes)")
     return TubeOutline((outline.loops[0], flat.mesh_outline(_mirror(half)).loops[0])), half
 
 

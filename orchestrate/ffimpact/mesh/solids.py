@@ -10,14 +10,14 @@ from pathlib import Path
 
 import numpy as np
 
-from ..failure import BadInput, brief
+from ..failure import BadInput
 from ..geometry import outlines, tumbling
-from ..input.tables import Table
-from . import curved, mesh, solid_file
+from ..input.models import Body, Mesh
+from . import curved, solid_file
 from .solid_mesh import MOST_CELLS, Sizes, SolidMesh, expected_cells, mesh_shape
 
-SHAPES = {"ball": ("radius",), "box": ("width", "height", "depth"), "cylinder": ("radius", "height"), "mesh": ("file", "scale")}
-MOTION = ("angle", "turn", "spin")
+MADE = {"ball": lambda radius: ball(radius), "box": lambda *extent: box(np.array(extent)),
+        "cylinder": lambda radius, height: cylinder(radius, height)}
 SAMPLES = 1500               # points on a surface where its shape is wanted as points
 NEAREST = 16                 # triangles of a surface, by their centres, among which the nearest one is sought
 # share of the accuracy by which flat elements on its roundings may change the volume of a geometry
@@ -250,44 +250,39 @@ def _with_curves(made: SolidMesh) -> SolidMesh:
 
 # ---- tables
 
-def shape(table: Table, folder: Path) -> tuple[Solid, SolidMesh | None]:
+def shape(body: Body, folder: Path) -> tuple[Solid, SolidMesh | None]:
     """The solid of a body about its centre of volume, and its mesh where a file brings it."""
-    kind = table.given["shape"]
-    if kind == "mesh":
-        return _of_file(table, folder)
-    sizes = table.lengths(SHAPES[kind])
-    made = box(np.array(sizes)) if kind == "box" else {"ball": ball, "cylinder": cylinder}[kind](*sizes)
-    return Solid(made, np.zeros(3), np.eye(3)), None
+    if isinstance(body, Mesh):
+        return _of_file(body, folder)
+    return Solid(MADE[body.shape](*body.sizes), np.zeros(3), np.eye(3)), None
 
 
-def _of_file(table: Table, folder: Path) -> tuple[Solid, SolidMesh | None]:
-    name = table.text("file", "")
+def _of_file(body: Mesh, folder: Path) -> tuple[Solid, SolidMesh | None]:
+    name, scale = body.file, body.scale or 1.0
     if not name:
-        raise BadInput(f"{table.at('file')}: is missing (accepted: {', '.join(solid_file.MESHES + solid_file.GEOMETRIES)})")
+        raise BadInput(f"{body.at('file')}: is missing (accepted: {', '.join(solid_file.MESHES + solid_file.GEOMETRIES)})")
     path = folder / name
     try:
-        found = solid_file.read(path).scaled(mesh.scale_of(table))
+        found = solid_file.read(path).scaled(scale)
     except BadInput as error:
-        raise BadInput(f"{table.path}.file: {error}") from None
+        raise BadInput(f"{body.at('file')}: {error}") from None
     sphere = next((one for one, own in curved.surfaces(found.points, found.faces) if not len(one.axis) and len(own) == len(found.faces)),
                   None)
     centre = sphere.centre if sphere else found.centre
     centred = found.moved(-centre)
     shape = ball(sphere.radius) if sphere else surface(centred.points[centred.faces])
     if solid_file.is_geometry(path):
-        geometry = solid_file.Geometry(path, mesh.scale_of(table), centre, centred)
+        geometry = solid_file.Geometry(path, scale, centre, centred)
         return Solid(shape, np.zeros(3), np.eye(3), geometry), None
     return Solid(shape, np.zeros(3), np.eye(3)), centred
 
 
-def motion(table: Table) -> dict:
+def motion(body: Body) -> dict:
     """Where a body is at the start and how it moves: position [m], turn [rad], velocity [m/s], spin [rad/s], vectors (3,)."""
-    if "angle" in table and "turn" in table:
-        raise BadInput(f"{table.path}.angle: '{brief(table.given['angle'])}' stands beside turn (accepted: angle about z, or turn = "
+    if body.angle is not None and body.turn is not None:
+        raise BadInput(f"{body.at('angle')}: '{body.given('angle')}' stands beside turn (accepted: angle about z, or turn = "
                        f"[x, y, z])")
-    none = (0.0,) * 3
-    turn = [0.0, 0.0, table.number("angle", -36000, 36000)] if "angle" in table else table.numbers("turn", none, 3, -36000, 36000)
-    about_z = "spin" in table and not isinstance(table.given["spin"], list)
-    spin = [0.0, 0.0, table.number("spin", -1e12, 1e12)] if about_z else table.numbers("spin", none, 3, -1e12, 1e12)
-    return {"position": table.numbers("position", count=3), "angle": np.radians(turn), "velocity": table.numbers("velocity", none, 3),
-            "spin": np.array(spin)}
+    none = [0.0, 0.0, 0.0]
+    turn = [0.0, 0.0, body.angle] if body.angle is not None else body.turn or none
+    return {"position": np.array(body.position), "angle": np.radians(turn), "velocity": np.array(body.velocity or none),
+            "spin": np.array(body.spin or none)}

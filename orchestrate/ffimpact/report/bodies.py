@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.transforms import AffineDeltaTransform
 
-from ..input import dimension
+from ..input import dimension, models
 from ..input.parameters import Value
 from ..output import vtu
 from ..output.results import body_names, mechanical_energy, suffixes
@@ -220,7 +220,10 @@ def shapes(series: list[tuple[float, Path]], scene: dict[str, Value], field: str
 
 def obstacles_of(scene: dict[str, Value]) -> list[Obstacle]:
     """The rigid obstacles of a scene as used."""
-    return obstacles.read(scene.get("obstacle", []), dimension.of(scene)) if are_several(scene) else [PLANE]
+    if not are_several(scene):
+        return [PLANE]
+    of = dimension.of(scene)
+    return obstacles.read(models.tables(scene, "obstacle", of), of, scene.get("end_time") or 0.0, Path())
 
 
 def limits(found: list[Body]) -> tuple[float, float, float, float]:

@@ -19,16 +19,17 @@ from ..failure import BadInput
 from ..freefem.describe import describe
 from ..geometry.outlines import Loop, TubeOutline, rotation
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID
+from ..input.models import MATERIAL, OWN
 from ..input.parameters import Value
 from ..input.tables import to_toml
 from ..mesh import mesh, revolution, solid_mesh, solids
 from ..mesh.mesh import AXIS, FREE, Curve, Sizes, mesh_body, nearest
 from .approach import Meeting, loaded_pull, meetings, refuse_nothing, refuse_sinking, turned
-from .bodies import DAMPING, MATERIAL, STIFF, Body
+from .bodies import DAMPING, STIFF, Body
 from .front import Front, fronts
 from .mirror import COPIES, FOLDED, copies
 from .parts import sections
-from .scene import OWN, SELF_CONTACT, Pair, Scene
+from .scene import Pair, Scene
 
 ROUND = 0.5                  # largest element size on a circle or ellipse, over its smaller semi-axis
 LIKE = ("radius", "young", "nu", "density", "speed", "angle", "spin")
@@ -274,7 +275,7 @@ def used_tables(scene: Scene, sizes: list[Sizes | None], values: dict[str, Value
     obstacles = [{"name": one.name} | {key: value for key, value in given.items() if key not in OWN}
                  for given, one in zip(scene.given.get("obstacle", []), scene.obstacles)]
     contact = {key: values[key] for key in scene.contact}
-    contact |= {SELF_CONTACT.name: scene.given.get("contact", {}).get(SELF_CONTACT.name, SELF_CONTACT.default)}
+    contact |= {"self_contact": scene.given.get("contact", {}).get("self_contact", "auto")}
     contact |= {"pair": [{"bodies": names(pair)} | own for pair, own in zip(scene.pairs, pairs)]}
     top = {"title": scene.title, "script": scene.script, "dimension": scene.dimension.name}
     if scene.dimension is SOLID:

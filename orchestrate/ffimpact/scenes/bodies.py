@@ -1,35 +1,33 @@
 """The bodies of a scene: [[body]] tables (docs/bodies.md says what they hold) as outlines (or meshes) with material, place and motion, SI
 units. Shapes and motions: flat.py in plane strain, revolution.py of revolution, solids.py in three dimensions."""
 
-import re
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 
-from ..failure import BadInput, brief, unknown
+from ..failure import BadInput, gathered
 from ..geometry import tumbling
 from ..geometry.outlines import Outline
-from ..input import parameters
+from ..input import models, parameters
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
+from ..input.models import MATERIAL
 from ..input.parameters import Value
-from ..input.tables import LONGEST, SHORTEST, Table
+from ..input.rules import SHORTEST
 from ..mesh import flat, mesh, revolution, solids
 from ..mesh.solid_file import GEOMETRIES
 from ..mesh.solid_mesh import SolidMesh
 from ..mesh.solids import Solid
 from .conditions import Load, Support, read_loads, read_supports
 
-GEOMETRY = {PLANE_STRAIN: flat, AXISYMMETRIC: revolution, SOLID: solids}     # SHAPES with their entries, shape(), MOTION, motion()
+GEOMETRY = {PLANE_STRAIN: flat, AXISYMMETRIC: revolution, SOLID: solids}     # shape(), motion()
 DAMPING = ("viscosity", "bulk_viscosity", "relaxation_modulus", "relaxation_time")
 DAMPED = ("viscosity", "bulk_viscosity", "relaxation_modulus", "loss")     # one of which is above 0
 STIFF = 1e5                 # young of a rigid body over that of the others: its strain is as much smaller
 OPTIONAL = ("law_parameters", *DAMPING, "loss")
-MATERIAL = ("law", "young", "nu", "density", *OPTIONAL)
 SIZES = ("mesh_size", "contact_mesh_size")
-COMMON = ("name", "shape", "position", "velocity", *MATERIAL, *SIZES, "support", "load", "rigid", "mass", "inertia")
-NAME = re.compile(r"[A-Za-z][A-Za-z0-9_.-]*")
 
 
 @dataclass(frozen=True)
@@ -103,61 +101,49 @@ class Body:
         return self.outline.placed(centre, self.outline.turned(self.angle, self.spin, t))
 
 
-def read(tables: list[dict], top: dict, folder: Path, dimension: Dimension = PLANE_STRAIN) -> list[Body]:
+def read(tables: list[models.Body], top: models.Top, folder: Path, dimension: Dimension) -> list[Body]:
     """The bodies of the [[body]] tables; `top` holds the entries at the top of the file, mesh files are sought from `folder` on."""
-    return [_body(f"body.{k}", given, top, folder, dimension) for k, given in enumerate(tables, 1)]
+    return gathered([partial(_body, table, top, folder, dimension) for table in tables])
 
 
-def keys_of(dimension: Dimension) -> set[str]:
-    """The entries that some body of a dimension may have."""
-    geometry = GEOMETRY[dimension]
-    return {*COMMON, *geometry.MOTION, *(key for keys in geometry.SHAPES.values() for key in keys)}
-
-
-def _body(path: str, given: dict, top: dict, folder: Path, of: Dimension) -> Body:
+def _body(table: models.Body, top: models.Top, folder: Path, of: Dimension) -> Body:
     geometry: ModuleType = GEOMETRY[of]
-    if "shape" not in given:
-        raise BadInput(f"{path}.shape: is missing (accepted: {'|'.join(geometry.SHAPES)})")
-    if not isinstance(given["shape"], str) or given["shape"] not in geometry.SHAPES:
-        raise BadInput(f"{path}.shape: {unknown(given['shape'], geometry.SHAPES)}")
-    table = Table(path, given, (*COMMON, *geometry.MOTION, *geometry.SHAPES[given["shape"]]))
     outline, body_mesh = geometry.shape(table, folder)
     if not outline.half_thickness >= SHORTEST:
-        raise BadInput(f"{path}: is {2 * outline.half_thickness:.3g} m thick (accepted: from {2 * SHORTEST:g} m)")
-    bulk, contact = _sizes(table, {} if body_mesh else top)
-    if body_mesh and (sizes := [key for key in SIZES if table.given.get(key)]):
-        raise BadInput(f"{table.at(sizes[0])}: '{brief(table.given[sizes[0]])}' for a mesh from a file, "
+        raise BadInput(f"{table.entry}: is {2 * outline.half_thickness:.3g} m thick (accepted: from {2 * SHORTEST:g} m)")
+    bulk, contact = _sizes(table, None if body_mesh else top)
+    if body_mesh and (sizes := [key for key in SIZES if getattr(table, key)]):
+        raise BadInput(f"{table.at(sizes[0])}: '{table.given(sizes[0])}' for a mesh from a file, "
                        f"which has its own element sizes (accepted: {', '.join(SIZES)} where gmsh makes "
                        f"the mesh: of a shape, or of a geometry, {', '.join(GEOMETRIES)})")
-    stiff = table.flag("rigid", False)
-    if not stiff and (found := [key for key in ("mass", "inertia") if key in table]):
+    if not table.rigid and (found := [key for key in ("mass", "inertia") if key in table]):
         raise BadInput(f"{table.at(found[0])}: is of a rigid body (accepted: with rigid = true, or density)")
-    material = _rigid(table, top, of, outline) if stiff else _material(table, top)
-    return Body(checked_name(path, given.get("name", path.replace(".", ""))), outline, body_mesh, **geometry.motion(table),
-                **material, mesh_size=bulk, contact_mesh_size=contact,
-                supports=read_supports(path, given.get("support", []), of, end_time_of(top)),
-                loads=read_loads(path, given.get("load", []), of, end_time_of(top)))
+    material = _rigid(table, top, of, outline) if table.rigid else _material(table, top)
+    end_time = top.end_time or 0.0
+    return Body(table.name or table.entry.replace(".", ""), outline, body_mesh, **geometry.motion(table), **material, mesh_size=bulk,
+                contact_mesh_size=contact, supports=read_supports(table.support or [], of, end_time),
+                loads=read_loads(table.load or [], of, end_time))
 
 
-def _rigid(table: Table, top: dict, of: Dimension, outline: Outline | Solid) -> dict:
+def _rigid(table: models.Body, top: models.Top, of: Dimension, outline: Outline | Solid) -> dict:
     """What a rigid body has instead of a material; its young is settled by the scene (stiffened())."""
     for key in ("law", "young", "nu", *OPTIONAL, "support"):
         if key in table:
             raise BadInput(f"{table.at(key)}: a rigid body has none (accepted: density, or mass; without rigid = true)")
     if "mass" in table and "density" in table:
         raise BadInput(f"{table.at('mass')}: stands beside density (accepted: one of them)")
-    rule = parameters.PARAMETERS["density"]
-    mass = table.number("mass", 1e-12, LONGEST) if "mass" in table else 0.0
+    mass = table.mass or 0.0
     content = outline.volume if isinstance(outline, Solid) else outline.area      # of revolution a scale alone
     if not mass and "density" not in table and "density" not in top:
-        raise BadInput(f"{table.at('density')}: is missing, here and at the top of the file (accepted: {rule.accepted}, or mass)")
-    density = mass / content if mass else table.parameter("density", rule) if "density" in table else rule.check(top["density"])
+        raise BadInput(f"{table.at('density')}: is missing, here and at the top of the file (accepted: "
+                       f"{parameters.PARAMETERS['density'].accepted}, or mass)")
+    density = mass / content if mass else table.density or top.density
     found = {key: parameters.PARAMETERS[key].default for key in OPTIONAL}
     return found | {"law": "svk", "young": 1.0, "nu": 0.0, "density": float(density), "rigid": True, "mass": mass,
                     "moments": _moments(table, of)}
 
 
-def _moments(table: Table, of: Dimension) -> tuple[float, ...]:
+def _moments(table: models.Body, of: Dimension) -> tuple[float, ...]:
     """Of the entry inertia: in the plane the polar moment of inertia; in space, from those about the body's own axes, the integrals of
     rho X_i X_j about the centre, in the scene's axes: 11, 22, 33, 12, 23, 13. 0 where there is no such entry."""
     if "inertia" not in table:
@@ -165,11 +151,11 @@ def _moments(table: Table, of: Dimension) -> tuple[float, ...]:
     if of is AXISYMMETRIC:
         raise BadInput(f"{table.at('inertia')}: no body of revolution turns in its scene (accepted: without inertia)")
     if of is PLANE_STRAIN:
-        return (table.number("inertia", 1e-18, LONGEST), *(0.0,) * 5)
-    about = table.numbers("inertia", count=3, low=1e-18)
+        return (float(table.inertia), *(0.0,) * 5)
+    about = np.array(table.inertia)
     own = about.sum() / 2 - about
     if not (own > 0).all():
-        raise BadInput(f"{table.at('inertia')}: '{brief(table.given['inertia'])}' has one that is no less than the others together "
+        raise BadInput(f"{table.at('inertia')}: '{table.given('inertia')}' has one that is no less than the others together "
                        f"(accepted: moments about x, y, z of a body that is nowhere flat)")
     turn = tumbling.rotation(solids.motion(table)["angle"])
     E = turn @ np.diag(own) @ turn.T
@@ -188,41 +174,33 @@ def stiffened(found: list[Body], penalty: Value, path: str) -> list[Body]:
     return [replace(body, young=young) if body.rigid else body for body in found]
 
 
-def end_time_of(top: dict) -> float:
-    """The scene's end_time [s], up to which functions of time are used."""
-    return float(parameters.PARAMETERS["end_time"].check(top.get("end_time", 0.0)))
-
-
-def checked_name(path: str, name) -> str:
-    """A name that is one word in a data file; BadInput where it is none."""
-    if not isinstance(name, str) or not NAME.fullmatch(name):
-        raise BadInput(f"{path}.name: '{brief(name)}' is no name (accepted: letters, digits, _ - . without blanks, a letter first)")
-    return name
-
-
-def _material(table: Table, top: dict) -> dict[str, Value]:
+def _material(table: models.Body, top: models.Top) -> dict[str, Value]:
     """What MATERIAL names: the body's own, else those at the top of the file; BadInput where one is in neither.
     A viscosity of its own takes the place of a loss at the top, and the other way."""
     found = {}
+    missing = [key for key in MATERIAL if key not in table and key not in top and key not in OPTIONAL]
+    if missing:
+        raise BadInput(*(f"{table.at(key)}: is missing, here and at the top of the file (accepted: "
+                         f"{parameters.PARAMETERS[key].accepted})" for key in missing))
     for key in MATERIAL:
         rule, other = parameters.PARAMETERS[key], {"viscosity": "loss", "loss": "viscosity"}.get(key)
-        if key not in table and key not in top and key not in OPTIONAL:
-            raise BadInput(f"{table.path}.{key}: is missing, here and at the top of the file (accepted: {rule.accepted})")
-        common = rule.default if other and other in table else top.get(key, rule.default)
-        found[key] = table.parameter(key, rule) if key in table else rule.check(common)
+        common = rule.default if key not in top or other and other in table else getattr(top, key)
+        found[key] = getattr(table, key) if key in table else common
     if found["relaxation_modulus"] == 0 and "relaxation_modulus" in table:
         found["relaxation_time"] = 0.0
     if (found["relaxation_modulus"] > 0) != (found["relaxation_time"] > 0):
-        raise BadInput(f"{table.path}.relaxation_time: {found['relaxation_time']:g} s with relaxation_modulus "
+        raise BadInput(f"{table.at('relaxation_time')}: {found['relaxation_time']:g} s with relaxation_modulus "
                        f"{found['relaxation_modulus']:g} Pa (accepted: both above 0, or none)")
     return found
 
 
-def _sizes(table: Table, top: dict) -> tuple[float, float]:
-    rules = [parameters.PARAMETERS[key] for key in SIZES]
-    bulk, contact = (table.parameter(rule.name, rule) if rule.name in table else rule.check(top.get(rule.name, 0.0)) for rule in rules)
+def _sizes(table: models.Body, top: models.Top | None) -> tuple[float, float]:
+    """Element sizes [m] in the bulk and where it may touch: its own, else those at the `top`; 0 is open."""
+    own = [getattr(table, key) for key in SIZES]
+    common = [getattr(top, key) if top else None for key in SIZES]
+    bulk, contact = (float(one if one is not None else other or 0.0) for one, other in zip(own, common))
     if 0 < bulk < contact:
-        raise BadInput(f"{table.path}.contact_mesh_size: {contact:g} is larger than mesh_size {bulk:g}")
+        raise BadInput(f"{table.at('contact_mesh_size')}: {contact:g} is larger than mesh_size {bulk:g}")
     return float(bulk), float(contact)
 
 

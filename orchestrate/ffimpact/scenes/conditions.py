@@ -6,28 +6,27 @@ hold. A part is a side of the body, a region of space where the body is at the s
 of its file. Units are SI.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from ..failure import BadInput, brief, unknown
+from ..failure import BadInput, gathered, unknown
 from ..geometry import time_functions
 from ..geometry.time_functions import TimeFunction, farthest, functions
-from ..input.dimension import AXISYMMETRIC, SOLID, Dimension
-from ..input.tables import LONGEST, SHORTEST, Table, listed
+from ..input import models
+from ..input.dimension import Dimension
+from ..input.models import listed
+from ..input.rules import ALIAS, number
 
 __all__ = ["Load", "Part", "Support", "inlined", "read_loads", "read_supports"]
 
 NEVER = 1e300                # s: the release of a support that holds throughout
 AMBIENT = 101325.0           # Pa: outside of a gas, the standard atmosphere
-MOST_PRESSURE = 1e15         # Pa
 # sides of a body by its own axes: the axis, and the end of the body along it
 SIDES = {"left": (0, 0), "right": (0, 1), "bottom": (1, 0), "top": (1, 1), "back": (2, 0), "front": (2, 1)}
 WHOLE = ("all", "outer", "inner")
-# what a region is made of: the counts of numbers, of points and directions as many as axes
-REGIONS = {"half-space": ("point", "normal"), "box": ("low", "high"), "ball": ("centre", "radius")}
-ALIAS = {"half-plane": "half-space", "disc": "ball"}          # in the plane
 ON_SIDE = 1e-6               # of the body's extent: as near to its end is on a side
 KINDS = {"traction": 0, "pressure": 1, "gas": 2}              # as edp/core/input/conditions.idp
 
@@ -124,78 +123,50 @@ def _with_tables(path: str, table: dict, names: tuple[str, ...], folder: Path, o
     return changed
 
 
-def read_supports(path: str, tables: list, of: Dimension, end_time: float) -> tuple[Support, ...]:
-    """The [[body.support]] tables of the body `path`. BadInput for whatever is wrong in them."""
-    return tuple(_support(f"{path}.support.{k}", one, of, end_time)
-                 for k, one in enumerate(listed({f"{path}.support": tables}, f"{path}.support"), 1))
+def read_supports(tables: list[models.Support], of: Dimension, end_time: float) -> tuple[Support, ...]:
+    """The [[body.support]] tables of a body. BadInput for whatever is wrong in them."""
+    return tuple(gathered([partial(_support, one, of, end_time) for one in tables]))
 
 
-def read_loads(path: str, tables: list, of: Dimension, end_time: float) -> tuple[Load, ...]:
-    """The [[body.load]] tables of the body `path`. BadInput for whatever is wrong in them."""
-    return tuple(_load(f"{path}.load.{k}", one, of, end_time)
-                 for k, one in enumerate(listed({f"{path}.load": tables}, f"{path}.load"), 1))
+def read_loads(tables: list[models.Load], of: Dimension, end_time: float) -> tuple[Load, ...]:
+    """The [[body.load]] tables of a body. BadInput for whatever is wrong in them."""
+    return tuple(gathered([partial(_load, one, of, end_time) for one in tables]))
 
 
-def _support(path: str, given: dict, of: Dimension, end_time: float) -> Support:
-    table = Table(path, given, ("where", "fix", "motion", "release"))
+def _support(table: models.Support, of: Dimension, end_time: float) -> Support:
     axes = "xyz"[:of.axes]
     words = ("all", *axes, "normal")
-    fix = table.text("fix", "all")
+    fix = table.fix or "all"
     if fix not in words:
-        raise BadInput(f"{path}.fix: {unknown(fix, words)}")
+        raise BadInput(f"{table.at('fix')}: {unknown(fix, words)}")
     fixed = tuple(fix in ("all", axis) for axis in axes)
     motion = (time_functions.constant(0.0),) * of.axes
-    if "motion" in table:
-        motion = functions(table, "motion", axes, end_time)
+    if table.motion is not None:
+        motion = functions(table.at("motion"), table.motion, axes, end_time)
         for axis, one, held in zip(axes, motion, fixed):
             if not (held or fix == "normal") and not one.is_zero:
-                raise BadInput(f"{path}.motion: moves along {axis}, which fix = '{fix}' leaves free "
+                raise BadInput(f"{table.at('motion')}: moves along {axis}, which fix = '{fix}' leaves free "
                                f"(accepted: 0 there, or fix = 'all')")
-    release = table.number("release", 0.0, LONGEST, NEVER) if "release" in table else NEVER
-    return Support(_part(table, of), fixed, fix == "normal", motion, release)
+    return Support(_part(table), fixed, fix == "normal", motion, NEVER if table.release is None else table.release)
 
 
-def _load(path: str, given: dict, of: Dimension, end_time: float) -> Load:
-    table = Table(path, given, ("where", *KINDS))
+def _load(table: models.Load, of: Dimension, end_time: float) -> Load:
     kinds = [kind for kind in KINDS if kind in table]
     if len(kinds) != 1:
-        raise BadInput(f"{path}: has {' and '.join(kinds) or 'no stress'} (accepted: one of {', '.join(KINDS)})")
-    kind, part = kinds[0], _part(table, of)
-    if kind == "gas":
-        gas = Table(f"{path}.gas", given["gas"], ("gauge_pressure", "exponent", "ambient_pressure"))
-        ambient = gas.number("ambient_pressure", 0.0, MOST_PRESSURE, AMBIENT)
-        gauge = gas.number("gauge_pressure", -ambient, MOST_PRESSURE)
-        return Load(part, kind, (), (gauge, ambient, gas.number("exponent", 0.0, 10.0, 1.0)))
-    if kind == "pressure":
-        return Load(part, kind, functions(table, kind, "p", end_time))
-    return Load(part, kind, functions(table, kind, "xyz"[:of.axes], end_time))
+        raise BadInput(f"{table.entry}: has {' and '.join(kinds) or 'no stress'} (accepted: one of {', '.join(KINDS)})")
+    kind, part = kinds[0], _part(table)
+    if table.gas:
+        gas = table.gas
+        ambient = AMBIENT if gas.ambient_pressure is None else gas.ambient_pressure
+        gauge = replace(number(-ambient, models.MOST_PRESSURE), name=gas.at("gauge_pressure")).check(gas.gauge_pressure)
+        return Load(part, kind, (), (float(gauge), ambient, 1.0 if gas.exponent is None else gas.exponent))
+    components = "p" if kind == "pressure" else "xyz"[:of.axes]
+    return Load(part, kind, functions(table.at(kind), getattr(table, kind), components, end_time))
 
 
-def _part(table: Table, of: Dimension) -> Part:
-    entry, given = table.at("where"), table.given.get("where")
-    kinds = [*REGIONS] if of is SOLID else ["half-plane", "box", "disc"]
-    accepted = f"(accepted: {', '.join(_sides(of))}, the name of a group of its file, or a region {'|'.join(kinds)})"
-    if given is None:
-        raise BadInput(f"{entry}: is missing {accepted}")
+def _part(table: models.Support | models.Load) -> Part:
+    entry, given = table.at("where"), table.where
     if isinstance(given, str):
         return Part(entry, given)
-    if not isinstance(given, dict) or given.get("kind") not in kinds:
-        raise BadInput(f"{entry}: '{brief(given)}' is no part of a boundary {accepted}")
-    kind = ALIAS.get(given["kind"], given["kind"])
-    first, second = REGIONS[kind]
-    region = Table(entry, given, ("kind", first, second))
-    start = region.numbers(first, count=of.axes)
-    if second == "radius":
-        return Part(entry, "", kind, (start, np.array(region.number(second, SHORTEST))))
-    end = region.numbers(second, count=of.axes)
-    if second == "normal" and not end.any():
-        raise BadInput(f"{entry}.normal: '{brief(given[second])}' has no direction (accepted: other than 0)")
-    if second == "high" and not (end >= start).all():
-        raise BadInput(f"{entry}.high: '{brief(given[second])}' is below low (accepted: from low on)")
-    return Part(entry, "", kind, (start, end))
-
-
-def _sides(of: Dimension) -> list[str]:
-    """The names of parts that any body of a dimension may have."""
-    return [*(name for name, (axis, _) in SIDES.items() if axis < of.axes), *WHOLE,
-            *(["axis"] if of is AXISYMMETRIC else [])]
+    kind, *numbers = given.values()
+    return Part(entry, "", ALIAS.get(kind, kind), tuple(np.array(one) for one in numbers))

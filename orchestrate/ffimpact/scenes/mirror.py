@@ -5,7 +5,6 @@ import numpy as np
 from ..failure import BadInput
 from ..geometry import implicit
 from ..input.dimension import SOLID
-from ..input.parameters import Parameter
 from .bodies import Body
 from .obstacles import Obstacle
 
@@ -18,8 +17,7 @@ def copies(scene) -> int:
     """What the computed part stands for: 1, 2 or 4 times itself; 1 in the plane. BadInput where more symmetry is asked for."""
     if scene.dimension is not SOLID:
         return 1
-    rule = Parameter("symmetry", "word", "auto", "-", "", words=("auto", *COPIES))
-    asked = rule.check(scene.given.get("symmetry", rule.default))
+    asked = scene.given.get("symmetry", "auto")
     across_z = _broken(scene, 2)
     across_x = across_z or _broken(scene, 0)
     if asked == "auto":

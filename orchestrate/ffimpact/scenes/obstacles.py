@@ -7,26 +7,14 @@ from pathlib import Path
 
 import numpy as np
 
-from ..failure import BadInput, brief, unknown
+from ..failure import BadInput, gathered
 from ..geometry import implicit, polyline, time_functions, tumbling
 from ..geometry.time_functions import TimeFunction, farthest, functions
-from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
-from ..input.tables import Table, placeholder
+from ..input import models
+from ..input.dimension import AXISYMMETRIC, SOLID, Dimension
+from ..input.rules import Vector, placeholder
 from ..mesh import solids, surface_file
-from ..mesh.revolution import mirrored, on_axis
-from .bodies import checked_name
-
-KINDS = {
-    PLANE_STRAIN: {"plane": ("point", "normal"), "circle": ("centre", "radius"), "bowl": ("centre", "radius"),
-                   "polyline": ("vertices", "closed", "rounding")},
-    AXISYMMETRIC: {"plane": ("point", "normal"), "sphere": ("centre", "radius"), "bowl": ("centre", "radius"),
-                   "polyline": ("vertices", "rounding")},
-    SOLID: {"plane": ("point", "normal"), "sphere": ("centre", "radius"), "bowl": ("centre", "radius"),
-            "surface": ("file", "scale", "position", "turn", "rounding")},
-}
-for kinds in KINDS.values():
-    kinds["implicit"] = ("distance",)
-
+from ..mesh.revolution import mirrored
 
 DRIVE = ("motion", "rotation", "pivot", "axis")      # entries of an obstacle that follows functions of time
 
@@ -133,11 +121,10 @@ class Drive:
         return self.pivot + (points - self.pivot - way) @ back.T
 
 
-def read(tables: list[dict], dimension: Dimension = PLANE_STRAIN, end_time: float = 0.0,
-         folder: Path = Path()) -> list[Obstacle]:
+def read(tables: list[models.Obstacle], dimension: Dimension, end_time: float, folder: Path) -> list[Obstacle]:
     """The obstacles of the [[obstacle]] tables; functions of time are used up to end_time [s], files sought from
     `folder` on."""
-    return [_obstacle(f"obstacle.{k}", given, dimension, end_time, folder) for k, given in enumerate(tables, 1)]
+    return gathered([partial(_obstacle, table, dimension, end_time, folder) for table in tables])
 
 
 def settled(found: list[Obstacle], centre: np.ndarray, half: float) -> list[Obstacle]:
@@ -146,18 +133,14 @@ def settled(found: list[Obstacle], centre: np.ndarray, half: float) -> list[Obst
             for k, one in enumerate(found, 1)]
 
 
-def _obstacle(path: str, given: dict, dimension: Dimension, end_time: float, folder: Path) -> Obstacle:
-    kind, kinds = given.get("kind"), KINDS[dimension]
-    if kind not in tuple(kinds):
-        raise BadInput(f"{path}.kind: " + (f"is missing (accepted: {'|'.join(kinds)})" if kind is None else unknown(kind, kinds)))
-    table = Table(path, given, ("name", "kind", "velocity", *DRIVE, *kinds[kind]))
+def _obstacle(table: models.Obstacle, dimension: Dimension, end_time: float, folder: Path) -> Obstacle:
     shape = {"plane": _plane, "polyline": _polyline, "implicit": _implicit,
-             "surface": partial(_surface, folder=folder)}.get(kind, _circle)
-    return Obstacle(checked_name(path, given.get("name", path.replace(".", ""))), kind, shape(table, dimension),
-                    _vector(table, "velocity", dimension, (0.0,) * dimension.axes), _drive(table, dimension, end_time))
+             "surface": partial(_surface, folder=folder)}.get(table.kind, _circle)
+    return Obstacle(table.name or table.entry.replace(".", ""), table.kind, shape(table, dimension),
+                    np.array(table.velocity or [0.0] * dimension.axes), _drive(table, dimension, end_time))
 
 
-def _drive(table: Table, of: Dimension, end_time: float) -> Drive | None:
+def _drive(table: models.Obstacle, of: Dimension, end_time: float) -> Drive | None:
     """Of the entries motion, rotation, pivot and axis; None where there are none."""
     if not any(key in table for key in DRIVE):
         return None
@@ -171,48 +154,42 @@ def _drive(table: Table, of: Dimension, end_time: float) -> Drive | None:
     if "axis" in table and of is not SOLID:
         raise BadInput(f"{table.at('axis')}: is of three dimensions (accepted: without it, about z)")
     none = time_functions.constant(0.0)
-    way = functions(table, "motion", "xyz"[:of.axes], end_time) if "motion" in table else (none,) * of.axes
+    way = (none,) * of.axes if table.motion is None else functions(table.at("motion"), table.motion, "xyz"[:of.axes], end_time)
     if of is AXISYMMETRIC and not way[0].is_zero:
         raise BadInput(f"{table.at('motion')}.1: leaves the axis of revolution (accepted: 0)")
-    degrees = functions(table, "rotation", "r", end_time)[0] if "rotation" in table else none
+    degrees = none if table.rotation is None else functions(table.at("rotation"), table.rotation, "r", end_time)[0]
     turn = replace(degrees, knots=degrees.knots * [1.0, np.pi / 180, np.pi / 180])
-    axis = table.numbers("axis", (0.0, 0.0, 1.0), 3) if of is SOLID else np.array([0.0, 0.0, 1.0])
+    axis = np.array(table.axis or [0.0, 0.0, 1.0])
     if not axis.any():
-        raise BadInput(f"{table.at('axis')}: '{brief(table.given['axis'])}' has no direction (accepted: other than 0)")
-    about = next((table.given[key] for key in ("centre", "point") if isinstance(table.given.get(key), list)), [0.0] * of.axes)
-    pivot = table.numbers("pivot", tuple(about), of.axes)
-    return Drive(way, turn, pivot, axis / np.linalg.norm(axis))
+        raise BadInput(f"{table.at('axis')}: '{table.given('axis')}' has no direction (accepted: other than 0)")
+    centre = getattr(table, "centre", None) or getattr(table, "point", None) or [0.0] * of.axes
+    return Drive(way, turn, np.array(table.pivot or centre), axis / np.linalg.norm(axis))
 
 
-def _vector(table: Table, key: str, dimension: Dimension, default: tuple[float, ...] | None = None) -> np.ndarray:
-    return on_axis(table, key, default) if dimension is AXISYMMETRIC else table.numbers(key, default, dimension.axes)
-
-
-def _plane(table: Table, dimension: Dimension) -> tuple[float, ...]:
-    point, normal = (table.numbers(key, count=dimension.axes) for key in ("point", "normal"))
+def _plane(table: models.Plane, dimension: Dimension) -> tuple[float, ...]:
+    for key in ("point", "normal"):
+        if key not in table:
+            raise BadInput(f"{table.at(key)}: is missing (accepted: {Vector().accepted_in(dimension)})")
+    point, normal = np.array(table.point), np.array(table.normal)
     if not normal.any():
-        raise BadInput(f"{table.path}.normal: '{brief(table.given['normal'])}' has no direction (accepted: {placeholder(dimension.axes)} "
+        raise BadInput(f"{table.at('normal')}: '{table.given('normal')}' has no direction (accepted: {placeholder(dimension.axes)} "
                        f"other than 0)")
     if dimension is AXISYMMETRIC and normal[0] != 0:
-        raise BadInput(f"{table.path}.normal: '{brief(table.given['normal'])}' is not along the axis of revolution (accepted: [0, 1] or "
+        raise BadInput(f"{table.at('normal')}: '{table.given('normal')}' is not along the axis of revolution (accepted: [0, 1] or "
                        f"[0, -1])")
     normal = normal / abs(normal).max()                    # so that no square of it underflows
     return *map(float, point), *map(float, normal / np.linalg.norm(normal))
 
 
-def _surface(table: Table, dimension: Dimension, folder: Path) -> tuple[float, ...]:
+def _surface(table: models.Surface, dimension: Dimension, folder: Path) -> tuple[float, ...]:
     """Turned about the origin of the file's coordinates, then moved."""
-    if "file" not in table:
-        raise BadInput(f"{table.at('file')}: is missing (accepted: the path of an STL file or a mesh)")
     try:
-        points, triangles = surface_file.read(folder / table.text("file", ""))
+        points, triangles = surface_file.read(folder / table.file)
     except BadInput as error:
         raise BadInput(f"{table.at('file')}: {error}") from None
-    turn = np.radians(table.numbers("turn", (0.0, 0.0, 0.0), 3, -36000, 36000))
-    points = table.number("scale", 1e-9, 1e9, 1.0) * points @ tumbling.rotation(turn).T
-    points = points + table.numbers("position", (0.0, 0.0, 0.0), 3)
-    rounding = table.number("rounding", 0, default=0.0)
-    return rounding, float(len(points)), float(len(triangles)), *points.ravel().tolist(), *map(float, triangles.ravel())
+    turn = np.radians(table.turn or [0.0, 0.0, 0.0])
+    points = (table.scale or 1.0) * points @ tumbling.rotation(turn).T + np.array(table.position or [0.0, 0.0, 0.0])
+    return table.rounding or 0.0, float(len(points)), float(len(triangles)), *points.ravel().tolist(), *map(float, triangles.ravel())
 
 
 def _triangles(numbers: tuple[float, ...]) -> tuple[np.ndarray, np.ndarray]:
@@ -222,21 +199,21 @@ def _triangles(numbers: tuple[float, ...]) -> tuple[np.ndarray, np.ndarray]:
     return data[:3 * points].reshape(-1, 3), data[3 * points:3 * (points + faces)].astype(int).reshape(-1, 3)
 
 
-def _circle(table: Table, dimension: Dimension) -> tuple[float, ...]:
-    return *map(float, _vector(table, "centre", dimension)), table.number("radius")
+def _circle(table: models.Circle | models.Sphere | models.Bowl, dimension: Dimension) -> tuple[float, ...]:
+    return *table.centre, table.radius
 
 
-def _implicit(table: Table, dimension: Dimension) -> tuple[float, ...]:
-    code = implicit.program(table.at("distance"), table.given.get("distance"), "xyz"[:dimension.axes])
+def _implicit(table: models.Implicit, dimension: Dimension) -> tuple[float, ...]:
+    code = implicit.program(table.at("distance"), table.distance, "xyz"[:dimension.axes])
     if dimension is AXISYMMETRIC and not implicit.is_mirrored(code, 0, 2):
-        raise BadInput(f"{table.path}.distance: '{brief(table.given['distance'])}' is not the same for x and -x, as of revolution "
+        raise BadInput(f"{table.at('distance')}: '{table.given('distance')}' is not the same for x and -x, as of revolution "
                        f"(accepted: with x^2 or abs(x))")
     return 1.0, 1.0, *code
 
 
-def _polyline(table: Table, dimension: Dimension) -> tuple[float, ...]:
-    closed, vertices = table.flag("closed", False), table.points("vertices", least=2)
+def _polyline(table: models.Polyline, dimension: Dimension) -> tuple[float, ...]:
+    closed, vertices = bool(table.closed), np.array(table.vertices)
     if dimension is AXISYMMETRIC:
-        vertices, closed = mirrored(f"{table.path}.vertices", vertices)
-    polyline.check(table.path, vertices, closed)
-    return polyline.numbers(vertices, closed, table.number("rounding", 0, default=0.0))
+        vertices, closed = mirrored(table.at("vertices"), vertices)
+    polyline.check(table.entry, vertices, closed)
+    return polyline.numbers(vertices, closed, table.rounding or 0.0)

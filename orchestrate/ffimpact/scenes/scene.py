@@ -7,29 +7,27 @@ import os
 import shutil
 import tempfile
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from ..failure import BadInput, brief, unknown
+from ..failure import BadInput, brief, gathered, unknown
 from ..freefem.describe import describe, describe_results
 from ..geometry.outlines import Shape, normal_of
-from ..input import dimension, parameters
+from ..input import dimension, models, parameters
 from ..input.dimension import AXISYMMETRIC, SOLID, Dimension
-from ..input.parameters import Parameter, Value
+from ..input.models import CONTACT, MATERIAL, OWN, listed
+from ..input.parameters import Value
 from ..input.table import MESHED, SCRIPTS
-from ..input.tables import Table, listed
 from ..mesh.solid_file import takes_in_others
 from . import bodies, conditions, mirror, obstacles
-from .bodies import MATERIAL, SIZES, Body
+from .bodies import SIZES, Body
 from .entries import release, set_entry, toml_value
 from .obstacles import Obstacle
 
 RUN = ("gravity", "body_force_x", "body_force_y", "degree", "integrator", "dt", "accuracy", "accuracy_of", "tolerance", "breakdown",
        "chatter", "end_time", "until", "fields", "modes", "checkpoint_every", "without")
-OWN = ("penalty", "friction_static", "friction_dynamic")                                  # a pair may have its own
-CONTACT = (*OWN, "exponent", "slip_velocity", "regularization", "friction_transition", "pairing", "pairing_range")
-SELF_CONTACT = Parameter("self_contact", "word", "auto", "-", "", words=("auto", "on", "off"))
 # of Outline.folding: that of a ring as thick as its inner radius; what closes only at more does not touch itself
 FOLDING = 0.2
 WIDE = 100.0                 # m: a body of a file that is wider may be in other units
@@ -192,7 +190,9 @@ def read(given: dict, folder: Path, name: str) -> Scene:
         return _of_tables(given, folder, name)
     if not given:
         raise BadInput("says nothing (accepted: a scene, as the built-in ones in orchestrate/ffimpact/scenes)")
-    script, title = given.get("script", "disc-plane"), Table("", given, tuple(given)).text("title", name)
+    script, title = given.get("script", "disc-plane"), given.get("title", name)
+    if not isinstance(title, str):
+        raise BadInput(f"title: '{brief(title)}' is no text (accepted: text in quotes)")
     if script in dimension.SCRIPTS:
         raise BadInput(f"body: is missing, which script = '{brief(script)}' needs (accepted: one table [[body]] or more)")
     scripts = [word for word in SCRIPTS if word not in dimension.SCRIPTS]
@@ -207,39 +207,31 @@ def _of_tables(given: dict, folder: Path, name: str) -> Scene:
     """That of bodies in tables."""
     of = dimension.of(given)
     given = conditions.inlined(given, folder, of)
-    own = ("symmetry",) if of is SOLID else ()
-    table = Table("", given, ("title", "script", "dimension", *own, "body", "obstacle", "contact", *MATERIAL, *SIZES, *RUN),
-                  {key: f"body.1.{key}" for key in bodies.keys_of(of)} | {key: f"contact.{key}" for key in CONTACT})
-    all_bodies = bodies.read(listed(given, "body"), given, folder, of)
-    if not all_bodies:
+    tables = models.read(given, of)
+    if not tables.bodies:
         raise BadInput("body: is missing (accepted: one table [[body]] or more)")
+    top = tables.top
+    if top.script not in (None, of.script):
+        raise BadInput(f"script: '{top.given('script')}' is not that of [[body]] tables in dimension = '{of.name}' (accepted: {of.script})")
+    all_bodies, all_obstacles, contact, values = gathered([
+        lambda: bodies.read(tables.bodies, top, folder, of), lambda: obstacles.read(tables.obstacles, of, top.end_time or 0.0, folder),
+        lambda: _parameters(tables.contact, CONTACT, of), lambda: _parameters(top, RUN, of)])
     for key in SIZES:
-        if table.given.get(key) and all(body.mesh for body in all_bodies):
+        if getattr(top, key) and all(body.mesh for body in all_bodies):
             raise BadInput(f"{key}: '{brief(given[key])}' changes nothing, as the mesh of every body is "
                            f"that of its file, with its own element sizes (accepted: 0)")
-    rigid = listed(given, "obstacle")
-    for k, one in enumerate(rigid, 1):
-        _of_the_scene(f"obstacle.{k}", one)
-    all_obstacles = obstacles.read([{key: value for key, value in one.items() if key not in OWN} for one in rigid], of,
-                                   bodies.end_time_of(given), folder)
     centres = np.array([body.placed.area_centre for body in all_bodies])
     half = float(np.ptp(centres, axis=0).max() / 2 + 2 * max(body.placed.reach for body in all_bodies))
     all_obstacles = obstacles.settled(all_obstacles, centres.mean(axis=0), half)
-    script = table.text("script", of.script)
-    if script != of.script:
-        raise BadInput(f"script: '{brief(script)}' is not that of [[body]] tables in dimension = '{of.name}' (accepted: {of.script})")
     index = _names(all_bodies, all_obstacles)
-    contact_table = Table("contact", given.get("contact", {}), (*CONTACT, SELF_CONTACT.name, "pair"))
-    contact = _parameters(contact_table, CONTACT, of)
     all_bodies = bodies.stiffened(all_bodies, contact["penalty"], "contact.penalty")
-    pairs = _own_of_obstacles(rigid, len(all_bodies))
-    for both, pair in _exceptions(contact_table, index).items():
+    pairs = _own_of_obstacles(tables.obstacles, len(all_bodies))
+    for both, pair in _exceptions(tables.contact.pair or [], index).items():
         pairs[both] = replace(pair, values=pairs[both].values | pair.values) if both in pairs else pair
-    for k in _touching_themselves(contact_table, contact.get("pairing", "closest-point"), all_bodies, of,
+    for k in _touching_themselves(tables.contact, contact.get("pairing", "closest-point"), all_bodies, of,
                                   len(all_bodies) == 1 and not all_obstacles):
         pairs.setdefault((k, k), Pair(k, k, {}, "contact"))
-    values = _parameters(table, RUN, of)
-    found = Scene(name, table.text("title", name), script, given, folder, values, of, all_bodies, all_obstacles, contact,
+    found = Scene(name, top.title or name, of.script, given, folder, values, of, all_bodies, all_obstacles, contact,
                   [pairs[both] for both in sorted(pairs)])
     _apart(found)
     _refuse_integrator(found)
@@ -254,12 +246,11 @@ def _refuse_integrator(found: Scene) -> None:
         raise BadInput(f"integrator: '{asked}' has no supports and loads (accepted with them: {'|'.join(accepted)})")
 
 
-def _parameters(table: Table, keys: tuple[str, ...], of: Dimension) -> dict[str, Value]:
+def _parameters(table: models.Entries, keys: tuple[str, ...], of: Dimension) -> dict[str, Value]:
     """Those of the parameters that the script takes; BadInput for one that it does not."""
-    for key in keys:
-        if key in table:
-            parameters.taken(key, of.script)
-    return {key: table.parameter(key, parameters.PARAMETERS[key]) for key in keys if of.script in parameters.PARAMETERS[key].scripts}
+    gathered([partial(parameters.taken, key, of.script) for key in keys if key in table])
+    rules = {key: parameters.PARAMETERS[key] for key in keys if of.script in parameters.PARAMETERS[key].scripts}
+    return {key: getattr(table, key) if key in table else rule.default for key, rule in rules.items()}
 
 
 def _names(all_bodies: list[Body], all_obstacles: list[Obstacle]) -> dict[str, int]:
@@ -275,35 +266,31 @@ def _names(all_bodies: list[Body], all_obstacles: list[Obstacle]) -> dict[str, i
 
 # ---- contact
 
-def _own_of_obstacles(rigid: list[dict], bodies_count: int) -> dict[tuple[int, int], Pair]:
+def _own_of_obstacles(tables: list[models.Obstacle], bodies_count: int) -> dict[tuple[int, int], Pair]:
     """What [[obstacle]] tables say of contact, as exceptions against every body."""
     pairs = {}
-    for k, given in enumerate(rigid):
-        mine = Table(f"obstacle.{k + 1}", {key: given[key] for key in OWN if key in given}, OWN)
-        own = {key: mine.parameter(key, parameters.PARAMETERS[key]) for key in mine.given}
-        pairs |= {(body, -1 - k): Pair(body, -1 - k, own, mine.path) for body in range(bodies_count) if own}
+    for k, table in enumerate(tables):
+        own = {key: getattr(table, key) for key in OWN if key in table}
+        pairs |= {(body, -1 - k): Pair(body, -1 - k, own, table.entry) for body in range(bodies_count) if own}
     return pairs
 
 
-def _exceptions(contact: Table, index: dict[str, int]) -> dict[tuple[int, int], Pair]:
+def _exceptions(tables: list[models.Pair], index: dict[str, int]) -> dict[tuple[int, int], Pair]:
     """The tables [[contact.pair]]."""
     pairs = {}
-    for k, given in enumerate(listed({"contact.pair": contact.given.get("pair", [])}, "contact.pair"), 1):
-        path = f"contact.pair.{k}"
-        _of_the_scene(path, given)
-        table = Table(path, given, ("bodies", *OWN))
-        both = _partners(path, table.given.get("bodies"), index)
+    for table in tables:
+        both = _partners(table.entry, table.bodies, index)
         if both in pairs:
-            raise BadInput(f"{path}.bodies: '{brief(table.given['bodies'])}' has a table already (accepted: one a pair)")
-        pairs[both] = Pair(*both, {key: table.parameter(key, parameters.PARAMETERS[key]) for key in OWN if key in table}, path)
+            raise BadInput(f"{table.at('bodies')}: '{table.given('bodies')}' has a table already (accepted: one a pair)")
+        pairs[both] = Pair(*both, {key: getattr(table, key) for key in OWN if key in table}, table.entry)
     return pairs
 
 
-def _touching_themselves(contact: Table, pairing: str, all_bodies: list[Body], of: Dimension, alone: bool) -> list[int]:
+def _touching_themselves(contact: models.Contact, pairing: str, all_bodies: list[Body], of: Dimension, alone: bool) -> list[int]:
     """The bodies that self_contact makes their own partners."""
-    asked = contact.parameter(SELF_CONTACT.name, SELF_CONTACT)
+    asked = contact.self_contact or "auto"
     if asked == "on" and pairing != "closest-point":
-        raise BadInput(f"{contact.at(SELF_CONTACT.name)}: on, but pairing = '{pairing}' is between bodies "
+        raise BadInput(f"{contact.at('self_contact')}: on, but pairing = '{pairing}' is between bodies "
                        f"(accepted: auto|off, or pairing = 'closest-point')")
     if alone:                                         # what nothing else can touch
         return [0]
@@ -311,13 +298,6 @@ def _touching_themselves(contact: Table, pairing: str, all_bodies: list[Body], o
         return []
     flat = of is not SOLID
     return [k for k, body in enumerate(all_bodies) if asked == "on" or (flat and body.outline.folding(of is AXISYMMETRIC) < FOLDING)]
-
-
-def _of_the_scene(path: str, given: dict) -> None:
-    """BadInput where a table has of its own what the contact of a scene has one of."""
-    for key in CONTACT:
-        if key in given and key not in OWN:
-            raise BadInput(f"{path}.{key}: '{brief(given[key])}' holds for the whole scene (accepted: in [contact]; here {', '.join(OWN)})")
 
 
 def _partners(path: str, given, index: dict[str, int]) -> tuple[int, int]:

@@ -154,7 +154,7 @@ def load(name: str) -> Sweep:
     try:
         return _sweep(path, given, text)
     except BadInput as error:
-        raise BadInput(f"{path}: {error}") from None
+        raise error.within(str(path)) from None
 
 
 def _sweep(path: Path, given: dict, text: str) -> Sweep:

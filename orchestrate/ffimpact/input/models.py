@@ -1,0 +1,841 @@
+"""The tables of a scene as models: bodies by shape, materials by law, supports, loads, obstacles by kind, contact, pairs, and what
+stands at the top. A TOML file, --set, the Python interface and the JSON schema go through them.
+
+An entry that is None is left open: the program chooses it. Units are SI.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Annotated, Any, ClassVar, Self
+
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    PrivateAttr,
+    ValidationError,
+    model_validator,
+)
+
+from ..failure import BadInput, brief, gathered, suggestion, unknown
+from .dimension import AXISYMMETRIC, DIMENSIONS, PLANE_STRAIN, SOLID, Dimension
+from .parameter import Parameter, Rule, plain
+from .rules import (
+    LONGEST,
+    Flag,
+    Function,
+    InSpace,
+    Name,
+    Partners,
+    Place,
+    Points,
+    Polygons,
+    Text,
+    Vector,
+    Where,
+    number,
+)
+from .table import LAWS as NAMES_OF_LAWS
+from .table import PARAMETERS
+
+MOST_PRESSURE = 1e15  # Pa
+MOST_TURN = 36000.0  # degrees
+SIDES = ("left", "right", "bottom", "top", "back", "front", "all", "outer", "inner", "axis")
+Turn = number(-MOST_TURN, MOST_TURN, "deg")
+
+
+def shared(name: str, meaning: str = "") -> Parameter:
+    """The rule of a parameter of the table, for an entry of that name."""
+    one = PARAMETERS[name]
+    return Parameter(
+        "", one.kind, None, one.unit, meaning or one.help, one.low, one.high, one.words, one.scripts
+    )
+
+
+def several(value: Any) -> Any:
+    """One table as a list of one."""
+    return [value] if isinstance(value, Entries) else value
+
+
+class _Made(type(BaseModel)):  # type: ignore[misc]
+    """In Python: BadInput in place of pydantic's error, and an entry that is None is left open."""
+
+    def __call__(cls, **entries: Any) -> Any:
+        given = {name: plain(value) for name, value in entries.items() if value is not None}
+        try:
+            made = super().__call__(**given)
+        except ValidationError as error:
+            raise BadInput(*_lines(cls, error, cls.__name__, ": ", None)) from None
+        made._given = given
+        return made
+
+
+class Entries(BaseModel, metaclass=_Made):
+    """What all tables of a scene have in common."""
+
+    model_config = ConfigDict(extra="forbid", validate_default=False, arbitrary_types_allowed=True)
+    nested: ClassVar[dict[str, type[Entries]]] = {}  # the models of tables in it
+    only: ClassVar[dict[str, tuple[Dimension, ...]]] = {}  # entries that not all dimensions have
+    heading: ClassVar[tuple[str, ...]] = ()  # the entry that says which model it is
+    _entry: str = PrivateAttr("")  # its name in the scene: body.2
+    _given: dict[str, Any] = PrivateAttr(default_factory=dict)
+
+    def __repr_args__(self) -> list[tuple[str | None, Any]]:
+        return [(name, value) for name, value in self if value is not None]
+
+    def __contains__(self, name: str) -> bool:
+        return getattr(self, name, None) is not None
+
+    @property
+    def entry(self) -> str:
+        """Its name in the scene, "body.2"."""
+        return self._entry
+
+    def at(self, name: str) -> str:
+        """The full name of an entry, "body.2.radius"."""
+        return f"{self._entry}.{name}" if self._entry else name
+
+    def given(self, name: str) -> str:
+        """An entry as it was given, as a message repeats it."""
+        return brief(self._given.get(name, ""))
+
+    def table(self) -> dict[str, Any]:
+        """The table of a TOML file: without what is left open."""
+        return {name: _table(value) for name, value in self if value is not None}
+
+    @classmethod
+    def names(cls, of: Dimension | None) -> list[str]:
+        """The entries that there are in a dimension, its own before those of what it is a kind of."""
+        general = cls.__mro__[1]
+        common = (
+            general.model_fields if issubclass(general, Entries) and general is not Entries else {}
+        )
+        every = [name for name in cls.model_fields if name not in common] + list(common)
+        return [name for name in every if of is None or of in cls.only.get(name, (of,))]
+
+    @classmethod
+    def refused(cls, name: str, value: Any, of: Dimension | None) -> str:
+        """What a message says of an entry that there is not."""
+        return _no_such(name, value, [*cls.heading, *cls.names(of)])
+
+    @classmethod
+    def read(cls, entry: str, given: Any, of: Dimension) -> Self:
+        """The model of the table `entry` of a scene; BadInput with a line for each thing that is wrong in it."""
+        if not isinstance(given, dict):
+            raise BadInput(
+                f"{entry}: '{brief(given)}' is no table (accepted: a table with {', '.join(cls.names(of))})"
+            )
+        names, others = cls.names(of), {}
+        if set(cls.model_fields) - set(names):  # entries of other dimensions
+            others = {
+                name: value
+                for name, value in given.items()
+                if name in cls.model_fields and name not in names
+            }
+        messages = [
+            f"{entry}.{name}{cls.refused(name, value, of)}".lstrip(".")
+            for name, value in others.items()
+        ]
+        try:
+            found = cls.model_validate(
+                {name: given[name] for name in given if name not in others}, context={"of": of}
+            )
+        except ValidationError as error:
+            messages += _lines(cls, error, entry, ".", of)
+        if messages:
+            raise BadInput(*messages)
+        found._stands_at(entry, given)
+        return found
+
+    def _stands_at(self, entry: str, given: dict[str, Any]) -> None:
+        self._entry, self._given = entry, given
+        for name, value in self:
+            if isinstance(value, Entries):
+                value._stands_at(self.at(name), given[name])
+            elif name in self.nested and isinstance(value, list):
+                for k, one in enumerate(value, 1):
+                    one._stands_at(f"{self.at(name)}.{k}", given[name][k - 1])
+
+
+def _table(value: Any) -> Any:
+    if isinstance(value, Entries):
+        return value.table()
+    return [_table(one) for one in value] if isinstance(value, list | tuple) else plain(value)
+
+
+def _no_such(name: str, value: Any, accepted: list[str], meant: str = "") -> str:
+    hint = f"; did you mean {meant}?" if meant else suggestion(name, accepted)
+    return f": no such entry, set to '{brief(value)}'{hint} (accepted: {', '.join(accepted)})"
+
+
+MOST_LINES = 20  # of one table
+
+
+def _lines(
+    model: type[Entries], error: ValidationError, entry: str, between: str, of: Dimension | None
+) -> list[str]:
+    """What pydantic refuses, a line each: entry, value, what is accepted. `between` stands behind the name of the table."""
+    found = []
+    every = error.errors()
+    misspelt = [str(one["loc"][-1]) for one in every if one["type"] == "extra_forbidden"]
+    for one in every:
+        holder = model
+        for part in one["loc"][:-1]:
+            holder = holder.nested.get(str(part), holder)
+        *way, last = one["loc"]
+        place = [str(part + 1 if isinstance(part, int) else part) for part in way]
+        name = brief(last + 1 if isinstance(last, int) else last)
+        if one["type"] == "missing" and any(suggestion(word, [name]) for word in misspelt):
+            continue  # said already
+        at = f"{entry}{between if entry else ''}{'.'.join([*place, name])}"
+        found.append(
+            at + _refusal(holder, one, name, ".".join([*([entry] if entry else []), *place]), of)
+        )
+    if len(found) > MOST_LINES:
+        found[MOST_LINES:] = [
+            f"{entry or 'the scene'}: {len(found) - MOST_LINES} more entries are not accepted"
+        ]
+    return found
+
+
+def _refusal(holder: type[Entries], one: Any, name: str, table: str, of: Dimension | None) -> str:
+    """What stands behind the name of an entry in a message. `table`: the name of what it is in."""
+    if one["type"] == "extra_forbidden":
+        return holder.refused(name, one["input"], of)
+    if one["type"] == "missing":
+        rules = [each for each in holder.model_fields[name].metadata if isinstance(each, Rule)]
+        return f": is missing (accepted: {rules[0].accepted_in(of) if rules else 'a table'})"
+    if one["type"] == "value_error":
+        return str(one["ctx"]["error"])
+    given = brief(one["input"])
+    if one["type"] == "list_type":
+        return f": '{given}' is no list of tables (accepted: [[{table}.{name}]])"
+    if name.isdecimal():
+        return f": '{given}' is no table (accepted: [[{table}]])"
+    model = holder.nested.get(name, holder)
+    return f": '{given}' is no table (accepted: a table with {', '.join(model.names(of))})"
+
+
+# ---- materials
+
+
+class Material(Entries):
+    """What a body is made of. `law` is a constitutive law of edp/core/law; the classes below are those laws.
+
+    Damping beside it: `viscosity` and `bulk_viscosity` [Pa s] of Kelvin and Voigt's kind, or `loss`, the loss factor at the
+    first mode; a Maxwell branch of `relaxation_modulus` [Pa] and `relaxation_time` [s].
+    """
+
+    law: Annotated[str, shared("law")]
+    young: Annotated[float, shared("young")]
+    nu: Annotated[float, shared("nu")]
+    density: Annotated[float, shared("density")]
+    law_parameters: Annotated[str | None, shared("law_parameters")] = None
+    viscosity: Annotated[float | None, shared("viscosity")] = None
+    bulk_viscosity: Annotated[float | None, shared("bulk_viscosity")] = None
+    relaxation_modulus: Annotated[float | None, shared("relaxation_modulus")] = None
+    relaxation_time: Annotated[float | None, shared("relaxation_time")] = None
+    loss: Annotated[float | None, shared("loss")] = None
+
+
+class SaintVenantKirchhoff(Material):
+    """S = lambda tr(E) I + 2 mu E, paper (5)."""
+
+    law: Annotated[str, shared("law")] = "svk"
+
+
+class NeoHookean(Material):
+    """Compressible neo-Hookean law, paper (6)."""
+
+    law: Annotated[str, shared("law")] = "neohookean"
+
+
+class Incompressible(Material):
+    """Incompressible neo-Hookean law, J = 1."""
+
+    law: Annotated[str, shared("law")] = "incompressible"
+    nu: Annotated[float, shared("nu")] = 0.5
+
+
+class MooneyRivlin(Material):
+    """Mooney and Rivlin's law; law_parameters = "s", the share of the second invariant in the shear modulus."""
+
+    law: Annotated[str, shared("law")] = "mooney-rivlin"
+
+
+class Ogden(Material):
+    """Ogden's law of one to three terms; law_parameters = "alpha_1, s_1, alpha_2, s_2 ...", exponents and shares."""
+
+    law: Annotated[str, shared("law")] = "ogden"
+
+
+LAWS: dict[str, type[Material]] = {
+    one.model_fields["law"].default: one
+    for one in (SaintVenantKirchhoff, NeoHookean, Incompressible, MooneyRivlin, Ogden)
+}
+assert set(LAWS) == set(NAMES_OF_LAWS)
+MATERIAL = tuple(Material.model_fields)
+
+
+# ---- conditions at the boundary of a body
+
+
+class Support(Entries):
+    """A part of a body's boundary that is held or moved (docs/supports-and-loads.md)."""
+
+    where: Annotated[str | dict[str, Any], Where(SIDES)]
+    fix: Annotated[
+        str | None,
+        Parameter("", "word", None, "", "what is held", words=("all", "x", "y", "z", "normal")),
+    ] = None
+    motion: Annotated[Any, Function("displacement [m], a function of t for each axis")] = None
+    release: Annotated[float | None, number(0.0, LONGEST, "s", "time from which it is free")] = None
+
+
+class Gas(Entries):
+    """p V^n = const in a closed cavity."""
+
+    gauge_pressure: Annotated[
+        float,
+        number(-MOST_PRESSURE, MOST_PRESSURE, "Pa", "over the pressure outside, at the start"),
+    ]
+    exponent: Annotated[
+        float | None, number(0.0, 10.0, "", "n of p V^n; 1: isothermal, 1.4: air")
+    ] = None
+    ambient_pressure: Annotated[
+        float | None, number(0.0, MOST_PRESSURE, "Pa", "outside; an atmosphere where it is open")
+    ] = None
+
+
+class Load(Entries):
+    """A stress on a part of a body's boundary: one of traction, pressure, gas."""
+
+    nested = {"gas": Gas}
+    where: Annotated[str | dict[str, Any], Where(SIDES)]
+    traction: Annotated[Any, Function("per reference area [Pa], a function of t for each axis")] = (
+        None
+    )
+    pressure: Annotated[Any, Function("follows the surface [Pa], a function of t", single=True)] = (
+        None
+    )
+    gas: Gas | None = None
+
+
+# ---- bodies
+
+
+class Body(Entries):
+    """What bodies of all shapes have; the shapes are the classes below. `material` gives law, young, nu, density and damping
+    at once. Rigid ones need none of it but a density or a mass."""
+
+    shape: ClassVar[str]
+    heading = ("shape",)
+    dimensions: ClassVar[tuple[Dimension, ...]] = (PLANE_STRAIN,)
+    nested = {"support": Support, "load": Load}
+    only = {
+        "angle": (PLANE_STRAIN, SOLID), "turn": (SOLID,), "spin": (PLANE_STRAIN, SOLID), "speed": (PLANE_STRAIN,),
+        "direction": (PLANE_STRAIN,),
+    }  # fmt: skip
+
+    name: Annotated[str | None, Name("of its own")] = None
+    position: Annotated[Any, Place("of the centre of mass [m]")]
+    velocity: Annotated[Any, Place("of the centre of mass [m/s]")] = None
+    law: Annotated[str | None, shared("law")] = None
+    young: Annotated[float | None, shared("young")] = None
+    nu: Annotated[float | None, shared("nu")] = None
+    density: Annotated[float | None, shared("density")] = None
+    law_parameters: Annotated[str | None, shared("law_parameters")] = None
+    viscosity: Annotated[float | None, shared("viscosity")] = None
+    bulk_viscosity: Annotated[float | None, shared("bulk_viscosity")] = None
+    relaxation_modulus: Annotated[float | None, shared("relaxation_modulus")] = None
+    relaxation_time: Annotated[float | None, shared("relaxation_time")] = None
+    loss: Annotated[float | None, shared("loss")] = None
+    mesh_size: Annotated[
+        float | None, shared("mesh_size", "largest element size; 0 = by accuracy")
+    ] = None
+    contact_mesh_size: Annotated[
+        float | None,
+        shared("contact_mesh_size", "element size where it may touch; 0 = by accuracy"),
+    ] = None
+    support: Annotated[list[Support] | None, BeforeValidator(several)] = None
+    load: Annotated[list[Load] | None, BeforeValidator(several)] = None
+    rigid: Annotated[bool | None, Flag("moves without deforming")] = None
+    mass: Annotated[
+        float | None, number(1e-12, LONGEST, "", "of a rigid body [kg, in the plane kg/m]")
+    ] = None
+    inertia: Annotated[
+        Any, InSpace(number(1e-18, LONGEST, ""), "of a rigid body [kg m2]", about_z=False)
+    ] = None
+    angle: Annotated[float | None, number(-MOST_TURN, MOST_TURN, "deg", "turned by, about z")] = (
+        None
+    )
+    turn: Annotated[
+        list[float] | None,
+        Vector("turned about a vector of this length [degrees]", -MOST_TURN, MOST_TURN, 3),
+    ] = None
+    speed: Annotated[
+        float | None, number(0.0, LONGEST, "m/s", "in place of velocity, with direction")
+    ] = None
+    direction: Annotated[
+        float | None, number(-MOST_TURN, MOST_TURN, "deg", "of the speed, from the x axis")
+    ] = None
+    spin: Annotated[Any, InSpace(shared("spin"), "angular velocity [rad/s]; in space a vector")] = (
+        None
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_material(cls, entries: dict[str, Any]) -> dict[str, Any]:
+        """With the entries of the material that it is said to be of."""
+        own = {name: value for name, value in entries.items() if name != "material"}
+        return (entries["material"].table() if "material" in entries else {}) | own
+
+    @property
+    def material(self) -> Material | None:
+        """What it is made of, where that is its own."""
+        own = {name: getattr(self, name) for name in MATERIAL if name in self}
+        return (
+            LAWS.get(own.get("law", ""), Material)(**own)
+            if {"law", "young", "nu", "density"} <= set(own)
+            else None
+        )
+
+    @property
+    def sizes(self) -> list[Any]:
+        """The numbers that a shape is made of, in the order of its entries."""
+        return [
+            getattr(self, name) for name in type(self).model_fields if name not in Body.model_fields
+        ]
+
+    def table(self) -> dict[str, Any]:
+        """A table [[body]]."""
+        return {"shape": self.shape} | super().table()
+
+
+class Disc(Body):
+    """A disc in plane strain."""
+
+    shape = "disc"
+    radius: Annotated[float, number(meaning="radius")]
+
+
+class Ellipse(Body):
+    """An ellipse in plane strain."""
+
+    shape = "ellipse"
+    semi_axes: Annotated[
+        list[float], Vector("half its width and half its height [m]", 1e-9, count=2)
+    ]
+
+
+class Rectangle(Body):
+    """A rectangle in plane strain."""
+
+    shape = "rectangle"
+    width: Annotated[float, number(meaning="width")]
+    height: Annotated[float, number(meaning="height")]
+
+
+class Ring(Body):
+    """A ring in plane strain."""
+
+    shape = "ring"
+    radius: Annotated[float, number(meaning="outer radius")]
+    inner_radius: Annotated[float, number(meaning="inner radius")]
+
+
+class Polygon(Body):
+    """A polygon in plane strain; of revolution its section, from the axis to the axis or beside it."""
+
+    shape = "polygon"
+    dimensions = (PLANE_STRAIN, AXISYMMETRIC)
+    only = Body.only | {"holes": (PLANE_STRAIN,)}
+    vertices: Annotated[list[list[float]], Points(3, "corners [m], each once, in order")]
+    holes: Annotated[Any, Polygons("holes in it")] = None
+
+
+class Ball(Body):
+    """A ball, of revolution or in space."""
+
+    shape = "ball"
+    dimensions = (AXISYMMETRIC, SOLID)
+    radius: Annotated[float, number(meaning="radius")]
+
+
+class Shell(Body):
+    """A hollow ball of revolution."""
+
+    shape = "shell"
+    dimensions = (AXISYMMETRIC,)
+    radius: Annotated[float, number(meaning="outer radius")]
+    inner_radius: Annotated[float, number(meaning="inner radius")]
+
+
+class Ellipsoid(Body):
+    """An ellipsoid of revolution: radius, half height."""
+
+    shape = "ellipsoid"
+    dimensions = (AXISYMMETRIC,)
+    semi_axes: Annotated[list[float], Vector("radius and half the height [m]", 1e-9, count=2)]
+
+
+class Cylinder(Body):
+    """A cylinder about the y axis, of revolution or in space."""
+
+    shape = "cylinder"
+    dimensions = (AXISYMMETRIC, SOLID)
+    radius: Annotated[float, number(meaning="radius")]
+    height: Annotated[float, number(meaning="height")]
+
+
+class Tube(Body):
+    """A tube of revolution."""
+
+    shape = "tube"
+    dimensions = (AXISYMMETRIC,)
+    radius: Annotated[float, number(meaning="outer radius")]
+    inner_radius: Annotated[float, number(meaning="inner radius")]
+    height: Annotated[float, number(meaning="height")]
+
+
+class Torus(Body):
+    """An O-ring of revolution; `section` is the radius of its section."""
+
+    shape = "torus"
+    dimensions = (AXISYMMETRIC,)
+    radius: Annotated[float, number(meaning="from the axis to the middle of the section")]
+    section: Annotated[float, number(meaning="radius of the section")]
+
+
+class Box(Body):
+    """A box in space."""
+
+    shape = "box"
+    dimensions = (SOLID,)
+    width: Annotated[float, number(meaning="along x")]
+    height: Annotated[float, number(meaning="along y")]
+    depth: Annotated[float, number(meaning="along z")]
+
+
+class Mesh(Body):
+    """A body from a mesh or a CAD file."""
+
+    shape = "mesh"
+    dimensions = (PLANE_STRAIN, AXISYMMETRIC, SOLID)
+    file: Annotated[str | None, Text("path, from the folder of the scene on")] = None
+    scale: Annotated[float | None, number(1e-9, 1e9, "m", "a unit of length of the file")] = None
+
+
+BODIES: dict[str, type[Body]] = {
+    one.shape: one
+    for one in (
+        Disc,
+        Ellipse,
+        Rectangle,
+        Ring,
+        Ball,
+        Shell,
+        Ellipsoid,
+        Box,
+        Cylinder,
+        Polygon,
+        Tube,
+        Torus,
+        Mesh,
+    )
+}
+
+
+# ---- rigid obstacles
+
+OWN = (
+    "penalty",
+    "friction_static",
+    "friction_dynamic",
+)  # what a pair and an obstacle may have of its own
+
+
+class Obstacle(Entries):
+    """What rigid obstacles of all kinds have; the kinds are the classes below."""
+
+    kind: ClassVar[str]
+    heading = ("kind",)
+    dimensions: ClassVar[tuple[Dimension, ...]] = (PLANE_STRAIN, AXISYMMETRIC, SOLID)
+    name: Annotated[str | None, Name("of its own")] = None
+    velocity: Annotated[Any, Place("[m/s]")] = None
+    motion: Annotated[Any, Function("displacement [m], a function of t for each axis")] = None
+    rotation: Annotated[Any, Function("turned by [degrees], a function of t", single=True)] = None
+    pivot: Annotated[list[float] | None, Vector("what it turns about [m]")] = None
+    axis: Annotated[
+        list[float] | None, Vector("in space, the direction that it turns about", count=3)
+    ] = None
+    penalty: Annotated[float | str | None, shared("penalty")] = None
+    friction_static: Annotated[float | None, shared("friction_static")] = None
+    friction_dynamic: Annotated[float | str | None, shared("friction_dynamic")] = None
+
+    def table(self) -> dict[str, Any]:
+        """A table [[obstacle]]."""
+        return {"kind": self.kind} | super().table()
+
+    @classmethod
+    def refused(cls, name: str, value: Any, of: Dimension | None) -> str:
+        return _of_all(name, value) or super().refused(name, value, of)
+
+
+class Plane(Obstacle):
+    """A half space below a plane; in Python the floor y = 0 by default."""
+
+    kind = "plane"
+    point: Annotated[list[float] | None, Vector("on it [m]")] = None
+    normal: Annotated[list[float] | None, Vector("out of it")] = None
+
+
+class Circle(Obstacle):
+    """A disc in the plane."""
+
+    kind = "circle"
+    dimensions = (PLANE_STRAIN,)
+    centre: Annotated[Any, Place("[m]")]
+    radius: Annotated[float, number(meaning="radius")]
+
+
+class Bowl(Obstacle):
+    """What is outside a circle or sphere."""
+
+    kind = "bowl"
+    centre: Annotated[Any, Place("[m]")]
+    radius: Annotated[float, number(meaning="radius")]
+
+
+class Sphere(Obstacle):
+    """A ball, of revolution or in space."""
+
+    kind = "sphere"
+    dimensions = (AXISYMMETRIC, SOLID)
+    centre: Annotated[Any, Place("[m]")]
+    radius: Annotated[float, number(meaning="radius")]
+
+
+class Polyline(Obstacle):
+    """A chain of straight walls, solid to its left."""
+
+    kind = "polyline"
+    dimensions = (PLANE_STRAIN, AXISYMMETRIC)
+    only = {"closed": (PLANE_STRAIN,)}
+    vertices: Annotated[list[list[float]], Points(2, "corners [m]")]
+    closed: Annotated[bool | None, Flag("whether the last joins the first")] = None
+    rounding: Annotated[float | None, number(0.0, LONGEST, "m", "of convex corners")] = None
+
+
+class Surface(Obstacle):
+    """A closed surface in space from an STL file or a mesh."""
+
+    kind = "surface"
+    dimensions = (SOLID,)
+    file: Annotated[
+        str, Text("path, from the folder of the scene on", "the path of an STL file or a mesh")
+    ]
+    scale: Annotated[float | None, number(1e-9, 1e9, "m", "a unit of length of the file")] = None
+    position: Annotated[list[float] | None, Vector("of the file's origin [m]", count=3)] = None
+    turn: Annotated[
+        list[float] | None,
+        Vector("about a vector of this length [degrees]", -MOST_TURN, MOST_TURN, 3),
+    ] = None
+    rounding: Annotated[
+        float | None, number(0.0, LONGEST, "m", "how far it reaches out of the file's triangles")
+    ] = None
+
+
+class Implicit(Obstacle):
+    """An expression of the signed distance in x, y (, z), positive outside."""
+
+    kind = "implicit"
+    distance: Annotated[
+        Any, Function("expression in x, y (, z) of the signed distance [m]", single=True)
+    ]
+
+
+OBSTACLES: dict[str, type[Obstacle]] = {
+    one.kind: one for one in (Plane, Circle, Sphere, Bowl, Polyline, Surface, Implicit)
+}
+
+
+# ---- contact
+
+
+class Pair(Entries):
+    """What differs between two partners, by their names; between a body and an obstacle, or two bodies."""
+
+    bodies: Annotated[Any, Partners("two names")] = None
+    penalty: Annotated[float | str | None, shared("penalty")] = None
+    friction_static: Annotated[float | None, shared("friction_static")] = None
+    friction_dynamic: Annotated[float | str | None, shared("friction_dynamic")] = None
+
+    @classmethod
+    def refused(cls, name: str, value: Any, of: Dimension | None) -> str:
+        return _of_all(name, value) or super().refused(name, value, of)
+
+
+class Contact(Entries):
+    """Contact and friction of the whole scene, paper (10) to (13)."""
+
+    nested = {"pair": Pair}
+    penalty: Annotated[float | str | None, shared("penalty")] = None
+    friction_static: Annotated[float | None, shared("friction_static")] = None
+    friction_dynamic: Annotated[float | str | None, shared("friction_dynamic")] = None
+    exponent: Annotated[float | None, shared("exponent")] = None
+    slip_velocity: Annotated[float | str | None, shared("slip_velocity")] = None
+    regularization: Annotated[str | None, shared("regularization")] = None
+    friction_transition: Annotated[str | None, shared("friction_transition")] = None
+    pairing: Annotated[str | None, shared("pairing")] = None
+    pairing_range: Annotated[float | str | None, shared("pairing_range")] = None
+    self_contact: Annotated[
+        str | None,
+        Parameter(
+            "",
+            "word",
+            None,
+            "-",
+            "whether bodies may touch themselves",
+            words=("auto", "on", "off"),
+        ),
+    ] = None
+    pair: Annotated[list[Pair] | None, BeforeValidator(several)] = None
+
+
+CONTACT = tuple(name for name in Contact.model_fields if name not in ("self_contact", "pair"))
+
+
+def _of_all(name: str, value: Any) -> str:
+    """What a message says of an entry that is of the contact of the whole scene; empty of others."""
+    if name not in CONTACT:
+        return ""
+    return f": '{brief(value)}' holds for the whole scene (accepted: in [contact]; here {', '.join(OWN)})"
+
+
+# ---- the top of a scene
+
+
+class Top(Entries):
+    """What stands at the top: how the run is to be made, and the material and mesh sizes of bodies without their own."""
+
+    title: Annotated[str | None, Text("a line about it")] = None
+    script: Annotated[str | None, Text("script of edp/")] = None
+    dimension: Annotated[
+        str | None,
+        Parameter("", "word", None, "-", "what it is computed in", words=tuple(DIMENSIONS)),
+    ] = None
+    symmetry: Annotated[
+        str | None,
+        Parameter(
+            "",
+            "word",
+            None,
+            "-",
+            "in space: the part that is computed",
+            words=("auto", "full", "half", "quarter"),
+        ),
+    ] = None
+    only = {"symmetry": (SOLID,)}
+    law: Annotated[str | None, shared("law")] = None
+    young: Annotated[float | None, shared("young")] = None
+    nu: Annotated[float | None, shared("nu")] = None
+    density: Annotated[float | None, shared("density")] = None
+    law_parameters: Annotated[str | None, shared("law_parameters")] = None
+    viscosity: Annotated[float | None, shared("viscosity")] = None
+    bulk_viscosity: Annotated[float | None, shared("bulk_viscosity")] = None
+    relaxation_modulus: Annotated[float | None, shared("relaxation_modulus")] = None
+    relaxation_time: Annotated[float | None, shared("relaxation_time")] = None
+    loss: Annotated[float | None, shared("loss")] = None
+    mesh_size: Annotated[float | None, shared("mesh_size")] = None
+    contact_mesh_size: Annotated[float | None, shared("contact_mesh_size")] = None
+    gravity: Annotated[float | None, shared("gravity")] = None
+    body_force_x: Annotated[float | None, shared("body_force_x")] = None
+    body_force_y: Annotated[float | None, shared("body_force_y")] = None
+    degree: Annotated[int | None, shared("degree")] = None
+    integrator: Annotated[str | None, shared("integrator")] = None
+    dt: Annotated[float | None, shared("dt")] = None
+    accuracy: Annotated[float | None, shared("accuracy")] = None
+    accuracy_of: Annotated[str | None, shared("accuracy_of")] = None
+    tolerance: Annotated[float | None, shared("tolerance")] = None
+    breakdown: Annotated[str | None, shared("breakdown")] = None
+    chatter: Annotated[str | None, shared("chatter")] = None
+    end_time: Annotated[float | None, shared("end_time")] = None
+    until: Annotated[str | None, shared("until")] = None
+    fields: Annotated[int | None, shared("fields")] = None
+    modes: Annotated[int | None, shared("modes")] = None
+    checkpoint_every: Annotated[int | None, shared("checkpoint_every")] = None
+    without: Annotated[str | None, shared("without")] = None
+
+    @classmethod
+    def refused(cls, name: str, value: Any, of: Dimension | None) -> str:
+        """Entries of bodies and of contact are not at the top."""
+        of_bodies = {each for one in BODIES.values() for each in one.names(of)}
+        meant = (
+            f"body.1.{name}" if name in of_bodies else f"contact.{name}" if name in CONTACT else ""
+        )
+        return _no_such(name, value, [*cls.names(of), "body", "obstacle", "contact"], meant)
+
+
+# ---- whole scenes
+
+
+class Tables(BaseModel):
+    """The tables of a scene."""
+
+    top: Top
+    bodies: list[Body]
+    obstacles: list[Obstacle]
+    contact: Contact
+
+
+KINDS: dict[str, tuple[str, dict[str, type[Any]]]] = {
+    "body": ("shape", BODIES),
+    "obstacle": ("kind", OBSTACLES),
+}
+
+
+def read(given: dict[str, Any], of: Dimension) -> Tables:
+    """The tables of a scene; BadInput with a line for each thing that is wrong in one of them."""
+    top = {name: value for name, value in given.items() if name not in (*KINDS, "contact")}
+    found = gathered([
+        lambda: Top.read("", top, of), lambda: tables(given, "body", of), lambda: tables(given, "obstacle", of),
+        lambda: Contact.read("contact", given.get("contact", {}), of)])  # fmt: skip
+    return Tables.model_construct(**dict(zip(("top", "bodies", "obstacles", "contact"), found)))
+
+
+def tables(given: dict[str, Any], key: str, of: Dimension) -> list[Any]:
+    """The bodies or obstacles of a scene's tables [[key]]."""
+    acts = [
+        partial(_by_word, f"{key}.{k}", one, *KINDS[key], of)
+        for k, one in enumerate(listed(given, key), 1)
+    ]
+    return gathered(acts)
+
+
+def _by_word(
+    entry: str, given: dict[str, Any], word: str, models: dict[str, type[Any]], of: Dimension
+) -> Entries:
+    """The body or obstacle of a table, by its shape or kind."""
+    accepted = [name for name, one in models.items() if of in one.dimensions]
+    name = given.get(word)
+    if name is None:
+        raise BadInput(f"{entry}.{word}: is missing (accepted: {'|'.join(accepted)})")
+    if not isinstance(name, str) or name not in accepted:
+        raise BadInput(f"{entry}.{word}: {unknown(name, accepted)}")
+    found: Entries = models[name].read(
+        entry, {key: value for key, value in given.items() if key != word}, of
+    )
+    return found
+
+
+def listed(given: dict[str, Any], key: str) -> list[dict[str, Any]]:
+    """The tables [[key]] of a file, [] where there are none."""
+    tables = given.get(key, [])
+    if not isinstance(tables, list):
+        raise BadInput(f"{key}: '{brief(tables)}' is no list of tables (accepted: [[{key}]])")
+    for k, table in enumerate(tables, 1):
+        if not isinstance(table, dict):
+            raise BadInput(f"{key}.{k}: '{brief(table)}' is no table (accepted: [[{key}]])")
+    return tables
