@@ -47,7 +47,7 @@ def main(argv: list[str]) -> int:
                         help="also gravity, other integrators, linear elements ...: nothing above what was asked without a warning")
     parser.add_argument("--coarse", action="store_true", help="discs and balls at coarse accuracies: stated errors hold there too")
     parser.add_argument("--flat", action="store_true", help="faces that strike flat, in all dimensions: stated errors hold there too")
-    parser.add_argument("--held", action="store_true", 
+    parser.add_argument("--held", action="store_true",
                         help="supports, loads, rigid bodies, obstacles that move: stated errors hold there too")
     parser.add_argument("--of", metavar="SCENE", choices=draws.SCENES, help=f"of one kind only: {', '.join(draws.SCENES)}")
     options = parser.parse_args(argv)

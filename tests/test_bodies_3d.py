@@ -10,7 +10,7 @@ from ffimpact.failure import BadInput
 from ffimpact.freefem import freefem
 from ffimpact.geometry import tumbling
 from ffimpact.input import parameters
-from ffimpact.input.tables import to_toml
+from ffimpact.input.toml_text import to_toml
 from ffimpact.mesh import curved, mesh, solid_file, solid_mesh, solids
 from ffimpact.report import bodies, drawing, figures, report
 from ffimpact.running import run

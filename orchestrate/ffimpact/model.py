@@ -22,7 +22,7 @@ from . import scene as files
 from .failure import BadInput, brief, suggestion
 from .input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
 from .input.parameters import with_unit
-from .input.tables import to_toml
+from .input.toml_text import to_toml
 from .scenes import scene as reading
 from .scenes.bodies import MATERIAL, SIZES
 
