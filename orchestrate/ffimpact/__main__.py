@@ -12,7 +12,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from . import __version__, stopping
-from .failure import BadInput, Failure, Unreadable, brief, unknown
+from .failure import BadInput, Failure, NotInstalled, Unreadable, brief, unknown
 from .places import shown
 
 Command = Callable[[list[str]], int | None]
@@ -94,6 +94,8 @@ def _parser() -> argparse.ArgumentParser:
     command.set_defaults(command=_parameters)
     command = commands.add_parser("schema", help="print the JSON schema of scene files, with which editors complete and check them")
     command.set_defaults(command=_schema)
+    command = commands.add_parser("kernels", help="print the word that a FreeFem++ of your own needs to load the compiled kernels")
+    command.set_defaults(command=_kernels)
     command = commands.add_parser("figures", help="draw the figures of a result folder again")
     command.add_argument("folder", metavar="DIR", type=Path)
     command.set_defaults(command=_figures)
@@ -137,6 +139,14 @@ def _parameters(options: argparse.Namespace) -> None:
 def _schema(options: argparse.Namespace) -> None:
     from .schema import text
     print(text(), end="")
+
+
+def _kernels(options: argparse.Namespace) -> None:
+    from .freefem import freefem
+    if not (word := freefem.find().plugin):
+        raise NotInstalled("the kernels cannot be compiled: FreeFem++'s ff-c++, g++ or SuiteSparse's headers are missing; "
+                           "run: apt-get install g++ libfreefem++-dev libsuitesparse-dev")
+    print(word)
 
 
 def _figures(options: argparse.Namespace) -> None:
