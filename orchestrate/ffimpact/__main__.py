@@ -1,6 +1,7 @@
 """Command line: ffimpact COMMAND, or python -m ffimpact COMMAND; the commands are listed by --help."""
 
 import argparse
+import contextlib
 import errno
 import gc
 import importlib
@@ -85,7 +86,7 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument("--checkpoint-every", metavar="STEPS",
                          help="make a checkpoint every so many steps; a run that is killed goes on from the last when called again")
     command.add_argument("--force", action="store_true", help="run again, from the start, even if the result is there")
-    command.add_argument("--quiet", action="store_true", help="no progress, no report")
+    command.add_argument("--quiet", action="store_true", help="print warnings and errors only, on stderr")
     command.set_defaults(command=_run)
 
     command = commands.add_parser("list", help="list the built-in scenes, with their scripts")
@@ -112,11 +113,13 @@ def _run(options: argparse.Namespace) -> None:
     given = parameters.overrides(options.set)
     if options.checkpoint_every:
         given["checkpoint_every"] = options.checkpoint_every
-    result = run.run(scene.load(options.scene), given, options.out, mesh_file=options.mesh,
-                     force=options.force, progress=False if options.quiet else None)
-    report.draw(result)
-    if not options.quiet:
+    with contextlib.redirect_stdout(None if options.quiet else sys.stdout):
+        result = run.run(scene.load(options.scene), given, options.out, mesh_file=options.mesh,
+                         force=options.force, progress=False if options.quiet else None)
+        report.draw(result)
         print(report.report(result))
+    for sentence in result.summary["warnings"] if options.quiet else ():
+        print(f"ffimpact: warning: {sentence}", file=sys.stderr)
 
 
 def _list(options: argparse.Namespace) -> None:
