@@ -86,7 +86,8 @@ pictures: disc-normal disc-oblique ## the README's pictures, drawn again from th
 	[(drawing.draw(run := Path('results', name)), \
 	Image.open(run / f'figures/{figure}.png').convert('RGB').quantize(256).save(picture, optimize=True)) for name, (figure, picture) in runs.items()]"
 
-CHECKED := $(addprefix orchestrate/ffimpact/,__init__.py api.py model.py plot.py result.py schema.py view.py)
+CHECKED := $(addprefix orchestrate/ffimpact/,__init__.py api.py model.py plot.py result.py schema.py view.py \
+  input/flags.py input/parameter.py input/table.py)
 check: $(READY) ## style and types: ruff everywhere, its format and mypy --strict for the modules of the Python interface
 	@$(PYTHON) -m ruff check -q orchestrate examples benchmarks verification tests docs conftest.py
 	@$(PYTHON) -m ruff format -q --check $(CHECKED) tests/test_api.py conftest.py

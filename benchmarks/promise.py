@@ -27,7 +27,7 @@ COARSE = 73, 180            # seed and scenes at coarse accuracies, for which es
 FLAT = 79, 60               # seed and scenes with faces that strike flat, for which estimate.FRONT is calibrated on seeds 303, 304
 HELD = 84, 60               # seed and scenes with supports, loads, rigid bodies, obstacles that move
 # elements and steps of the reference are so many times smaller than the first run's; 3 where it is no matter of hours
-FINER = {"ball": 2, "box-wall": 2} | dict.fromkeys(draws.HELD_MIXTURE, 2)
+FINER = {"ball": 2, "box-wall": 2}
 STEPS_GROW = 0.0576         # accuracy from which on steps are 0.3 of a transit of waves (sizes.idp): finer ones are asked for from there
 LIMIT = 1800.0              # seconds a scene may take
 KEPT = 0.95                 # share of the scenes in which the promise must be kept, and of the cases that a stated error must cover
@@ -141,7 +141,8 @@ def _compared(wanted: scene.Scene, folder: Path) -> dict:
         solve(reference, finer)
         best = read_answers(finer).summary | {"largest_energy": answers.summary["largest_energy"]}
     # the reference has itself the share `factor` of an error of first order, of flat strikes, else its square
-    left = 1 - factor if answers.summary["front_rise"] else 1 - factor**2 if wanted.name in draws.HELD_MIXTURE else 1.0
+    finer = factor * estimate.COARSER**found["refinements"]
+    left = 1 - factor if answers.summary["front_rise"] else 1 - finer**2 if wanted.name in draws.HELD_MIXTURE else 1.0
     apart = {name: error / left for name, error in
              estimate.difference(best, answers.summary, answers.speed, answers.used.get("radius")).items()}
     stated = found["estimated_error"]

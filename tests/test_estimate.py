@@ -248,7 +248,7 @@ def test_what_was_asked_for_is_asked_of_every_run_that_may_stay(tmp_path, name, 
 
 def test_what_asks_for_output_is_off_by_default():
     """The values that ask for no output are the defaults of the table, of every script."""
-    assert {name: parameters.table()[name].default for name in parameters.OUTPUT} == parameters.OUTPUT
+    assert {name: parameters.PARAMETERS[name].default for name in parameters.OUTPUT} == parameters.OUTPUT
 
 
 @pytest.mark.parametrize("off, runs", [(0.009, 2), (0.0149, 2), (0.0151, 3), (0.03, 3)])

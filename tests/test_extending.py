@@ -30,6 +30,7 @@ def extended(tmp_path):
             (tmp_path / path).write_text(text)
         for change in re.findall(r"```diff\n(.*?)```", section, re.DOTALL):
             go(tmp_path, "git", "apply", "-", given=change)
+        go(tmp_path, sys.executable, "-m", "ffimpact.input.flags")
         for command in re.findall(r"```sh\n(.*?)```", section, re.DOTALL):
             go(tmp_path, "sh", "-c", command)
         return tmp_path

@@ -188,3 +188,12 @@ def test_half_a_run_with_a_gas_and_the_rest_are_the_whole(tmp_path):
     last = direct(flags | {"restart": out / "checkpoint"}, out, "bodies")
     assert last.communicate(timeout=120) and last.returncode == 0
     assert_same(out, tmp_path / "straight")
+
+
+def test_a_gas_stiffer_than_its_shell_is_settled(tmp_path):
+    """Of a soft ring the pressure outside is as large as Young's modulus: the gas alone resists a change of volume."""
+    tyre = {"shape": "ring", "radius": 0.05, "inner_radius": 0.03, "position": [0, 0.0525], "velocity": [0, -0.1],
+            "load": [{"where": "inner", "gas": {"gauge_pressure": 200.0, "exponent": 1.0}}]}
+    soft = {"law": "neohookean", "young": 1e5, "nu": 0.4, "density": 1000.0, "accuracy": 0.1, "end_time": 1e-3}
+    run = bodies(tmp_path / "run", soft | {"body": [tyre], "obstacle": [FLOOR]})
+    assert_exact(run)

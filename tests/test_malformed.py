@@ -123,7 +123,7 @@ def test_value_of_a_flag(name, value):
     if (name, value) not in (("nu", "0.5"), ("checkpoint_every", "-1")):   # that hangs on the law; this has words of its own
         with pytest.raises(BadInput) as error:
             parameters.check({name: value})
-        assert said == re.sub(r"; did you mean [^?]*\?", "", str(error.value)) and said.endswith(f"(accepted: {parameters.table()[name].accepted})")
+        assert said == re.sub(r"; did you mean [^?]*\?", "", str(error.value)) and said.endswith(f"(accepted: {parameters.PARAMETERS[name].accepted})")
 
 
 @pytest.mark.few(3)

@@ -1,32 +1,40 @@
 """The parameter table and the scenes that are made of it."""
 
-import re
-
 import pytest
 
 from ffimpact import scene
 from ffimpact.failure import BadInput
 from ffimpact.freefem.describe import describe
-from ffimpact.input import parameters
+from ffimpact.input import flags, parameters
+from ffimpact.input.table import LAWS, SCRIPTS
 
 
-def test_every_row_of_the_table_is_read():
-    """No row of the table is skipped in silence, and each has a unit, a help text and a default that is accepted."""
-    text = (parameters.ROOT / "edp/core/input/parameters.idp").read_text().partition("// THE TABLE")[2].partition("// END OF THE TABLE")[0]
-    assert len(parameters.table()) == len(re.findall(r"^\w+ \w+ = parameter", text, re.MULTILINE)) > 20
-    for row in parameters.table().values():
-        assert row.unit and row.help, row.name
-        if row.kind != "path":
-            assert row.check(row.default) == row.default
+def test_the_flags_of_the_scripts_are_those_of_the_table():
+    """edp/core/input/parameters.idp is as the table makes it: python -m ffimpact.input.flags writes it."""
+    assert flags.FILE.read_text() == flags.written()
+
+
+def test_the_scripts_take_what_the_table_says():
+    """Every script starts with its parameters at their defaults, and names the same laws."""
+    told = describe()
+    assert told["laws"].split("|") == list(LAWS) and told["scripts"].split("|") == list(SCRIPTS)
+    for script in SCRIPTS:
+        assert set(describe(script=script)["used"]) == set(parameters.names(script))
+
+
+def test_every_row_has_its_words():
+    """Each has a unit, a meaning and a default that is accepted."""
+    for row in parameters.PARAMETERS.values():
+        assert row.unit and row.help and row.check(row.default) == row.default, row.name
 
 
 def test_known_rows():
     """Values of the table arrive with their types."""
-    table = parameters.table()
+    table = parameters.PARAMETERS
     assert (table["young"].default, table["young"].unit, table["young"].low) == (7e6, "Pa", 1e-6)
     assert table["law"].words[:2] == ("svk", "neohookean")
     assert table["fields"].kind == "int" and type(table["fields"].default) is int
-    assert table["mesh"].kind == "path" and "mesh" not in parameters.names()
+    assert "mesh" not in parameters.names()
 
 
 @pytest.mark.parametrize("given, value", [("8", 8.0), ("+8.5", 8.5), (".5", 0.5), ("1e-3", 1e-3), (8, 8.0)])
@@ -40,7 +48,7 @@ def test_numbers_that_are_accepted(given, value):
     ("speed", float("nan"), "speed: nan is out of range (accepted: 0 to 1e+09)"),
     ("speed", True, "speed: 'true' is not a number (accepted: 0 to 1e+09)"),
     ("fields", "2.5", "fields: '2.5' is not a whole number (accepted: 0 to 10000)"),
-    ("law", "hooke", "law: 'hooke' is not known; did you mean neohookean? (accepted: " + "|".join(parameters.table()["law"].words) + ")"),
+    ("law", "hooke", "law: 'hooke' is not known; did you mean neohookean? (accepted: " + "|".join(parameters.PARAMETERS["law"].words) + ")"),
 ])
 def test_bad_values_are_named_with_what_is_accepted(name, given, message):
     """The message for a bad value names the parameter, the value and the range or the words, as the scripts do."""
@@ -66,7 +74,7 @@ def test_each_script_takes_its_own_parameters():
             parameters.check({name: value}, script)
         with pytest.raises(BadInput) as asked:
             describe({name: value}, script)
-        assert str(error.value) == str(asked.value) == f"{name}: {script} takes no such parameter (accepted: in {'|'.join(parameters.table()[name].scripts)})"
+        assert str(error.value) == str(asked.value) == f"{name}: {script} takes no such parameter (accepted: in {'|'.join(parameters.PARAMETERS[name].scripts)})"
     with pytest.raises(BadInput, match="script: 'ball' is not known .accepted: disc-plane|disc-block|ball-axisymmetric|ball-plane|bodies|bodies-3d"):
         describe({}, "ball")
 

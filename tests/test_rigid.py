@@ -243,3 +243,13 @@ def test_wrong_motions(tmp_path, capsys, entries, named):
     assert main(["run", str(file), "--out", str(tmp_path / "out")]) == 10
     said = capsys.readouterr().err
     assert named in said and said.count("\n") == 1
+
+
+@pytest.mark.parametrize("law, nu", [("svk", 0.47), ("neohookean", 0.49)])
+def test_a_rigid_body_has_no_part_in_the_projected_volume_of_others(tmp_path, law, nu):
+    """It has no strain: its energy is 0, the volume ratio of its elements 1."""
+    short = [f"law={law}", f"nu={nu}", "accuracy=0.1", "end_time=0.002"]
+    assert main(["run", "drop-weight", "--out", str(tmp_path / "run"), *(word for one in short for word in ("--set", one))]) == 0
+    history = pd.read_csv(tmp_path / "run/history.csv")
+    assert abs(history["elastic_1"]).max() < 1e-9 * history["elastic_2"].max()
+    assert 0 < json.loads((tmp_path / "run/summary.json").read_text())["volume_change"] < 0.1

@@ -75,7 +75,7 @@ def prepared(folder: Path, tables: dict) -> dict[str, Value | Path]:
     made = assembly.assemble(scene)
     folder.mkdir(parents=True, exist_ok=True)
     made.write(folder)
-    flags = {name: value for name, value in made.values.items() if name in parameters.table()}
+    flags = {name: value for name, value in made.values.items() if name in parameters.PARAMETERS}
     return flags | {"mesh": folder / scene.mesh_name, "bodies": folder / "scene.dat"}
 
 

@@ -130,6 +130,7 @@ public:
     for (size_t g = 0; g + 1 < firstPoint.size(); g++) {
       cell.push_back(cellOfPoint[firstPoint[g]]);
       for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++) cellWeight[g] += weight[q];
+      if (cellWeight[g] == 0) cellWeight[g] = 1;   // of a rigid body, which has no strain
     }
     slope.assign(cell.size(), 0.);
     g0.assign(node.size() * D, 0.);

@@ -38,7 +38,7 @@ def _unit_in(path: Path, error: Exception) -> str:
         return ""
     entry, _, value = path.read_text("utf-8").splitlines()[int(line[1]) - 1].partition("=")
     entry, value = entry.strip(), value.partition("#")[0].strip()
-    rule = parameters.table().get(entry)
+    rule = parameters.PARAMETERS.get(entry)
     said = parameters.with_unit(value, rule.unit if rule else "")
     return said and f"{entry}: '{value}' {said}" + (f" (accepted: {rule.accepted})" if rule else "")
 

@@ -21,7 +21,7 @@ DRAFT = "https://json-schema.org/draft/2020-12/schema"
 
 def schema() -> dict[str, Any]:
     """The schema of a scene file: one of bodies and obstacles in tables, or one of the paper's cases."""
-    shared = {name: rule(parameters.table()[name]) for name in (*MATERIAL, *SIZES)}
+    shared = {name: rule(parameters.PARAMETERS[name]) for name in (*MATERIAL, *SIZES)}
     of_bodies = {
         "type": "object",
         "properties": entries(Scene, leave=("bodies", "obstacles", "contact", "folder"))
@@ -44,12 +44,12 @@ def schema() -> dict[str, Any]:
         "additionalProperties": False,
     }
     scripts = sorted(
-        {script for one in parameters.table().values() for script in one.scripts} - set(SCRIPTS)
+        {script for one in parameters.PARAMETERS.values() for script in one.scripts} - set(SCRIPTS)
     )
     case = {
         "type": "object",
         "properties": {"title": {"type": "string"}, "script": {"enum": scripts}}
-        | {name: rule(parameters.table()[name]) for name in parameters.names()},
+        | {name: rule(parameters.PARAMETERS[name]) for name in parameters.names()},
         "additionalProperties": False,
     }
     return {"$schema": DRAFT, "title": "ffimpact scene", "oneOf": [of_bodies, case]}
@@ -80,7 +80,7 @@ def rule(one: Parameter) -> dict[str, Any]:
 
 def entries(model: type[Entries], leave: tuple[str, ...] = ()) -> dict[str, Any]:
     """The entries of a model: those that are parameters by their rule, the others by their type."""
-    known = parameters.table()
+    known = parameters.PARAMETERS
     own = model.model_json_schema(mode="validation").get("properties", {})
     found: dict[str, Any] = {}
     for name, field in model.model_fields.items():

@@ -40,7 +40,7 @@ def shape(table: Table, folder: Path) -> tuple[Outline, mesh.Mesh | None]:
 def motion(table: Table) -> dict:
     """Where a body is at the start and how it moves: position [m], angle [rad], velocity [m/s], spin [rad/s]."""
     return {"position": table.numbers("position"), "angle": math.radians(table.number("angle", -36000, 36000, 0.0)),
-            "velocity": _velocity(table), "spin": float(table.parameter("spin", parameters.table()["spin"]))}
+            "velocity": _velocity(table), "spin": float(table.parameter("spin", parameters.PARAMETERS["spin"]))}
 
 
 def _velocity(table: Table) -> np.ndarray:

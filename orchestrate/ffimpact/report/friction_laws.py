@@ -24,7 +24,7 @@ def main(argv: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="ffimpact friction-laws", description=__doc__)
     parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "friction-laws", help="the result folder")
     for name, value in VALUES.items():
-        parser.add_argument(f"--{name}", metavar="VALUE", default=value, help=f"{parameters.table()[name].help} (default: {value:g})")
+        parser.add_argument(f"--{name}", metavar="VALUE", default=value, help=f"{parameters.PARAMETERS[name].help} (default: {value:g})")
     options = parser.parse_args(argv)
     values = parameters.check({name: getattr(options, name) for name in VALUES})
     folder = result_folder(options.out)

@@ -146,13 +146,13 @@ def _rigid(table: Table, top: dict, of: Dimension, outline: Outline | Solid) -> 
             raise BadInput(f"{table.at(key)}: a rigid body has none (accepted: density, or mass; without rigid = true)")
     if "mass" in table and "density" in table:
         raise BadInput(f"{table.at('mass')}: stands beside density (accepted: one of them)")
-    rule = parameters.table()["density"]
+    rule = parameters.PARAMETERS["density"]
     mass = table.number("mass", 1e-12, LONGEST) if "mass" in table else 0.0
     content = outline.volume if isinstance(outline, Solid) else outline.area      # of revolution a scale alone
     if not mass and "density" not in table and "density" not in top:
         raise BadInput(f"{table.at('density')}: is missing, here and at the top of the file (accepted: {rule.accepted}, or mass)")
     density = mass / content if mass else table.parameter("density", rule) if "density" in table else rule.check(top["density"])
-    found = {key: parameters.table()[key].default for key in OPTIONAL}
+    found = {key: parameters.PARAMETERS[key].default for key in OPTIONAL}
     return found | {"law": "svk", "young": 1.0, "nu": 0.0, "density": float(density), "rigid": True, "mass": mass,
                     "moments": _moments(table, of)}
 
@@ -190,7 +190,7 @@ def stiffened(found: list[Body], penalty: Value, path: str) -> list[Body]:
 
 def end_time_of(top: dict) -> float:
     """The scene's end_time [s], up to which functions of time are used."""
-    return float(parameters.table()["end_time"].check(top.get("end_time", 0.0)))
+    return float(parameters.PARAMETERS["end_time"].check(top.get("end_time", 0.0)))
 
 
 def checked_name(path: str, name) -> str:
@@ -205,7 +205,7 @@ def _material(table: Table, top: dict) -> dict[str, Value]:
     A viscosity of its own takes the place of a loss at the top, and the other way."""
     found = {}
     for key in MATERIAL:
-        rule, other = parameters.table()[key], {"viscosity": "loss", "loss": "viscosity"}.get(key)
+        rule, other = parameters.PARAMETERS[key], {"viscosity": "loss", "loss": "viscosity"}.get(key)
         if key not in table and key not in top and key not in OPTIONAL:
             raise BadInput(f"{table.path}.{key}: is missing, here and at the top of the file (accepted: {rule.accepted})")
         common = rule.default if other and other in table else top.get(key, rule.default)
@@ -219,7 +219,7 @@ def _material(table: Table, top: dict) -> dict[str, Value]:
 
 
 def _sizes(table: Table, top: dict) -> tuple[float, float]:
-    rules = [parameters.table()[key] for key in SIZES]
+    rules = [parameters.PARAMETERS[key] for key in SIZES]
     bulk, contact = (table.parameter(rule.name, rule) if rule.name in table else rule.check(top.get(rule.name, 0.0)) for rule in rules)
     if 0 < bulk < contact:
         raise BadInput(f"{table.path}.contact_mesh_size: {contact:g} is larger than mesh_size {bulk:g}")

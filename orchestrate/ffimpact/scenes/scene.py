@@ -17,6 +17,7 @@ from ..geometry.outlines import Shape, normal_of
 from ..input import dimension, parameters
 from ..input.dimension import AXISYMMETRIC, SOLID, Dimension
 from ..input.parameters import Parameter, Value
+from ..input.table import MESHED, SCRIPTS
 from ..input.tables import Table, listed
 from ..mesh.solid_file import takes_in_others
 from . import bodies, conditions, mirror, obstacles
@@ -152,7 +153,7 @@ class Scene:
     @property
     def meshed(self) -> bool:
         """Whether Python makes the mesh, with gmsh; else the script does."""
-        return self.script in parameters.table()["mesh"].scripts
+        return self.script in MESHED
 
     @property
     def mesh_name(self) -> str:
@@ -173,7 +174,8 @@ class Scene:
             return {}
         if foreign is None:
             return describe(self.values, self.script)
-        parameters.taken("mesh", self.script)
+        if not self.meshed:
+            raise BadInput(f"mesh: {self.script} takes no such parameter (accepted: in {'|'.join(MESHED)})")
         with tempfile.NamedTemporaryFile(suffix=".msh") as file:
             file.write(foreign)
             file.flush()
@@ -193,7 +195,7 @@ def read(given: dict, folder: Path, name: str) -> Scene:
     script, title = given.get("script", "disc-plane"), Table("", given, tuple(given)).text("title", name)
     if script in dimension.SCRIPTS:
         raise BadInput(f"body: is missing, which script = '{brief(script)}' needs (accepted: one table [[body]] or more)")
-    scripts = [word for word in describe()["scripts"].split("|") if word not in dimension.SCRIPTS]
+    scripts = [word for word in SCRIPTS if word not in dimension.SCRIPTS]
     if script not in scripts:
         raise BadInput(f"script: {unknown(script, scripts)}")
     set_here = {key: value for key, value in given.items() if key not in ("script", "title")}
@@ -257,7 +259,7 @@ def _parameters(table: Table, keys: tuple[str, ...], of: Dimension) -> dict[str,
     for key in keys:
         if key in table:
             parameters.taken(key, of.script)
-    return {key: table.parameter(key, parameters.table()[key]) for key in keys if of.script in parameters.table()[key].scripts}
+    return {key: table.parameter(key, parameters.PARAMETERS[key]) for key in keys if of.script in parameters.PARAMETERS[key].scripts}
 
 
 def _names(all_bodies: list[Body], all_obstacles: list[Obstacle]) -> dict[str, int]:
@@ -278,7 +280,7 @@ def _own_of_obstacles(rigid: list[dict], bodies_count: int) -> dict[tuple[int, i
     pairs = {}
     for k, given in enumerate(rigid):
         mine = Table(f"obstacle.{k + 1}", {key: given[key] for key in OWN if key in given}, OWN)
-        own = {key: mine.parameter(key, parameters.table()[key]) for key in mine.given}
+        own = {key: mine.parameter(key, parameters.PARAMETERS[key]) for key in mine.given}
         pairs |= {(body, -1 - k): Pair(body, -1 - k, own, mine.path) for body in range(bodies_count) if own}
     return pairs
 
@@ -293,7 +295,7 @@ def _exceptions(contact: Table, index: dict[str, int]) -> dict[tuple[int, int], 
         both = _partners(path, table.given.get("bodies"), index)
         if both in pairs:
             raise BadInput(f"{path}.bodies: '{brief(table.given['bodies'])}' has a table already (accepted: one a pair)")
-        pairs[both] = Pair(*both, {key: table.parameter(key, parameters.table()[key]) for key in OWN if key in table}, path)
+        pairs[both] = Pair(*both, {key: table.parameter(key, parameters.PARAMETERS[key]) for key in OWN if key in table}, path)
     return pairs
 
 

@@ -246,7 +246,7 @@ def _values(name: str, given: list | dict, of: scene.Scene) -> list[Value]:
         low, high, points, spacing = *(given[key] for key in ("from", "to", "points")), given.get("spacing", "linear")
         if spacing not in ("linear", "log"):
             raise BadInput(f"{brief(name)}: spacing {unknown(spacing, ('linear', 'log'))}")
-        rule = parameters.table().get(name.rpartition(".")[2])
+        rule = parameters.PARAMETERS.get(name.rpartition(".")[2])
         if rule and rule.kind == "word" or not {type(low), type(high)} <= {int, float}:
             raise BadInput(f"{brief(name)}: a range needs a parameter that is a number, from and to numbers")
         low, high = (of.check({name: number})[name] for number in (low, high))

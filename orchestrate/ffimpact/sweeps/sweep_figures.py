@@ -171,7 +171,7 @@ def _value(name: str, value) -> str:
 
 def unit_of(name: str) -> str:
     """The unit of a parameter, of body.2.young that of young; "-" of what has none."""
-    parameter = parameters.table().get(name.rpartition(".")[2])
+    parameter = parameters.PARAMETERS.get(name.rpartition(".")[2])
     return parameter.unit if parameter else "-"
 
 

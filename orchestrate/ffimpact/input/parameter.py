@@ -1,0 +1,166 @@
+"""What one entry of a scene accepts, and the words for what it does not."""
+
+import math
+import re
+from dataclasses import dataclass
+from typing import Any
+
+from ..failure import BadInput, brief, suggestion, unknown
+
+__all__ = ["Parameter", "Value", "integer", "numbers", "real", "with_unit", "word"]
+
+Value = float | int | str
+
+_NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]+)?|\.[0-9]+)([eE][+-]?[0-9]+)?")
+# A number with a unit behind it: factors of units, of which a prefix and a name make one.
+PREFIXES = {
+    "": 1.0,
+    "n": 1e-9,
+    "u": 1e-6,
+    "µ": 1e-6,
+    "μ": 1e-6,
+    "m": 1e-3,
+    "c": 1e-2,
+    "k": 1e3,
+    "M": 1e6,
+    "G": 1e9,
+}
+_UNIT = rf"(?:[{''.join(PREFIXES)}]?(?:m|s|g|N|Pa|J|Hz|rad)|km|min|h|t|bar|psi|in|ft|deg(?:rees?)?|°|%)[²³]?(?:\^?-?[0-9])?"
+POWERS = {ord("²"): "2", ord("³"): "3", ord("^"): None}
+_QUANTITY = re.compile(rf"({_NUMBER.pattern}) *({_UNIT}(?:[*/· ]{_UNIT})*)")
+# of other units than those that a prefix makes: how many of an entry's own they are
+OTHER_UNITS = {
+    "-": {"%": 0.01},
+    "deg": {"°": 1.0, "degree": 1.0, "degrees": 1.0},
+    "kg/m3": {"g/cm3": 1e3},
+    "m/s": {"km/h": 1 / 3.6},
+}
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One entry. `kind` is real, int, word or numbers (text, separated by commas); `low`/`high` bound numbers, `words`
+    lists the words that are accepted, beside numbers too (auto); `scripts` those that take it."""
+
+    name: str
+    kind: str
+    default: Value
+    unit: str
+    help: str
+    low: float = 0.0
+    high: float = 0.0
+    words: tuple[str, ...] = ()
+    scripts: tuple[str, ...] = ()
+
+    @property
+    def accepted(self) -> str:
+        """What is accepted, in the words of the error messages."""
+        if self.kind == "numbers":
+            return "none, or numbers separated by commas"
+        return (
+            "|".join(self.words)
+            if self.kind == "word"
+            else ", ".join([*self.words, f"{self.low:g} to {self.high:g}"])
+        )
+
+    def check(self, given: Any) -> Value:
+        """`given` (text, a TOML value or a number of numpy) as float, int or word; BadInput where it is not accepted."""
+        if type(given).__module__ == "numpy" and hasattr(given, "item"):
+            given = given.tolist()
+        if isinstance(given, str) and given in self.words:
+            return given
+        if self.kind == "word":
+            raise BadInput(f"{self.name}: {unknown(given, self.words)}")
+        if self.kind == "numbers":
+            each = (
+                given.split(",")
+                if isinstance(given, str)
+                else [str(one) for one in (given if isinstance(given, list) else [given])]
+            )
+            if not each or not all(_NUMBER.fullmatch(one.strip()) for one in each):
+                raise BadInput(
+                    f"{self.name}: '{brief(given)}' is no list of numbers (accepted: {self.accepted})"
+                )
+            return ",".join(one.strip() for one in each)
+        wanted = "a whole number" if self.kind == "int" else "a number"
+        is_number = (
+            _NUMBER.fullmatch(given) if isinstance(given, str) else type(given) in (int, float)
+        )
+        if not is_number or (
+            self.kind == "int" and not isinstance(given, int) and float(given) % 1 != 0
+        ):
+            said = (
+                isinstance(given, str) and with_unit(given, self.unit)
+            ) or f"is not {wanted}{suggestion(given, self.words)}"
+            raise BadInput(f"{self.name}: '{brief(given)}' {said} (accepted: {self.accepted})")
+        try:
+            value = float(given)
+        except OverflowError:
+            value = math.inf
+        if not self.low <= value <= self.high:
+            raise BadInput(
+                f"{self.name}: {brief(given)} is out of range (accepted: {self.accepted})"
+            )
+        return int(value) if self.kind == "int" else value
+
+
+def with_unit(text: str, unit: str) -> str:
+    """What is wrong with a number that has a unit, where an entry in `unit` is wanted: the number to give, if a prefix makes the
+    difference; empty where the text is no number with a unit."""
+    if not (found := _QUANTITY.fullmatch(text)):
+        return ""
+    given = found[found.lastindex or 0].translate(POWERS)
+    factors = {prefix + unit: factor for prefix, factor in PREFIXES.items()} | OTHER_UNITS.get(
+        unit, {}
+    )
+    number = f": {float(found[1]) * factors[given]:.12g}" if given in factors else ""
+    return f"has a unit; give the number {'alone' if unit in ('', '-') else f'in {unit}'}{number}"
+
+
+def real(
+    name: str,
+    default: float | str,
+    low: float,
+    high: float,
+    unit: str,
+    meaning: str,
+    scripts: tuple[str, ...] = (),
+) -> Parameter:
+    """A number between two bounds, or auto where that is its default."""
+    words = ("auto",) if default == "auto" else ()
+    return Parameter(
+        name,
+        "real",
+        default if words else float(default),
+        unit,
+        meaning,
+        float(low),
+        float(high),
+        words,
+        scripts,
+    )
+
+
+def integer(
+    name: str,
+    default: int,
+    low: int,
+    high: int,
+    unit: str,
+    meaning: str,
+    scripts: tuple[str, ...] = (),
+) -> Parameter:
+    """A whole number between two bounds."""
+    return Parameter(name, "int", default, unit, meaning, low, high, (), scripts)
+
+
+def word(
+    name: str, default: str, words: tuple[str, ...], meaning: str, scripts: tuple[str, ...] = ()
+) -> Parameter:
+    """One of some words."""
+    return Parameter(name, "word", default, "-", meaning, words=words, scripts=scripts)
+
+
+def numbers(name: str, meaning: str, scripts: tuple[str, ...] = ()) -> Parameter:
+    """Numbers separated by commas, or none."""
+    return Parameter(name, "numbers", "none", "-", meaning, words=("none",), scripts=scripts)

@@ -1,0 +1,372 @@
+"""The parameters of a run: names, defaults, ranges, units, meanings. Everything else about them is made from this table:
+flags.py writes the flags of the FreeFEM scripts (edp/core/input/parameters.idp), schema.py what editors know,
+docs/pages.py the table of docs/parameters.md.
+
+Numbers are in SI units. `auto`, and 0 where the meaning says so, leave a parameter to the program.
+"""
+
+from dataclasses import replace
+
+from .parameter import Parameter, integer, numbers, real, word
+
+__all__ = ["FALLING", "LAWS", "MESHED", "PARAMETERS", "SCRIPTS", "SIDEWAYS"]
+
+SIDEWAYS = ("disc-plane", "disc-block", "ball-plane")  # where a body may come down at an angle
+FALLING = (*SIDEWAYS, "ball-axisymmetric")  # the paper's cases, whose one material the flags name
+SCRIPTS = (
+    "disc-plane",
+    "disc-block",
+    "ball-axisymmetric",
+    "ball-plane",
+    "bodies",
+    "bodies-axisymmetric",
+    "bodies-3d",
+)
+MESHED = (
+    "disc-plane",
+    "ball-axisymmetric",
+    "bodies",
+    "bodies-axisymmetric",
+    "bodies-3d",
+)  # those that read a mesh
+LAWS = ("svk", "neohookean", "mooney-rivlin", "ogden", "incompressible")  # edp/core/law/laws.idp
+
+# without scripts behind the meaning: a parameter of all
+ROWS = (
+    word(
+        "law",
+        "svk",
+        LAWS,
+        "constitutive law: St. Venant-Kirchhoff (5), compressible neo-Hookean (6), or another of "
+        "core/law/laws.idp",
+        FALLING,
+    ),
+    real("young", 7e6, 1e-6, 1e18, "Pa", "Young's modulus E", FALLING),
+    real(
+        "nu",
+        0.45,
+        0,
+        0.5,
+        "-",
+        "Poisson's ratio; the paper says only nu -> 0.5; 0.5: J = 1, of all laws but svk",
+        FALLING,
+    ),
+    real("density", 1722, 1e-15, 1e12, "kg/m3", "reference density", FALLING),
+    numbers(
+        "law_parameters",
+        "what the law takes beyond young and nu, separated by commas: core/law/laws.idp",
+        FALLING,
+    ),
+    real(
+        "viscosity",
+        0,
+        0,
+        1e18,
+        "Pa s",
+        "viscosity eta of the material: beside the law's stress 2 eta D, D the rate of deformation",
+        FALLING,
+    ),
+    real(
+        "bulk_viscosity",
+        0,
+        0,
+        1e18,
+        "Pa s",
+        "viscosity zeta of volume: beside it zeta tr(D) I",
+        FALLING,
+    ),
+    real(
+        "relaxation_modulus",
+        0,
+        0,
+        1e18,
+        "Pa",
+        "shear modulus G of a Maxwell branch beside the law, which relaxes in relaxation_time; 0 "
+        "= none",
+        FALLING,
+    ),
+    real(
+        "relaxation_time",
+        0,
+        0,
+        1e9,
+        "s",
+        "its time tau: G exp(-t/tau) is left of G after t",
+        FALLING,
+    ),
+    real(
+        "loss",
+        0,
+        0,
+        10,
+        "-",
+        "loss factor tan delta of shear at the first mode of the disc or ball: sets viscosity; 0 "
+        "= by viscosity",
+        FALLING,
+    ),
+    real("radius", 0.05, 1e-9, 1e9, "m", "radius of the disc or ball", FALLING),
+    real(
+        "block_width",
+        "auto",
+        1e-9,
+        1e9,
+        "m",
+        "width of the block; auto: 20 radius, as in the paper",
+        ("disc-block",),
+    ),
+    real(
+        "block_height",
+        "auto",
+        1e-9,
+        1e9,
+        "m",
+        "height of the block; auto: 4 radius, as in the paper",
+        ("disc-block",),
+    ),
+    real("speed", 8, 0, 1e9, "m/s", "speed of the centre of mass at the start", FALLING),
+    real(
+        "angle",
+        90,
+        0,
+        90,
+        "deg",
+        "direction of the speed, measured from the plane; 90 = normal",
+        SIDEWAYS,
+    ),
+    real("spin", 0, -1e12, 1e12, "rad/s", "spin at the start, counter-clockwise", SIDEWAYS),
+    real("height", 0, 0, 1e9, "m", "gap between the body and the plane at the start", FALLING),
+    real(
+        "gravity",
+        0,
+        0,
+        1e12,
+        "m/s2",
+        "gravity, along -y; another direction: body_force_x, body_force_y",
+    ),
+    real(
+        "body_force_x",
+        0,
+        -1e12,
+        1e12,
+        "m/s2",
+        "constant body force b of (1), along the plane",
+        (*SIDEWAYS, "bodies", "bodies-3d"),
+    ),
+    real(
+        "body_force_y",
+        0,
+        -1e12,
+        1e12,
+        "m/s2",
+        "constant body force b of (1), away from the plane; gravity comes on top",
+    ),
+    real(
+        "penalty",
+        "auto",
+        1e-12,
+        1e100,
+        "Pa/m^m",
+        "contact stiffness k of (10); auto = stiff beside the body, from young, the width of the "
+        "contact and the exponent",
+    ),
+    real("exponent", 1, 1, 4, "-", "contact exponent m of (10)"),
+    word(
+        "pairing",
+        "closest-point",
+        ("closest-point", "pairwise", "pairwise-printed"),
+        "what two bodies see of each other: the closest point (9), or all points nearer than "
+        "pairing_range, (14) and (15): with a repulsion that vanishes there, or as printed",
+        ("disc-block", "bodies"),
+    ),
+    real(
+        "pairing_range",
+        "auto",
+        1e-12,
+        1e9,
+        "m",
+        "epsilon of (14), the distance at which bodies touch pairwise; auto = an element where "
+        "they touch, or four times what the penalty yields",
+        ("disc-block", "bodies"),
+    ),
+    real(
+        "friction_static",
+        0,
+        0,
+        10,
+        "-",
+        "static coefficient mu_e of (12), for |v_T| < slip_velocity; at least friction_dynamic",
+    ),
+    real(
+        "friction_dynamic",
+        "auto",
+        0,
+        10,
+        "-",
+        "dynamic coefficient mu_d of (12); auto = friction_static",
+    ),
+    real(
+        "slip_velocity",
+        "auto",
+        1e-15,
+        1e9,
+        "m/s",
+        "epsilon of (12) and (13); auto = a hundredth of the speeds of the scene",
+    ),
+    word(
+        "regularization",
+        "linear",
+        ("linear", "linear-printed", "sqrt", "tanh"),
+        "phi of (13); linear-printed as the paper prints it; sqrt and tanh stay below mu_e for "
+        "|v_T| < slip_velocity",
+    ),
+    word(
+        "friction_transition",
+        "jump",
+        ("jump", "smooth"),
+        "from static to dynamic: the paper's jump at slip_velocity, or a half cosine up to twice "
+        "that (resolve it: dt (mu_e - mu_d) times the deceleration below slip_velocity)",
+    ),
+    word(
+        "volume",
+        "auto",
+        ("plain", "projected", "auto"),
+        "resistance to change of volume: plain = at points, which locks as nu -> 0.5; projected ="
+        " what is beyond that of nu = 0.45 in the mean of each element; auto = projected, where "
+        "degree=1 plain",
+    ),
+    word(
+        "symmetry",
+        "auto",
+        ("auto", "full", "half", "quarter"),
+        "part of the body that is computed; auto = half where nothing breaks the symmetry",
+        SIDEWAYS,
+    ),
+    real(
+        "mesh_size",
+        0,
+        0,
+        1e9,
+        "m",
+        "element size in the bulk (of a block higher than the disc times half its height over the"
+        " radius, at most 2); 0 = from accuracy",
+        FALLING,
+    ),
+    real(
+        "contact_mesh_size",
+        0,
+        0,
+        1e9,
+        "m",
+        "element size where the body can touch; 0 = from accuracy",
+        FALLING,
+    ),
+    integer("degree", 2, 1, 2, "-", "polynomial degree of the displacement"),
+    word(
+        "integrator",
+        "energy-momentum",
+        (
+            "energy-momentum",
+            "midpoint",
+            "newmark",
+            "backward-euler",
+            "bdf2",
+            "central-difference",
+            "auto",
+        ),
+        "time integrator; central-difference: explicit, a step in parts that the bodies' own "
+        "waves ask for, contact and friction solved in each; auto: central-difference or "
+        "energy-momentum, whichever is the cheaper by their counts",
+    ),
+    real("dt", 0, 0, 1e9, "s", "time step; 0 = adaptive"),
+    real(
+        "accuracy",
+        0.005,
+        1e-5,
+        0.4,
+        "-",
+        "relative accuracy asked for: of impulse and thresholded contact time over themselves, "
+        "rebound velocities and spin over the speed, energies and friction work over the largest "
+        "energy; sets mesh and step where they are not given",
+    ),
+    word(
+        "accuracy_of",
+        "promised",
+        ("promised", "friction_work", "peak_force", "contact_time"),
+        "one answer more that the accuracy is asked for, over itself: these scatter more and cost"
+        " more",
+    ),
+    real(
+        "tolerance",
+        5e-12,
+        1e-15,
+        0.0001,
+        "-",
+        "largest work of the residual in a step, over the energy at the start",
+    ),
+    word(
+        "breakdown",
+        "stop",
+        ("stop", "continue"),
+        "what a run does under svk when det F <= 0 or a point loses four fifths of its volume in "
+        "the smallest step",
+    ),
+    word(
+        "chatter",
+        "stop",
+        ("stop", "continue"),
+        "what a run does when the body leaves the obstacle and is back within a transit of its "
+        "waves twenty times in a row",
+    ),
+    real(
+        "end_time",
+        0,
+        0,
+        1e9,
+        "s",
+        "end of the run; 0 = until the first impact is over, with the contacts that follow it at "
+        "once",
+    ),
+    word(
+        "until",
+        "impact",
+        ("impact", "rest"),
+        "what ends the run, at end_time at the latest: the end of the impact, or under gravity, "
+        "with viscosity or friction, that all rests",
+    ),
+    integer("fields", 0, 0, 10000, "-", "number of field snapshots (VTU)"),
+    integer(
+        "modes",
+        0,
+        0,
+        500,
+        "-",
+        "number of natural modes of the free bodies, with their energies at the end of the run; 0"
+        " = none",
+    ),
+    integer(
+        "checkpoint_every",
+        0,
+        0,
+        1000000000,
+        "steps",
+        "a checkpoint every so many steps, from which a killed run goes on; 0 = none; the answer "
+        "stays the same",
+    ),
+    word(
+        "without",
+        "none",
+        (
+            "none",
+            "flight",
+            "friction",
+            "body-force",
+            "frozen-factorisation",
+            "contact-culling",
+            "kernels",
+        ),
+        "leave out one saving, to measure what it saves",
+    ),
+)
+PARAMETERS: dict[str, Parameter] = {
+    one.name: replace(one, scripts=one.scripts or SCRIPTS) for one in ROWS
+}
