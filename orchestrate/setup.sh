@@ -83,5 +83,5 @@ fi
 .venv/bin/python -m pip install -q --disable-pip-version-check --no-deps -e .   # import ffimpact, and the command
 .venv/bin/python -c 'import gmsh, matplotlib.pyplot'   # they load, and matplotlib's font list is made now, not in the first run
 .venv/bin/python -m compileall -q orchestrate           # now, not in the first run, or in every one where nothing may be written
-.venv/bin/python -c 'from ffimpact.freefem import freefem; freefem.find()'   # builds edp/libclock.so and the kernels where there is a compiler
+.venv/bin/python -c 'from ffimpact.freefem import freefem; freefem.find()'   # compiles the clock and the kernels where there is a compiler
 say "ready"

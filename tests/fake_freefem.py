@@ -72,7 +72,8 @@ def write_fields(folder: Path, count: int) -> None:
 def _write_vtu(path: Path, points, cells, displacement, stress) -> None:
     def array(name, rows, kind="Float64", width=1):
         text = "\n".join(" ".join(f"{v:.9g}" for v in row) for row in rows)
-        return f'<DataArray type="{kind}" Name="{name}" NumberOfComponents="{width}" format="ascii">\n{text}\n</DataArray>'
+        components = f' NumberOfComponents="{width}"' if width > 1 else ""
+        return f'<DataArray type="{kind}" Name="{name}"{components} format="ascii">\n{text}\n</DataArray>'
     path.write_text(
         '<?xml version="1.0"?>\n<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian"><UnstructuredGrid>'
         f'<Piece NumberOfPoints="{len(points)}" NumberOfCells="{len(cells)}">\n<Points>'

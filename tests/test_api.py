@@ -15,6 +15,7 @@ from ffimpact import scene as files
 from ffimpact import schema
 from ffimpact.__main__ import main
 from ffimpact.failure import of_code
+from ffimpact.output.results import read_history
 
 RUBBER = ff.NeoHookean(young=7e6, nu=0.45, density=1722)
 
@@ -173,6 +174,13 @@ def test_numbers_have_errors_and_units(result):
     assert result.scene["body"][0]["young"] == 7e6 and isinstance(result.warnings, list)
     with pytest.raises(ff.BadInput, match="impulse"):
         result["impuls"]
+    for contents in (result.summary, read_history(result.folder)):
+        with pytest.raises(ff.Unreadable, match="'normal_forc' is not known.*(accepted: .*)") as raised:
+            contents["normal_forc"]
+        assert "\n" not in str(raised.value) and "delete" not in str(raised.value)
+    assert "did you mean normal_force?" in str(raised.value)
+    with pytest.raises(ff.BadInput, match="field: 'von_mise' is not known; did you mean von_mises"):
+        result.plot.shapes(field="von_mise")
 
 
 def test_tables(result):

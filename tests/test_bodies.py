@@ -11,7 +11,7 @@ import pytest
 
 from ffimpact.failure import BadInput
 from ffimpact.geometry.outlines import ellipse_loop, polygon_loop, self_crossing
-from ffimpact.input.tables import to_toml
+from ffimpact.input.toml_text import to_toml
 from ffimpact.mesh import mesh
 from ffimpact.scene import SCENES, Scene, built_in, load
 from ffimpact.scene import read as read_scene
@@ -533,3 +533,10 @@ def test_what_toml_accepts_is_written_back():
     said |= {"table": {text: text for text in texts}, "list": [{"a": text, "b": {text: {}}} for text in texts], "none": [], "mixed": [{"a": "\x7f"}, 1]}
     said |= tomllib.loads("day = 2026-11-23\nat = 07:32:00.5\nboth = 1979-05-27T07:32:00.25Z\n")
     assert tomllib.loads(to_toml(said)) == said
+
+
+def test_values_of_numpy_are_written_as_numbers():
+    values = {"number": np.float64(1e-9), "whole": np.int64(3), "flag": np.bool_(True), "points": np.array([[0.0, 1.0]])}
+    assert tomllib.loads(to_toml({"of": values})) == {"of": {"number": 1e-9, "whole": 3, "flag": True, "points": [[0.0, 1.0]]}}
+    with pytest.raises(BadInput, match="is no text in UTF-8"):
+        to_toml({"body": [{"surface": "\udcff.stl"}]})

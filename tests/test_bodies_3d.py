@@ -10,7 +10,7 @@ from ffimpact.failure import BadInput
 from ffimpact.freefem import freefem
 from ffimpact.geometry import tumbling
 from ffimpact.input import parameters
-from ffimpact.input.tables import to_toml
+from ffimpact.input.toml_text import to_toml
 from ffimpact.mesh import curved, mesh, solid_file, solid_mesh, solids
 from ffimpact.report import bodies, drawing, figures, report
 from ffimpact.running import run
@@ -73,6 +73,17 @@ def test_a_surface_of_triangles_has_the_distances_of_its_body():
     points = np.random.default_rng(1).uniform(-0.3, 0.3, (500, 3))
     assert surface.gap(points) == pytest.approx(box.gap(points), abs=1e-12)
     assert surface.volume == pytest.approx(box.volume) and surface.area == pytest.approx(box.area)
+
+
+def test_distances_from_slender_triangles():
+    """Beside a long prism of 64 faces, whose triangles have their centres far from most of their points."""
+    turn, count = math.tau / 64, 64
+    ring = [np.column_stack([np.cos(turn * np.arange(count)), np.sin(turn * np.arange(count)), np.full(count, z)]) for z in (-50, 50)]
+    faces = [(low[k], low[k - 1], high[k - 1]) for low, high in (ring, ring[::-1]) for k in range(count)]
+    ends = [(one[0], one[k], one[k + 1]) for one in ring for k in range(1, count - 1)]
+    angle, z = turn * (np.arange(count) + 0.5), np.linspace(-49, 49, count)
+    beside = (math.cos(turn / 2) + 0.2) * np.column_stack([np.cos(angle), np.sin(angle), z / (math.cos(turn / 2) + 0.2)])
+    assert solids._distances(np.array(faces + ends))(beside) == pytest.approx(np.full(count, 0.2))
 
 
 def test_places_turns_and_motions():

@@ -8,7 +8,7 @@ import pytest
 from ffimpact.failure import BadInput
 from ffimpact.freefem import freefem
 from ffimpact.input import parameters
-from ffimpact.input.tables import to_toml
+from ffimpact.input.toml_text import to_toml
 from ffimpact.mesh import mesh
 from ffimpact.report import report
 from ffimpact.running import run

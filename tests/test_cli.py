@@ -14,8 +14,10 @@ from pathlib import Path
 
 import pytest
 
+from ffimpact import scene
 from ffimpact.__main__ import main
 from ffimpact.failure import Unreadable
+from ffimpact.freefem import describe
 from ffimpact.input import parameters
 from ffimpact.running import run
 
@@ -90,8 +92,29 @@ def test_published_numbers_are_not_shown_beside_another_scene(fake, tmp_path, ca
 
 
 def test_quiet_is_quiet(fake, tmp_path):
-    """--quiet prints nothing."""
-    assert call("run", "disc-normal", "--quiet", "--set", "speed=4", "fields=0", "--out", str(tmp_path / "out")) == (0, "", "")
+    """--quiet prints warnings alone, not even where an earlier run of another scene goes."""
+    for speed in ("4", "5"):
+        words = "run", "disc-normal", "--quiet", "--set", f"speed={speed}", "fields=0", "--out", str(tmp_path / "out")
+        code, out, error = call(*words)
+        assert (code, out) == (0, "") and all(line.startswith("ffimpact: warning: ") for line in error.splitlines())
+    assert (tmp_path / "out.1").exists()
+
+
+def test_scripts_that_do_not_answer_are_one_line(monkeypatch, capsys):
+    """Where FreeFem++ is not done in time with what its scripts are asked: a line and exit code 13."""
+    monkeypatch.setattr(describe, "LIMIT", 1e-3)
+    assert main(["run", "disc-normal", "--set", "nu=0.43210987"]) == 13
+    error = capsys.readouterr().err
+    assert re.match(r"ffimpact: \S+ does not finish edp/describe.edp in 0.001 s", error) and error.count("\n") == 1
+
+
+def test_quiet_leaves_warnings(fake, tmp_path, capsys, monkeypatch):
+    """With --quiet each warning is a line on stderr."""
+    found = run.run(scene.load("disc-normal"), {"fields": 0}, tmp_path / "out")
+    found.summary["warnings"] = ["penalty: too soft"]
+    monkeypatch.setattr(run, "run", lambda *_, **__: found)
+    assert main(["run", "disc-normal", "--quiet"]) == 0
+    assert tuple(capsys.readouterr()) == ("", "ffimpact: warning: penalty: too soft\n")
 
 
 def test_failure_of_the_script_is_passed_on(fake, tmp_path):

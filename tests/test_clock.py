@@ -10,12 +10,10 @@ from ffimpact.freefem import freefem
 
 
 @pytest.fixture
-def copy(tmp_path, monkeypatch):
-    """The library's source alone in a folder of its own."""
-    source = tmp_path / "clock.c"
-    source.write_text(freefem.CLOCK.read_text())
-    monkeypatch.setattr(freefem, "CLOCK", source)
-    return source
+def cache(tmp_path, monkeypatch):
+    """A cache folder of its own."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    return tmp_path / "cache"
 
 
 def quick(environment: dict) -> bool:
@@ -38,30 +36,27 @@ def test_histories_are_equal_to_the_byte_with_and_without_it(tmp_path):
     assert histories[0] == histories[1]
 
 
-def test_it_is_built_where_it_is_missing_or_old_and_joins_other_libraries(copy):
-    library = copy.with_name("libclock.so")
+def test_it_is_built_once_and_joins_other_libraries(cache):
     environment = {"PATH": os.environ["PATH"], "LD_PRELOAD": "one.so two.so"}
     if not quick(environment):
         pytest.skip("no compiler here")
-    os.utime(library, (0, 0))
-    assert freefem._quick_clock(environment) == {"LD_PRELOAD": f"{library}:one.so:two.so"} and library.stat().st_mtime > 0
-    assert {path.name for path in copy.parent.iterdir()} == {"clock.c", "libclock.so"}
+    library, = (path for path in cache.rglob("*") if path.is_file())
+    made = library.stat().st_mtime_ns
+    assert freefem._quick_clock(environment) == {"LD_PRELOAD": f"{library}:one.so:two.so"} and library.stat().st_mtime_ns == made
 
 
-def test_without_a_compiler_nothing_changes(copy):
-    assert not quick({"PATH": "/no/such/folder"}) and {path.name for path in copy.parent.iterdir()} == {"clock.c"}
+def test_without_a_compiler_nothing_changes(cache):
+    assert not quick({"PATH": "/no/such/folder"}) and not [path for path in cache.rglob("*") if path.is_file()]
 
 
 def test_it_serves_on_a_path_that_cannot_be_preloaded_by_its_name(monkeypatch, tmp_path):
     """LD_PRELOAD ends names at blanks and colons: there the library is an open file, which goes to every process of the program."""
-    source = tmp_path / "a b:c" / "clock.c"
-    source.parent.mkdir()
-    source.write_text(freefem.CLOCK.read_text())
-    if "LD_PRELOAD" not in freefem.find().environment:
+    program = freefem.find()
+    if "LD_PRELOAD" not in program.environment:
         pytest.skip("no compiler here")
-    monkeypatch.setattr(freefem, "CLOCK", source)
-    environment = {key: value for key, value in freefem.find().environment.items() if key != "LD_PRELOAD"}
-    program = replace(freefem.find(), environment=environment | freefem._quick_clock(environment))
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "a b:c"))
+    environment = {key: value for key, value in program.environment.items() if key != "LD_PRELOAD"}
+    program = replace(program, environment=environment | freefem._quick_clock(environment))
     assert len(program.preloaded) == 1
     program.call("edp/disc-plane.edp", "-accuracy", "0.2", "-out", str(tmp_path / "out"), check=True)
     assert json.loads((tmp_path / "out/summary.json").read_text())["quick_clock"] == 1

@@ -1,6 +1,9 @@
 """The compiled kernels: the same as the scripts; without them nothing changes."""
 
+import json
 import os
+import re
+from dataclasses import replace
 
 import pytest
 
@@ -13,11 +16,17 @@ from verification.test_residual_and_tangent import COARSE, MOONEY, OGDEN, kernel
 
 
 @pytest.fixture
-def copy(tmp_path, monkeypatch):
-    """A folder of its own for what is built, of a name that shells have to be told apart."""
-    monkeypatch.setattr(kernels, "BUILT", tmp_path / "it's new" / "dev")
-    kernels.BUILT.parent.mkdir()
-    return kernels.BUILT
+def program():
+    """FreeFem++ with the kernels of the user's cache folder."""
+    return freefem.find()
+
+
+@pytest.fixture
+def cache(tmp_path, monkeypatch, program):
+    """A cache folder of its own, of a name that shells have to be told apart."""
+    folder = tmp_path / "it's; new"
+    monkeypatch.setenv("XDG_CACHE_HOME", str(folder))
+    return folder
 
 
 def write(folder, name: str) -> None:
@@ -26,33 +35,44 @@ def write(folder, name: str) -> None:
 
 
 @pytest.mark.robustness
-def test_they_are_built_once_and_again_for_other_sources(copy, monkeypatch):
-    """What loads the plugin names the one of these very sources; that of other sources takes its place. The folder may have any name."""
-    monkeypatch.setattr(kernels, "SOURCES", copy.with_name("sources"))
-    write(kernels.SOURCES, "one")
-    program = freefem.find()
-    if not kernels.build(program.command, program.version, program.environment):
-        pytest.skip("no compiler here")
-    first, = copy.glob("kernels-*.so")
-    made = first.stat().st_mtime_ns
-    assert str(first.with_suffix(""))[1:] in (copy / "null").read_text()
-    assert kernels.build(program.command, program.version, program.environment) and first.stat().st_mtime_ns == made
-    write(kernels.SOURCES, "other")
-    assert kernels.build(program.command, program.version, program.environment)
-    second, = copy.glob("kernels-*.so")
-    assert second != first and str(second.with_suffix(""))[1:] in (copy / "null").read_text()
+def test_they_are_built_once_and_again_for_other_sources(cache, program, monkeypatch, tmp_path):
+    """In the user's cache folder, which may have any name; the word names the plugin of these very sources, and FreeFEM loads it."""
+    monkeypatch.setattr(kernels, "SOURCES", tmp_path / "sources")
+    words = []
+    for name in ("one", "other"):
+        write(kernels.SOURCES, name)
+        word = kernels.build(program.command, program.version, program.environment)
+        if not word:
+            pytest.skip("no compiler here")
+        made = {path: path.stat().st_mtime_ns for path in cache.rglob("kernels.so")}
+        assert kernels.build(program.command, program.version, program.environment) == word
+        assert made == {path: path.stat().st_mtime_ns for path in cache.rglob("kernels.so")}
+        words.append(word)
+    assert len(set(words)) == len(made) == 2 and all(any(str(path)[1:-3] in word for path in made) for word in words)
+    assert {path.name for path in cache.rglob("*") if path.is_file()} == {"kernels.so"}
+    script = tmp_path / "load.edp"
+    script.write_text("load " + re.match(r"-D(kernels\d+)=", words[0])[1] + "\n")
+    assert replace(program, plugin=words[0]).call(script).returncode == 0
 
 
-def test_where_they_cannot_be_built_nothing_loads_them(copy, monkeypatch):
-    """Sources that do not compile leave nothing behind that a script would load; a FreeFem++ without its ff-c++ is no error."""
-    monkeypatch.setattr(kernels, "SOURCES", copy.parent / "broken")
+def test_where_they_cannot_be_built_nothing_loads_them(cache, program, monkeypatch, tmp_path):
+    """Sources that do not compile, a FreeFem++ without its ff-c++ and a cache folder that cannot be written in are no error."""
+    assert not kernels.build("/no/such/FreeFem++", program.version, {})
+    monkeypatch.setattr(kernels, "SOURCES", tmp_path / "broken")
     kernels.SOURCES.mkdir()
     (kernels.SOURCES / "kernels.cpp").write_text("#include <no-such-header>\n")
-    program = freefem.find()
-    copy.mkdir(exist_ok=True)
-    (copy / "null").write_text('load "of-other-sources"\n')
-    assert not kernels.build(program.command, program.version, {"PATH": os.environ["PATH"]}) and not (copy / "null").exists()
-    assert not kernels.build("/no/such/FreeFem++", program.version, {})
+    assert not kernels.build(program.command, program.version, {"PATH": os.environ["PATH"]})
+    assert not [path for path in cache.rglob("*") if path.is_file()]
+    (tmp_path / "file").touch()
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
+    assert not kernels.build(program.command, program.version, {"PATH": os.environ["PATH"]})
+
+
+def test_a_plugin_of_another_version_is_left_alone(tmp_path):
+    """The word has the number of the calls that the scripts know."""
+    program = replace(freefem.find(), plugin='-Dkernels1="/no/such/plugin"')
+    program.call("edp/disc-plane.edp", "-accuracy", "0.2", "-end_time", "1e-4", "-out", str(tmp_path / "out"), check=True)
+    assert json.loads((tmp_path / "out/summary.json").read_text())["kernels"] == 0
 
 
 VISCOUS = {"viscosity": 50, "bulk_viscosity": 30, "relaxation_modulus": 1e6, "relaxation_time": 1e-3}

@@ -13,7 +13,7 @@ from ffimpact.__main__ import main
 from ffimpact.failure import BadInput
 from ffimpact.freefem import freefem
 from ffimpact.input import parameters
-from ffimpact.input.tables import to_toml
+from ffimpact.input.toml_text import to_toml
 from ffimpact.scenes.entries import set_entry, toml_value
 
 LONG = "x" * 300                        # longer than a name may be

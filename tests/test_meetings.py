@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from ffimpact.freefem.describe import describe
-from ffimpact.input.tables import to_toml
+from ffimpact.input.toml_text import to_toml
 from ffimpact.running import run
 from ffimpact.scene import Scene
 from ffimpact.scene import read as read_scene

@@ -90,7 +90,7 @@ def stop_at_third_frame(writer, monkeypatch) -> None:
 def test_stopped_drawing_leaves_no_film(fake, ffmpeg, tmp_path, monkeypatch, capsys, form):
     """Interrupted between two frames: exit code 130, the run is kept, neither half a film nor its .part."""
     ffmpeg(FFMPEG)
-    stop_at_third_frame(movie.GifWriter if form == "gif" else movie.FFMpegWriter, monkeypatch)
+    stop_at_third_frame(movie.PillowWriter if form == "gif" else movie.FFMpegWriter, monkeypatch)
     assert main(["movie", "disc-normal", "--frames", "4", "--format", form, "--out", str(tmp_path / "out")]) == 130
     assert (tmp_path / "out/summary.json").exists() and not list((tmp_path / "out").glob(f"*{form}*"))
 

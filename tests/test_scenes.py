@@ -14,7 +14,7 @@ from ffimpact.failure import BadInput, Failure
 from ffimpact.freefem import freefem
 from ffimpact.freefem.describe import describe
 from ffimpact.input import parameters
-from ffimpact.input.tables import to_toml
+from ffimpact.input.toml_text import to_toml
 from ffimpact.mesh import mesh
 from ffimpact.output import estimate, vtu
 from ffimpact.report import bodies, drawing, figures, impacts, report

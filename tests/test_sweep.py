@@ -337,6 +337,21 @@ def test_snakemake_gives_the_same_table(fake, tmp_path):
     pd.testing.assert_frame_equal(table(out), table(calm))
 
 
+@pytest.mark.robustness
+def test_snakemake_takes_names_with_blanks(tmp_path):
+    """The names of runs and the folder may have blanks, as a pressure over time has."""
+    pytest.importorskip("snakemake", reason="the optional snakemake is not installed")
+    disc = '[[body]]\nname = "{}"\nshape = "disc"\nradius = 0.05\nposition = [{}, 0]\nvelocity = [{}, 0]\n'
+    (tmp_path / "pair.toml").write_text('law = "neohookean"\nyoung = 7e6\nnu = 0.3\ndensity = 1722\nend_time = 1e-4\naccuracy = 0.3\n'
+                                        + disc.format("a", 0, 0) + disc.format("b", 0.2, -3)
+                                        + '[[body.load]]\nwhere = "outer"\npressure = "1e3 * t"\n')
+    path = write(tmp_path, 'scene = "pair.toml"\n[product]\n"body.2.load.1.pressure" = ["1e3 * t", "2e3 * t"]\n')
+    done = subprocess.run([sys.executable, "-m", "snakemake", "-s", str(parameters.ROOT / "orchestrate/ffimpact/Snakefile"), "--cores", "2",
+                           "--config", f"sweep={path}", f"out={tmp_path / 'its out'}"], cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0 and "3 of 3 steps (100%) done" in done.stderr, done.stderr
+    assert list(table(tmp_path / "its out").exit) == [0, 0]
+
+
 # ---- what figures say
 
 def rows_over_speed(values, error=0.01) -> pd.DataFrame:

@@ -3,7 +3,7 @@
 import pytest
 
 from ffimpact.__main__ import main
-from ffimpact.input.tables import to_toml
+from ffimpact.input.toml_text import to_toml
 
 BASE = {"law": "svk", "young": 1e6, "nu": 0.3, "density": 1e3, "accuracy": 0.2, "end_time": 5e-3}
 BAR = {"name": "bar", "shape": "rectangle", "width": 0.2, "height": 0.05, "position": [0, 0.1]}

@@ -1,6 +1,7 @@
 """Command line: ffimpact COMMAND, or python -m ffimpact COMMAND; the commands are listed by --help."""
 
 import argparse
+import contextlib
 import errno
 import gc
 import importlib
@@ -12,7 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from . import __version__, stopping
-from .failure import BadInput, Failure, Unreadable, brief, unknown
+from .failure import BadInput, Failure, NotInstalled, Unreadable, brief, unknown
 from .places import shown
 
 Command = Callable[[list[str]], int | None]
@@ -86,7 +87,7 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument("--checkpoint-every", metavar="STEPS",
                          help="make a checkpoint every so many steps; a run that is killed goes on from the last when called again")
     command.add_argument("--force", action="store_true", help="run again, from the start, even if the result is there")
-    command.add_argument("--quiet", action="store_true", help="no progress, no report")
+    command.add_argument("--quiet", action="store_true", help="print warnings and errors only, on stderr")
     command.set_defaults(command=_run)
 
     command = commands.add_parser("list", help="list the built-in scenes, with their scripts")
@@ -95,6 +96,8 @@ def _parser() -> argparse.ArgumentParser:
     command.set_defaults(command=_parameters)
     command = commands.add_parser("schema", help="print the JSON schema of scene files, with which editors complete and check them")
     command.set_defaults(command=_schema)
+    command = commands.add_parser("kernels", help="print the word that a FreeFem++ of your own needs to load the compiled kernels")
+    command.set_defaults(command=_kernels)
     command = commands.add_parser("figures", help="draw the figures of a result folder again")
     command.add_argument("folder", metavar="DIR", type=Path)
     command.set_defaults(command=_figures)
@@ -111,11 +114,13 @@ def _run(options: argparse.Namespace) -> None:
     given = parameters.overrides(options.set)
     if options.checkpoint_every:
         given["checkpoint_every"] = options.checkpoint_every
-    result = run.run(scene.load(options.scene), given, options.out, mesh_file=options.mesh,
-                     force=options.force, progress=False if options.quiet else None)
-    report.draw(result)
-    if not options.quiet:
+    with contextlib.redirect_stdout(None if options.quiet else sys.stdout):
+        result = run.run(scene.load(options.scene), given, options.out, mesh_file=options.mesh,
+                         force=options.force, progress=False if options.quiet else None)
+        report.draw(result)
         print(report.report(result))
+    for sentence in result.summary["warnings"] if options.quiet else ():
+        print(f"ffimpact: warning: {sentence}", file=sys.stderr)
 
 
 def _list(options: argparse.Namespace) -> None:
@@ -138,6 +143,14 @@ def _parameters(options: argparse.Namespace) -> None:
 def _schema(options: argparse.Namespace) -> None:
     from .schema import text
     print(text(), end="")
+
+
+def _kernels(options: argparse.Namespace) -> None:
+    from .freefem import freefem
+    if not (word := freefem.find().plugin):
+        raise NotInstalled("the kernels cannot be compiled: FreeFem++'s ff-c++, g++ or SuiteSparse's headers are missing; "
+                           "run: apt-get install g++ libfreefem++-dev libsuitesparse-dev")
+    print(word)
 
 
 def _figures(options: argparse.Namespace) -> None:

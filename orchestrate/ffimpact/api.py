@@ -19,7 +19,7 @@ import pandas as pd
 from . import scene as files
 from .failure import BadInput, Failure, of_code, unknown
 from .freefem import freefem
-from .input.tables import to_toml
+from .input.toml_text import to_toml
 from .model import Scene
 from .places import RESULTS
 from .progress import Line

@@ -58,7 +58,7 @@ from .input.models import (
     Tube,
 )
 from .input.parameter import plain
-from .input.tables import to_toml
+from .input.toml_text import to_toml
 from .scenes import scene as reading
 
 __all__ = [

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.tri import Triangulation
 
-from .failure import BadInput, Unreadable
+from .failure import BadInput, Unreadable, unknown
 from .input.dimension import per_metre
 from .output import vtu
 from .output.results import body_names
@@ -90,7 +90,7 @@ class Plots:
         when, path = min(series, key=lambda one: abs(one[0] - time))
         state = vtu.read(path)
         if field not in state.fields:
-            raise BadInput(f"field: '{field}' is not known (accepted: {', '.join(state.fields)})")
+            raise BadInput(f"field: {unknown(field, state.fields, ', ')}")
         values = state.fields[field]
         values = np.linalg.norm(values, axis=1) if values.ndim > 1 else values
         points, triangles = (

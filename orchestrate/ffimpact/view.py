@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .failure import BadInput, NotInstalled, Unreadable
+from .failure import BadInput, NotInstalled, Unreadable, unknown
 from .output import vtu
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ def view(result: Result, path: str | Path | None = None, field: str = "von_mises
         raise Unreadable(f"{result.folder}: has no states (accepted: a run with fields = 60, say)")
     states = [vtu.read(file) for _, file in series]
     if field not in states[0].fields:
-        raise BadInput(f"field: '{field}' is not known (accepted: {', '.join(states[0].fields)})")
+        raise BadInput(f"field: {unknown(field, states[0].fields, ', ')}")
     times = np.array([time for time, _ in series])
     slow = SECONDS / (np.ptp(times) or 1.0)
     vertices = {f"{slow * t}": _places(one).astype(np.float32) for t, one in zip(times, states)}

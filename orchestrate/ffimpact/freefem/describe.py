@@ -2,10 +2,13 @@
 
 import copy
 import json
+import subprocess
 from functools import cache
 
 from ..failure import BadInput, NotInstalled
 from . import freefem
+
+LIMIT = 60                               # s; an answer takes some tenths
 
 
 def describe(values: dict | None = None, script: str = "disc-plane") -> dict:
@@ -31,7 +34,10 @@ def describe_results(values: dict | None = None, script: str = "disc-plane") -> 
 @cache
 def _ask(asked: str, *flags: str) -> str:
     program = freefem.find()
-    answer = program.call(asked, *flags, timeout=60)
+    try:
+        answer = program.call(asked, *flags, timeout=LIMIT)
+    except subprocess.TimeoutExpired:
+        raise NotInstalled(f"{program.command} does not finish {asked} in {LIMIT} s; the machine is too busy, or {freefem.HOW}") from None
     if answer.returncode == 0:
         return answer.stdout
     if answer.returncode == 10 and (said := freefem.said_in(answer.stderr)):

@@ -18,6 +18,7 @@ from typing import NamedTuple, TextIO
 from ..failure import BadInput, NotInstalled
 from ..places import INSTALLED, ROOT
 from . import kernels
+from .compiled import QUIET, compiled
 
 CORES = len(os.sched_getaffinity(0))
 OLDEST = (4, 9)                          # the version in the banner; Debian's 4.11 calls itself 4.9
@@ -54,10 +55,11 @@ class FreeFem:
     version: str
     environment: dict[str, str]
     description: dict
+    plugin: str = ""                # the word that loads the compiled kernels
 
     def words(self, script: str | Path, *flags: str) -> list[str]:
         """The command that runs a script."""
-        return [self.command, "-nw", "-ne", "-v", "0", str(script), *flags]
+        return [self.command, "-nw", "-ne", "-v", "0", str(script), *filter(None, [self.plugin]), *flags]
 
     @property
     def preloaded(self) -> list[int]:
@@ -104,8 +106,7 @@ def _find(variables: tuple[tuple[str, str], ...]) -> FreeFem:
     version = description["version"]
     if tuple(map(int, version.split(".")[:2])) < OLDEST:
         raise NotInstalled(f"{command} is version {version}, needed is {OLDEST[0]}.{OLDEST[1]} or newer; {HOW}")
-    kernels.build(command, version, environment)
-    return FreeFem(command, version, environment, description)
+    return FreeFem(command, version, environment, description, kernels.build(command, version, environment))
 
 
 def _threads(wanted: str) -> dict[str, str]:
@@ -131,18 +132,14 @@ def _blas_kernels() -> dict[str, str]:
 
 
 def _quick_clock(environment: Mapping[str, str]) -> dict[str, str]:
-    """The preloaded clock() of edp/clock.c, built where it is missing or older; nothing without a compiler or a folder to write in. On a
-    path that LD_PRELOAD, whose names end at blanks and colons, cannot name, it is an open file that processes are handed."""
-    library = CLOCK.with_name("libclock.so")
-    if not library.exists() or library.stat().st_mtime < CLOCK.stat().st_mtime:
-        part = library.with_name(f"{library.name}.{os.getpid()}.part")
-        try:
-            subprocess.run(["cc", "-O2", "-shared", "-fPIC", "-o", part, CLOCK], env=environment, check=True, timeout=60,
-                           **kernels.QUIET)
-            os.replace(part, library)
-        except (OSError, subprocess.SubprocessError):
-            part.unlink(missing_ok=True)
-            return {}
+    """The preloaded clock() of edp/clock.c; nothing where it cannot be compiled. On a path that LD_PRELOAD, whose names end at blanks and
+    colons, cannot name, it is an open file that processes are handed."""
+    def make(folder: Path) -> None:
+        subprocess.run(["cc", "-O2", "-shared", "-fPIC", "-o", folder / "libclock.so", CLOCK], env=environment, check=True, timeout=60,
+                       **QUIET)
+    library = compiled("libclock.so", [CLOCK.read_text()], make)
+    if not library:
+        return {}
     name = f"{OPEN_FILES}{os.open(library, os.O_RDONLY)}" if re.search(r"[\s:]", str(library)) else str(library)
     return {"LD_PRELOAD": ":".join([name, *environment.get("LD_PRELOAD", "").split()])}
 

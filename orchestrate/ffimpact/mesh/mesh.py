@@ -22,6 +22,9 @@ from types import ModuleType
 from typing import ClassVar
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
 
 from ..failure import BadInput, NotInstalled
 from ..places import INSTALLED, PACKAGE
@@ -83,11 +86,9 @@ class Sizes:
         return np.minimum(self.bulk, self.contact + GROWTH * away)
 
 
-def nearest(points: np.ndarray, others: np.ndarray, chunk: int = 500, most: int = 2000) -> np.ndarray:
-    """Distances (n,) to the nearest of the others; of many every few only."""
-    others = others[::-(-len(others) // most)]
-    return np.concatenate([np.sqrt(((points[at:at + chunk, None] - others)**2).sum(axis=2).min(axis=1))
-                           for at in range(0, len(points), chunk)])
+def nearest(points: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """Distances (n,) to the nearest of the others."""
+    return cKDTree(others).query(points)[0]
 
 
 def disc(radius: float, mesh_size: float, contact_mesh_size: float, half: bool, contact_arc: float = math.pi / 4) -> Mesh:
@@ -317,15 +318,9 @@ def boundary(cells: np.ndarray) -> np.ndarray:
 
 
 def pieces(points: int, elements: np.ndarray) -> np.ndarray:
-    """The piece (points,) that each point belongs to, by its lowest number: elements (n, corners) hang together by common points."""
-    piece = np.arange(points)
-    while True:
-        least = piece[elements].min(axis=1)
-        before = piece.copy()
-        np.minimum.at(piece, elements.ravel(), np.repeat(least, elements.shape[1]))
-        piece = piece[piece]
-        if (piece == before).all():
-            return piece
+    """The number (points,) of the piece that each point belongs to: elements (n, corners) hang together by common points."""
+    links = elements[:, :-1].ravel(), elements[:, 1:].ravel()
+    return connected_components(coo_array((np.ones(len(links[0])), links), (points, points)), directed=False)[1]
 
 
 def inner_outlines(points: np.ndarray, sides: np.ndarray) -> list[np.ndarray]:

@@ -9,6 +9,7 @@ from operator import attrgetter
 from pathlib import Path
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from ..failure import BadInput
 from ..geometry import outlines, tumbling
@@ -19,7 +20,6 @@ from .solid_mesh import MOST_CELLS, Sizes, SolidMesh, expected_cells, mesh_shape
 MADE = {"ball": lambda radius: ball(radius), "box": lambda *extent: box(np.array(extent)),
         "cylinder": lambda radius, height: cylinder(radius, height)}
 SAMPLES = 1500               # points on a surface where its shape is wanted as points
-NEAREST = 16                 # triangles of a surface, by their centres, among which the nearest one is sought
 # share of the accuracy by which flat elements on its roundings may change the volume of a geometry
 CUT = 0.25
 AT_ONCE = 500_000            # pairs of a point and a triangle
@@ -106,10 +106,12 @@ def surface(triangles: np.ndarray) -> Shape:
     # (s s^T + a a^T + b b^T + c c^T), s = a + b + c
     square = sum(np.einsum("t,ti,tj->ij", six, one, one) for one in (a + b + c, a, b, c)) / 120
 
+    distances = _distances(triangles)
+
     def gap(points: np.ndarray) -> np.ndarray:
         """The distance from the nearest triangle; inside, where they are seen under a full solid angle."""
         chunk = max(1, AT_ONCE // len(triangles))
-        distance = np.concatenate([_nearest(triangles, points[at:at + chunk]) for at in range(0, len(points), chunk)])
+        distance = np.concatenate([distances(points[at:at + chunk]) for at in range(0, len(points), chunk)])
         for at in np.array_split(boxed := np.flatnonzero(((points > low) & (points < high)).all(axis=1)), len(boxed) // chunk + 1):
             distance[at] *= np.where(_solid_angle(triangles, points[at]) > 2 * math.pi, -1, 1)
         return distance
@@ -129,12 +131,20 @@ def surface(triangles: np.ndarray) -> Shape:
                  np.trace(square) * np.eye(3) - square, gap, sampled, lambda normal: False)
 
 
-def _nearest(triangles: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Distances (n,) of points from triangles, sought among those whose centres are near."""
-    away = ((points[:, None] - triangles.mean(axis=1))**2).sum(axis=2)
-    few = min(NEAREST, len(triangles))
-    near = triangles[np.argpartition(away, few - 1, axis=1)[:, :few]]
-    return distance_to_triangles(points[:, None], near).min(axis=1)
+def _distances(triangles: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+    """The function that gives the distances (n,) of points (n, 3) from the nearest of the triangles (t, 3, 3)."""
+    centres = triangles.mean(axis=1)
+    radius = np.linalg.norm(triangles - centres[:, None], axis=2).max()
+    corners, within = cKDTree(triangles.reshape(-1, 3)), cKDTree(centres)
+
+    def distances(points: np.ndarray) -> np.ndarray:
+        # the nearest triangle is no farther than the nearest corner, its centre than that and the radius
+        near = within.query_ball_point(points, (1 + 1e-9) * (corners.query(points)[0] + radius))
+        count = np.array([len(one) for one in near])
+        found = distance_to_triangles(np.repeat(points, count, axis=0), triangles[np.concatenate(near).astype(int)])
+        return np.minimum.reduceat(found, np.cumsum(count) - count)
+
+    return distances
 
 
 def _solid_angle(triangles: np.ndarray, points: np.ndarray) -> np.ndarray:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..failure import Unreadable, brief
+from ..failure import Unreadable, brief, unknown
 from ..input.parameters import Value
 
 if TYPE_CHECKING:
@@ -50,14 +50,14 @@ class RunResult:
 # ---- files
 
 class Contents(dict):
-    """What the file `path` of a run says by name; Unreadable where a name that is asked for is not there."""
+    """What the file `path` of a run says by name; Unreadable, with the names that are there, where a name is not."""
 
     def __init__(self, said: dict, path: Path):
         super().__init__({name: _contents(value, path) for name, value in said.items()})
         self.path = path
 
     def __missing__(self, name: str):
-        raise Unreadable(f"{self.path} cannot be read: it lacks {name}; {AGAIN}")
+        raise Unreadable(f"{self.path}: {unknown(name, self, ', ')}")
 
     def __reduce__(self):
         return Contents, (dict(self), self.path)

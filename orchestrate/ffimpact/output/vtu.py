@@ -1,7 +1,8 @@
-"""Reads the field snapshots of a run: ASCII .vtu files of triangles or tetrahedra, and the .pvd list of their times."""
+"""Reads the field snapshots of a run: .vtu files of triangles or tetrahedra, and the .pvd list of their times."""
 
 import xml.etree.ElementTree as xml
 from collections.abc import Sequence
+from contextlib import redirect_stderr
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -10,8 +11,7 @@ import numpy as np
 
 from .results import Contents, content, reading
 
-TRIANGLE, QUADRATIC_TRIANGLE, QUADRATIC_TETRAHEDRON = 5, 22, 24   # VTK's cell types
-NODES = {TRIANGLE: 3, QUADRATIC_TRIANGLE: 6, QUADRATIC_TETRAHEDRON: 10}
+KINDS = TRIANGLE, QUADRATIC_TRIANGLE, QUADRATIC_TETRAHEDRON = "triangle", "triangle6", "tetra10"
 FINEST, MOST = 6, 2_000      # straight triangles along a side of a quadratic one, at most; and of all, where that is more than two a side
 # a quadratic tetrahedron as its corners and the four about the diagonal 4-9
 EIGHT = [[0, 4, 6, 7], [4, 1, 5, 8], [6, 5, 2, 9], [7, 8, 9, 3],
@@ -82,22 +82,23 @@ def read_solid(path: Path) -> Solid | None:
     return Solid(points, cells, fields) if kind == QUADRATIC_TETRAHEDRON else None
 
 
-def _parts(path: Path) -> tuple[np.ndarray, int, np.ndarray, dict[str, np.ndarray]]:
+def _parts(path: Path) -> tuple[np.ndarray, str, np.ndarray, dict[str, np.ndarray]]:
     """Points, the type of all cells, their nodes (cells, nodes) and the fields. Unreadable where it is not such a file."""
-    text = content(path)
+    import meshio  # takes longer to load than a run
+    content(path)                # it is as the run has written it
     with reading(path):
-        piece = xml.fromstring(text).find("UnstructuredGrid/Piece")
-        points = _array(piece.find("Points/DataArray"))
-        cells = {array.get("Name"): _array(array).astype(int) for array in piece.iterfind("Cells/DataArray")}
-        kinds = set(cells["types"])
-        if len(kinds) != 1 or not kinds <= set(NODES):
-            raise ValueError(f"cell types {sorted(kinds)} are not supported")
-        kind = int(kinds.pop())
-        fields = {array.get("Name"): _array(array) for array in piece.iterfind("PointData/DataArray")}
-        nodes = cells["connectivity"].reshape(-1, NODES[kind])
-        if nodes.min() < 0 or nodes.max() >= len(points) or any(len(field) != len(points) for field in fields.values()):
-            raise ValueError("a node or a value at one is missing")
-        return points, kind, nodes, Contents(fields, path)
+        try:
+            with redirect_stderr(None):              # its warnings: a field that it leaves out is missed where it is wanted
+                mesh = meshio.vtu.read(path)
+        except meshio.ReadError as error:
+            raise ValueError(str(error) or "it is no VTU file") from None
+        kinds = {block.type for block in mesh.cells}
+        if len(kinds) != 1 or not kinds <= set(KINDS):
+            raise ValueError(f"cell types {', '.join(sorted(kinds))} are not supported")
+        nodes = mesh.cells[0].data
+        if nodes.min() < 0 or nodes.max() >= len(mesh.points):
+            raise ValueError("a node is missing")
+        return mesh.points, kinds.pop(), nodes, Contents(mesh.point_data, path)
 
 
 @lru_cache(1)          # snapshots of a run have the same triangles
@@ -171,9 +172,3 @@ def between(times: np.ndarray, values: Sequence[np.ndarray], t: float) -> np.nda
     place = np.interp(t, times, np.arange(len(times)))
     low, share = int(place), place % 1
     return (1 - share) * values[low] + share * values[min(low + 1, len(values) - 1)]
-
-
-def _array(element: xml.Element) -> np.ndarray:
-    width = int(element.get("NumberOfComponents", 1))
-    numbers = np.array((element.text or "").split(), dtype=float)
-    return numbers.reshape(-1, width) if width > 1 else numbers

@@ -5,15 +5,12 @@ import argparse
 import logging
 import os
 import subprocess
-from contextlib import suppress
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.animation import FFMpegWriter, PillowWriter
-from matplotlib.colors import to_rgb
 from matplotlib.patheffects import withStroke
-from PIL import Image
 
 from .. import progress, scene
 from ..failure import BadInput, NotInstalled, Unreadable
@@ -43,7 +40,6 @@ from .figures import (
 SECONDS = 8.0     # of the film
 MOST = 400        # frames, 50 a second: players show a faster GIF slower
 DPI = 110
-SAMPLES = 10      # frames that the palette of a GIF is made of
 logging.getLogger("matplotlib.animation").setLevel(logging.ERROR)   # what ffmpeg says is said in one line
 
 
@@ -74,43 +70,23 @@ def main(argv: list[str]) -> int:
 
 def write(film: Path, result: RunResult, frames: int) -> None:
     """Writes `frames` frames, evenly spaced from the touch to the end, of SECONDS seconds together; complete or not at all."""
-    with plt.rc_context(STYLE | {"figure.constrained_layout.use": False}):   # the axes stay where they are
+    with plt.rc_context(STYLE):
         stage = of(result)
         part = film.with_suffix(f".part{film.suffix}")
-        writer = (FFMpegWriter if film.suffix == ".mp4" else GifWriter)(fps=frames / SECONDS)
+        writer = (FFMpegWriter if film.suffix == ".mp4" else PillowWriter)(fps=frames / SECONDS)
         try:
-            writer.setup(stage.figure, part, DPI)
-            writer.colours = stage.colours
-            for t in progress.in_turn(film.name, np.linspace(stage.times[0], stage.times[-1], frames)):
-                stage.show(t)
-                writer.grab_frame()
-            writer.finish()
+            with writer.saving(stage.figure, part, DPI):
+                for t in progress.in_turn(film.name, np.linspace(stage.times[0], stage.times[-1], frames)):
+                    stage.show(t)
+                    writer.grab_frame()
             os.replace(part, film)
-        except (BrokenPipeError, subprocess.CalledProcessError):
+        except (BrokenPipeError, subprocess.CalledProcessError) as error:
+            if error.__context__ and not isinstance(error.__context__, BrokenPipeError):    # something stopped us, and so ffmpeg
+                raise error.__context__ from None
             raise NotInstalled("ffmpeg could not write the film: it lacks H.264, or the disk is full; take --format gif") from None
         finally:
-            if isinstance(writer, FFMpegWriter):
-                with suppress(Exception):
-                    writer.finish()   # where something stopped us: ffmpeg ends before its file goes
             part.unlink(missing_ok=True)
             plt.close(stage.figure)
-
-
-class GifWriter(PillowWriter):
-    """One palette for all frames, so that no colour changes: `colours` (at most 256, 3), or those of SAMPLES of the frames."""
-
-    colours: np.ndarray | None = None
-
-    def finish(self) -> None:
-        if self.colours is None:
-            sample = self._frames[::max(1, len(self._frames) // SAMPLES)]
-            together = Image.fromarray(np.vstack([np.asarray(frame.convert("RGB")) for frame in sample]))
-            palette = together.quantize(256, Image.Quantize.FASTOCTREE)
-        else:
-            palette = Image.new("P", (1, 1))
-            palette.putpalette((255 * self.colours).round().astype(int).ravel().tolist())
-        self._frames = [frame.convert("RGB").quantize(palette=palette, dither=Image.Dither.NONE) for frame in self._frames]
-        super().finish()
 
 
 class Motion:
@@ -144,18 +120,14 @@ class Stage:
 
     times: np.ndarray
     figure: plt.Figure
-    colours: np.ndarray | None = None      # of a GIF
 
-    def _lay_out(self, result: RunResult, width: float, height: float) -> tuple[plt.Axes, plt.Axes]:
-        """The figure with its title and forces; the panel of the body and, right of it, of its colours."""
-        heading, below = title(result.scene), 1.6
-        whole = np.array([width + 2.0, height + below + 1.75 + 0.15 * (1 + heading.count("\n"))])
-        self.figure = plt.figure(figsize=whole)
-        panel = lambda x, y, w, h: self.figure.add_axes((*np.array([x, y]) / whole, *np.array([w, h]) / whole))   # noqa: E731
-        self.above, bar = panel(0.85, below + 1.3, width, height), panel(width + 1.0, below + 1.3, 0.16, height)
-        self.figure.suptitle(heading, fontsize=9, y=1 - 0.12 / whole[1])
-        self._draw_force(panel(0.85, 0.55, width, below), result.history, per_metre(result.scene))
-        return self.above, bar
+    def _lay_out(self, result: RunResult, width: float, height: float) -> plt.Axes:
+        """The figure with its title and forces; the panel of the body."""
+        self.figure, (self.above, below) = plt.subplots(2, figsize=(width + 2.0, height + 3.2), height_ratios=(height, 1.6),
+                                                        layout="constrained")
+        self.figure.suptitle(title(result.scene))
+        self._draw_force(below, result.history, per_metre(result.scene))
+        return self.above
 
     def _draw_force(self, axes: plt.Axes, history: dict[str, np.ndarray], per: str) -> None:
         """Normal force, and friction force where there is any [kN/m], over the time of the film."""
@@ -173,6 +145,12 @@ class Stage:
         if len(forces) > 1:
             legend(axes, loc="lower right", bbox_to_anchor=(1, 1), ncols=2, borderaxespad=0)
 
+    def _settle(self) -> None:
+        """The axes stay where the first frame has them."""
+        self.show(self.times[0])
+        self.figure.draw_without_rendering()
+        self.figure.set_layout_engine("none")
+
     def show(self, t: float) -> None:
         """Everything that moves, at time t [s]."""
         self._move(t)
@@ -182,32 +160,26 @@ class Stage:
             dot.set_data([1e3 * t], [np.interp(1e3 * t, self.t, self.forces[name])])
 
 
-def plane_colours() -> np.ndarray:
-    """Those of the stress, greys, and those of the curves."""
-    fade = np.linspace(0, 1, 14)[:, None]
-    curves = [fade * to_rgb("white") + (1 - fade) * to_rgb(colour) for colour in (BLUE, ORANGE)]
-    return np.vstack([plt.get_cmap("viridis")(np.linspace(0, 1, 200))[:, :3], np.linspace(0, 1, 28)[:, None] * np.ones(3), *curves])
-
-
 class PlaneStage(Stage):
     """A body in the plane, or the cut of one in three dimensions with the plane z = 0, among its obstacles."""
 
     def __init__(self, result: RunResult, motion: Motion):
-        self.motion, self.times, self.colours = motion, motion.times, plane_colours()
+        self.motion, self.times = motion, motion.times
         view = left, right, floor, top = bodies.limits(motion.bodies)
         width = min(6.0, 4.8 * (right - left) / (top - floor))      # [inch]
-        _, bar = self._lay_out(result, width, width * (top - floor) / (right - left))
+        self._lay_out(result, width, width * (top - floor) / (right - left))
         self.view, self.rigid = view, bodies.obstacles_of(result.scene)
         self.drawn = bodies.draw_obstacles(self.above, self.rigid, view, motion.times[0])
         self.above.set(xlim=(left, right), ylim=(floor, top), aspect="equal", xlabel="x [m]", ylabel="y [m]")
         self.largest = np.quantile([body.stress for body in motion.bodies], 0.999) or 1.0   # one spot does not darken all the rest
         self.picture = draw_body(self.above, motion.bodies[0], (0, self.largest))
-        self.figure.colorbar(self.picture, cax=bar, label=STRESS, extend="max")
+        self.figure.colorbar(self.picture, ax=self.above, label=STRESS, extend="max", aspect=30, pad=0.02)
         self.marks = []
         if motion.diameters is not None:   # shows how the body turns
             outlined = [withStroke(linewidth=2.5, foreground=BLACK)]
             self.marks = [self.above.plot([], [], color="white", linewidth=1.2, path_effects=outlined)[0],
                           self.above.plot([], [], color="white", marker="o", markersize=5, markeredgecolor=BLACK)[0]]
+        self._settle()
 
     def _move(self, t: float) -> None:
         body, line = self.motion.at(t)
@@ -228,9 +200,8 @@ class SolidStage(Stage):
     def __init__(self, result: RunResult, views: solid.Views):
         self.views, self.times = views, views.times
         width, height = 7.2, 7.2 / 2 * solid.PIXELS[1] / solid.PIXELS[0]
-        panel, bar = self._lay_out(result, width, height)
+        panel = self._lay_out(result, width, height)
         panel.set_axis_off()
-        bar.remove()
         self.pictures = []
         for k, (image, (colours, label)) in enumerate(zip(views.render(views.sights[0]), solid.bars(views))):
             axes = panel.inset_axes((0.5 * k, 0, 0.5, 1))
@@ -238,6 +209,7 @@ class SolidStage(Stage):
             self.pictures.append(axes.imshow(image, interpolation="antialiased"))
             self.figure.colorbar(colours, cax=panel.inset_axes((0.5 * k + 0.08, -0.05, 0.34, 0.03)), label=label, orientation="horizontal",
                                  extend="max")
+        self._settle()
 
     def _move(self, t: float) -> None:
         for picture, image in zip(self.pictures, self.views.render(self.views.at(t))):

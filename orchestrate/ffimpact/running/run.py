@@ -19,7 +19,7 @@ from .. import __version__
 from ..failure import BadInput, Failure, TooLong, Unreadable
 from ..freefem import freefem
 from ..input.parameters import Value
-from ..input.tables import to_toml
+from ..input.toml_text import to_toml
 from ..mesh import gmsh_file, mesh
 from ..output import estimate as estimates
 from ..output import notes

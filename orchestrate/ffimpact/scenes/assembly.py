@@ -21,7 +21,7 @@ from ..geometry.outlines import Loop, TubeOutline, rotation
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID
 from ..input.models import MATERIAL, OWN
 from ..input.parameters import Value
-from ..input.tables import to_toml
+from ..input.toml_text import to_toml
 from ..mesh import mesh, revolution, solid_mesh, solids
 from ..mesh.mesh import AXIS, FREE, Curve, Sizes, mesh_body, nearest
 from .approach import Meeting, loaded_pull, meetings, refuse_nothing, refuse_sinking, turned

@@ -1,0 +1,25 @@
+"""The text of a TOML file of a scene's tables."""
+
+import re
+
+import numpy as np
+import tomli_w
+
+from ..failure import BadInput, brief
+
+
+def to_toml(table: dict) -> str:
+    """The tables, lists of tables and values of `table` as the text of a TOML file, numbers with all their digits. Reading the text gives
+    the same table. BadInput where a text in it is not UTF-8, as the bytes of a path may be."""
+    return tomli_w.dumps(_plain(table))
+
+
+def _plain(value):
+    """A value with Python's own numbers in place of numpy's."""
+    if isinstance(value, dict):
+        return {_plain(key): _plain(one) for key, one in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(one) for one in value]
+    if isinstance(value, str) and re.search("[\ud800-\udfff]", value):
+        raise BadInput(f"'{brief(value)}': is no text in UTF-8, in which scenes are written down (accepted: names and paths that are)")
+    return value.tolist() if isinstance(value, np.ndarray | np.generic) else value
