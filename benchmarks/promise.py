@@ -11,7 +11,9 @@ import pandas as pd
 
 from ffimpact import scene
 from ffimpact.failure import Failure, TooLong
+from ffimpact.freefem import freefem
 from ffimpact.input.parameters import Value, whole
+from ffimpact.mesh import mesh
 from ffimpact.output import estimate, notes
 from ffimpact.output.results import read_answers
 from ffimpact.running import run
@@ -47,7 +49,7 @@ def main(argv: list[str]) -> int:
                         help="also gravity, other integrators, linear elements ...: nothing above what was asked without a warning")
     parser.add_argument("--coarse", action="store_true", help="discs and balls at coarse accuracies: stated errors hold there too")
     parser.add_argument("--flat", action="store_true", help="faces that strike flat, in all dimensions: stated errors hold there too")
-    parser.add_argument("--held", action="store_true", 
+    parser.add_argument("--held", action="store_true",
                         help="supports, loads, rigid bodies, obstacles that move: stated errors hold there too")
     parser.add_argument("--of", metavar="SCENE", choices=draws.SCENES, help=f"of one kind only: {', '.join(draws.SCENES)}")
     options = parser.parse_args(argv)
@@ -93,6 +95,7 @@ def _finish_parts(options: Namespace, table: pd.DataFrame, part: pd.Series, argv
 def compare(drawn: list[Drawn], out: Path) -> pd.DataFrame:
     """A row a scene: what it is, of each answer the error and the stated one, and the largest promised of each, over the accuracy asked
     for; warnings; processor seconds of the run with its estimate, and of the reference; nan where one of them failed."""
+    mesh.start_gmsh()     # here, in the thread that can restore the signal handlers
     acts = {k: partial(_row, out, *one) for k, one in enumerate(drawn)}
     rows = {k: {"message": str(found)} if isinstance(found, Failure) else found
             for k, found in study.side_by_side(acts, study.CORES, out.name)}
@@ -105,9 +108,9 @@ def compare(drawn: list[Drawn], out: Path) -> pd.DataFrame:
 
 def _row(out: Path, name: str, point: study.Point) -> dict:
     """Of one scene. Its runs are kept, each without an estimate, so that other rules for estimates need no run again."""
-    study.end_after(LIMIT)
     try:
-        return _compared(_scene(name, point), study.place(out / name, point))
+        with freefem.limited(LIMIT):
+            return _compared(_scene(name, point), study.place(out / name, point))
     except (Failure, TooLong) as failure:
         return {"message": str(failure)}
 
@@ -126,7 +129,7 @@ def _compared(wanted: scene.Scene, folder: Path) -> dict:
 
     def solve(given: dict[str, Value], where: Path) -> None:
         told = ",".join(f"{key}={value}" for key, value in given.items() if wanted.bodies or wanted.values[key] != value)
-        kept = run.run(wanted, given, study.place(folder, {"run": told}), estimate=False)
+        kept = run.run(wanted, given, study.place(folder, {"run": told}), estimate=False, progress=False)
         paid[0] += kept.summary["cpu_seconds"]
         shutil.copytree(kept.folder, where, dirs_exist_ok=True)
 

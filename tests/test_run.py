@@ -182,7 +182,7 @@ def test_progress_arrives(fake, tmp_path):
     """The progress lines of the script arrive with their fraction, time and number of steps; the log keeps them too."""
     seen = []
     flags = {"fields": 0, "mesh": __file__, "out": tmp_path}
-    assert freefem.run(freefem.find(), "disc-plane", flags, tmp_path / "log.txt", seen.append) == (0, "")
+    assert freefem.run(freefem.find(), "edp/disc-plane.edp", flags, tmp_path / "log.txt", seen.append) == (0, "")
     assert seen[0] == (0.25, 0.001, 50, 0, 1.0) and len(seen) == 3
     assert "progress 0.25" in (tmp_path / "log.txt").read_text()
 
