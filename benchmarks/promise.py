@@ -13,7 +13,6 @@ from ffimpact import scene
 from ffimpact.failure import Failure, TooLong
 from ffimpact.freefem import freefem
 from ffimpact.input.parameters import Value, whole
-from ffimpact.mesh import mesh
 from ffimpact.output import estimate, notes
 from ffimpact.output.results import read_answers
 from ffimpact.running import run
@@ -95,7 +94,6 @@ def _finish_parts(options: Namespace, table: pd.DataFrame, part: pd.Series, argv
 def compare(drawn: list[Drawn], out: Path) -> pd.DataFrame:
     """A row a scene: what it is, of each answer the error and the stated one, and the largest promised of each, over the accuracy asked
     for; warnings; processor seconds of the run with its estimate, and of the reference; nan where one of them failed."""
-    mesh.start_gmsh()     # here, in the thread that can restore the signal handlers
     acts = {k: partial(_row, out, *one) for k, one in enumerate(drawn)}
     rows = {k: {"message": str(found)} if isinstance(found, Failure) else found
             for k, found in study.side_by_side(acts, study.CORES, out.name)}

@@ -17,7 +17,6 @@ from matplotlib.ticker import NullLocator
 
 from ffimpact.failure import BadInput, Failure
 from ffimpact.freefem import freefem
-from ffimpact.mesh import mesh
 from ffimpact.output.results import read_frame
 from ffimpact.places import ROOT, shown
 from ffimpact.report.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE, save
@@ -82,7 +81,6 @@ def run_all(out: Path, cores: int = study.CORES) -> pd.DataFrame:
     shutil.rmtree(out / "runs", ignore_errors=True)
     for case in CASES:
         (out / "runs" / slug(case)).mkdir(parents=True)
-    mesh.start_gmsh()     # here, in the thread that can restore the signal handlers
     acts = {(c, p): partial(perform, part, out / "runs" / slug(case)) for c, case in enumerate(CASES) for p, part in enumerate(case.parts)}
     for key, outcome in study.side_by_side(acts, cores, "verify"):
         found[key] = ([], str(outcome)) if isinstance(outcome, Failure) else outcome

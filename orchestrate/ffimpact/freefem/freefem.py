@@ -166,37 +166,31 @@ def _probe(command: str, environment: dict[str, str]) -> dict | None:
 
 # ---- a process at work
 
-class Limit:
-    """When a FreeFem++ has to end: `seconds` from now, or as soon as another thread sets `stop`."""
+class _Limit(threading.local):
+    """When the FreeFem++ that a thread waits for has to end: after `seconds`, which are over at `end`, or once another thread sets `stop`."""
 
-    def __init__(self, seconds: float, stop: threading.Event):
-        self.seconds, self.end, self.stop = seconds, time.monotonic() + seconds, stop
+    seconds, end, stop = math.inf, math.inf, threading.Event()
 
     def check(self) -> None:
-        """Raises TooLong after the last second, and KeyboardInterrupt once `stop` is set."""
+        """Raises TooLong after the end, and KeyboardInterrupt once `stop` is set."""
         if self.stop.is_set():
             raise KeyboardInterrupt
         if time.monotonic() > self.end:
             raise TooLong(f"no end after {self.seconds:g} s: killed")
 
 
-class _Thread(threading.local):
-    """The limit that a thread has; none at first."""
-
-    limit = Limit(math.inf, threading.Event())
-
-
-_thread = _Thread()
+_limit = _Limit()
 
 
 @contextmanager
 def limited(seconds: float = math.inf, stop: threading.Event | None = None) -> Iterator[None]:
     """Limits every FreeFem++ that this thread waits for inside the `with`. Without a `stop` the thread keeps the one it has."""
-    before, _thread.limit = _thread.limit, Limit(seconds, stop or _thread.limit.stop)
+    before = _limit.seconds, _limit.end, _limit.stop
+    _limit.seconds, _limit.end, _limit.stop = seconds, time.monotonic() + seconds, stop or _limit.stop
     try:
         yield
     finally:
-        _thread.limit = before
+        _limit.seconds, _limit.end, _limit.stop = before
 
 
 @dataclass(frozen=True)
@@ -208,7 +202,7 @@ class Process:
     errors: TextIO
 
     def end(self, progress: Progress | None = None) -> tuple[int, str]:
-        """Waits for the end, and raises what Limit.check() raises.
+        """Waits for the end, and raises what the limits of this thread raise.
 
         Returns the exit code, negative for a signal, and the script's line for the user, or "". What the lines
         "progress <share> t=<time> steps=<n> ..." of the log say goes to `progress`.
@@ -216,7 +210,7 @@ class Process:
         unread, code = "", None
         with open(self.log, errors="replace") as lines:
             while code is None:
-                _thread.limit.check()
+                _limit.check()
                 with suppress(subprocess.TimeoutExpired):
                     code = self.child.wait(POLL)
                 *whole, unread = (unread + lines.read()).split("\n")

@@ -6,7 +6,7 @@ import threading
 import time
 import traceback
 from collections import Counter
-from collections.abc import Callable, Hashable, Iterable, Iterator
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from functools import partial
@@ -47,8 +47,6 @@ def study(points: list[Point], folder: Path, base: Point, limit: float, name: st
     tasks = {where: given.override(base | point) for where, point in zip(places, points) if where not in found}
     if tasks:
         freefem.find()
-        if given.meshed:
-            mesh.start_gmsh()     # here, in the thread that can restore the signal handlers
         (folder / "runs").mkdir(parents=True, exist_ok=True)   # here: a run takes away what it had to make if it is interrupted
     acts = {where: partial(_outcome, where, wanted, limit) for where, wanted in tasks.items()}
     for where, outcome in side_by_side(acts, cores, "/".join(folder.parts[-2:]), len(found)):
@@ -77,7 +75,7 @@ def place(folder: Path, point: Point) -> Path:
     return folder / "runs" / name
 
 
-def side_by_side(acts: dict[Key, Callable], cores: int, name: str, before: int = 0) -> Iterator[tuple[Key, Any]]:
+def side_by_side(acts: Mapping[Key, Callable], cores: int, name: str, before: int = 0) -> Iterator[tuple[Key, Any]]:
     """Calls the `acts`, `cores` of them at a time, each in a thread, which mostly waits for its FreeFem++.
 
     Yields (key, what its act returns) as they end; a Failure where an act raises an error that it does not expect. An act that returns
@@ -86,6 +84,7 @@ def side_by_side(acts: dict[Key, Callable], cores: int, name: str, before: int =
     """
     stop, done = threading.Event(), before
     shares: dict[Key, float] = {}         # of the acts that are running
+    mesh.start_gmsh()                     # resets signal handlers, which only the main thread can restore
 
     def told() -> str:
         return f"{done} of {before + len(acts)} done"
