@@ -167,7 +167,7 @@ def _probe(command: str, environment: dict[str, str]) -> dict | None:
 # ---- a process at work
 
 class _Limit(threading.local):
-    """When the FreeFem++ that a thread waits for has to end: after `seconds`, which are over at `end`, or once another thread sets `stop`."""
+    """When the FreeFem++ that a thread waits for has to end: after `seconds`, at the time `end`, or once another thread sets `stop`."""
 
     seconds, end, stop = math.inf, math.inf, threading.Event()
 
