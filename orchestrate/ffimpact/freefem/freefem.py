@@ -33,7 +33,8 @@ SAYS = re.compile(r"progress (\S+) t=(\S+) steps=(\S+)(?: unknowns=(\S+) apart=(
 POLL = 0.1                               # s between two looks at a process, its log and its limits
 # setpriv (util-linux) asks the kernel to kill what it starts as soon as the thread that started it ends, even by SIGKILL.
 # Where setpriv is missing FreeFem++ goes on to its end, and its folder stays locked until then: start() hands it the lock.
-LAUNCHER = ("setpriv", "--pdeathsig", "KILL") if shutil.which("setpriv") else ()
+SETPRIV = shutil.which("setpriv")
+LAUNCHER = (SETPRIV, "--pdeathsig", "KILL") if SETPRIV else ()
 WAYS = ("apt-get install freefem++ libfreefem++; conda install -c conda-forge freefem; a package of "
         "https://github.com/FreeFem/FreeFem-sources/releases; or set FREEFEM to where it is")
 HOW = f"install it: {WAYS}" if INSTALLED else f"run: make setup   (or: {WAYS})"
