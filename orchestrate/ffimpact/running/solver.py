@@ -6,6 +6,7 @@ import math
 import os
 import shutil
 import signal
+import threading
 import time
 from collections.abc import Mapping
 from contextlib import AbstractContextManager, ExitStack, suppress
@@ -36,14 +37,14 @@ APART = 10.0                     # times that the slow body waits for the quick 
 
 class Solver(AbstractContextManager):
     """Runs the scene with some values in a folder, one run after the other, but the coarser one beside the main one where `pair` says that
-    it will be wanted and there are two cores."""
+    it will be wanted and a core is free. A thread beside the main one belongs to a study, which has a run on every core already."""
 
     def __init__(self, program: freefem.FreeFem, scene: Scene, mesh_file: Path | None, foreign: bytes | None, stage: Path, lock: int,
                  line: Line, pair: bool):
         self.program, self.scene, self.mesh_file, self.foreign = program, scene, mesh_file, foreign
         self.scaled = partial(scaled, scene)
         self.stage, self.lock, self.line = stage, lock, line
-        self.pair = pair and freefem.CORES > 1
+        self.pair = pair and freefem.CORES > 1 and threading.current_thread() is threading.main_thread()
         self.own_mesh = foreign is None and not scene.of_files
         self.number = 0
         self.beside: tuple[Path, dict[str, Value], freefem.Process] | None = None
