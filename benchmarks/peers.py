@@ -11,9 +11,8 @@ import resource
 import subprocess
 import sys
 import tempfile
-from functools import cache, partial
+from functools import cache
 from pathlib import Path
-from signal import SIGKILL
 
 from ffimpact.failure import Failure
 from ffimpact.freefem import freefem
@@ -28,7 +27,7 @@ INSTALL = {"ngsolve": "pip install ngsolve==6.2.2608", "getfem": "apt-get instal
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 RADIUS = 0.05               # m, of disc-normal and the peers' default
 BULK, CONTACT = 8e-3, 2.5e-3   # m: mesh sizes of factor 1 on the disc of that radius
-TEXTBOOK = "../benchmarks/programs/textbook"
+TEXTBOOK = "benchmarks/programs/textbook.edp"
 # our scenes, and the script <program>_<body>.py beside each
 BODIES = {"disc-normal": "disc", "disc-oblique": "disc_oblique", "ball-axisymmetric": "ball", "ball": "ball_3d"}
 
@@ -90,9 +89,8 @@ def _printed(program: str, script: str, folder: str, limit: float, flags: dict[s
     words = [word for name, value in flags.items() for word in (f"--{name.replace('_', '-')}", str(value))]
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     try:
-        done = subprocess.run([python, ROOT / "benchmarks/programs" / script, *words], env=os.environ | ONE_THREAD, cwd=folder,
-                              capture_output=True, text=True, timeout=limit,
-                              preexec_fn=partial(freefem.die_with_parent, os.getpid(), SIGKILL))
+        done = subprocess.run([*freefem.LAUNCHER, python, ROOT / "benchmarks/programs" / script, *words], env=os.environ | ONE_THREAD, cwd=folder,
+                              capture_output=True, text=True, timeout=limit)
     except subprocess.TimeoutExpired:
         return None, f"no end after {limit:g} s: killed"
     said, complaint = done.stdout.strip().splitlines(), done.stderr.strip().splitlines()

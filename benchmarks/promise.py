@@ -11,6 +11,7 @@ import pandas as pd
 
 from ffimpact import scene
 from ffimpact.failure import Failure, TooLong
+from ffimpact.freefem import freefem
 from ffimpact.input.parameters import Value, whole
 from ffimpact.output import estimate, notes
 from ffimpact.output.results import read_answers
@@ -106,9 +107,9 @@ def compare(drawn: list[Drawn], out: Path) -> pd.DataFrame:
 
 def _row(out: Path, name: str, point: study.Point) -> dict:
     """Of one scene. Its runs are kept, each without an estimate, so that other rules for estimates need no run again."""
-    study.end_after(LIMIT)
     try:
-        return _compared(_scene(name, point), study.place(out / name, point))
+        with freefem.limited(LIMIT):
+            return _compared(_scene(name, point), study.place(out / name, point))
     except (Failure, TooLong) as failure:
         return {"message": str(failure)}
 
@@ -127,7 +128,7 @@ def _compared(wanted: scene.Scene, folder: Path) -> dict:
 
     def solve(given: dict[str, Value], where: Path) -> None:
         told = ",".join(f"{key}={value}" for key, value in given.items() if wanted.bodies or wanted.values[key] != value)
-        kept = run.run(wanted, given, study.place(folder, {"run": told}), estimate=False)
+        kept = run.run(wanted, given, study.place(folder, {"run": told}), estimate=False, progress=False)
         paid[0] += kept.summary["cpu_seconds"]
         shutil.copytree(kept.folder, where, dirs_exist_ok=True)
 

@@ -254,19 +254,6 @@ def test_killed_freefem(tmp_path, straight):
     assert_same(out, straight.folder)
 
 
-@pytest.mark.robustness
-def test_interrupted_run(tmp_path, straight):
-    """Ctrl-C costs no more than kill -9."""
-    out = tmp_path / "out"
-    process = start(*COMMAND, str(out))
-    wait_for(lambda: rows_known(tmp_path / "out.part/checkpoint") > 50)
-    process.send_signal(signal.SIGINT)
-    process.communicate(timeout=10)
-    assert process.returncode == 130
-    assert go(out).summary["resumed_at"] > 0
-    assert_same(out, straight.folder)
-
-
 @pytest.mark.parametrize("changed", [{"speed": 7.5}, {"force": True}, {"mesh_file": True}, {}],
                          ids=["scene", "force", "mesh", "code"])
 def test_another_run_starts_anew(out, straight, monkeypatch, changed):

@@ -189,7 +189,6 @@ def test_a_full_disk_is_one_line(tmp_path, monkeypatch, capsys):
     def full(*_, **__):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(tmp_path / "out"))
     monkeypatch.setattr(run, "run", full)
-    monkeypatch.setattr(signal, "signal", lambda *_: None)        # pytest keeps its handlers
     code, error = main(["run", "disc-normal", "--out", str(tmp_path / "out")]), capsys.readouterr().err
     assert code == 14 and error.count("\n") == 1 and "No space left on device" in error and "--out" in error
 

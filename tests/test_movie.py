@@ -2,7 +2,6 @@
 
 import os
 import re
-import signal
 
 import numpy as np
 import pytest
@@ -17,15 +16,6 @@ FFMPEG = """#!/bin/sh
 for file; do :; done
 exec cat > "$file"
 """
-
-
-@pytest.fixture(autouse=True)
-def handlers():
-    """pytest keeps its signal handlers, which main() replaces."""
-    before = {number: signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGHUP)}
-    yield
-    for number, handler in before.items():
-        signal.signal(number, handler)
 
 
 @pytest.fixture

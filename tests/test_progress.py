@@ -40,7 +40,6 @@ def shown(monkeypatch) -> list[Bar]:
     monkeypatch.setitem(sys.modules, "ipykernel", types.ModuleType("ipykernel"))
     monkeypatch.setitem(sys.modules, "tqdm.auto", types.SimpleNamespace(tqdm=Bar))
     bars.clear()
-    progress.forward(None)
     return bars
 
 
@@ -149,7 +148,7 @@ def test_a_forecast_is_renewed_by_the_pace_of_the_run(monkeypatch, pace):
 def test_scripts_report_the_share_of_their_steps(tmp_path, script, flags, apart):
     """Near half of its steps a script says so, to a fifth; with them it reports unknowns, and how far the waves of its bodies are apart."""
     seen = []
-    assert freefem.run(freefem.find(), script, flags | {"without": "kernels", "out": tmp_path / "out"}, tmp_path / "log.txt", seen.append)[0] == 0
+    assert freefem.run(freefem.find(), f"edp/{script}.edp", flags | {"without": "kernels", "out": tmp_path / "out"}, tmp_path / "log.txt", seen.append)[0] == 0
     taken = (tmp_path / "out/history.csv").read_text().count("\n") - 2
     middle = min(seen, key=lambda at: abs(at.steps / taken - 0.5))
     assert middle.share == pytest.approx(middle.steps / taken, abs=0.2) and middle.steps / taken > 0.2

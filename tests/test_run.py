@@ -182,7 +182,7 @@ def test_progress_arrives(fake, tmp_path):
     """The progress lines of the script arrive with their fraction, time and number of steps; the log keeps them too."""
     seen = []
     flags = {"fields": 0, "mesh": __file__, "out": tmp_path}
-    assert freefem.run(freefem.find(), "disc-plane", flags, tmp_path / "log.txt", seen.append) == (0, "")
+    assert freefem.run(freefem.find(), "edp/disc-plane.edp", flags, tmp_path / "log.txt", seen.append) == (0, "")
     assert seen[0] == (0.25, 0.001, 50, 0, 1.0) and len(seen) == 3
     assert "progress 0.25" in (tmp_path / "log.txt").read_text()
 
@@ -257,7 +257,7 @@ def test_the_folder_knows_every_figure():
 def test_what_decides_a_result_is_derived():
     """A run is reused only by the same code: every module that assembly.py reaches by imports decides, but those that are named as harmless, and so does a new one."""
     decisive = run.imported(run.ENTRANCE) - run.HARMLESS
-    assert run.HARMLESS < run.imported(run.ENTRANCE) and {"scenes/scene", "scenes/entries", "scenes/assembly", "input/parameters", "mesh/mesh", "mesh/solid_mesh", "input/tables", "geometry/tumbling"} <= decisive
+    assert run.HARMLESS < run.imported(run.ENTRANCE) and {"scenes/scene", "scenes/entries", "scenes/assembly", "input/parameters", "mesh/mesh", "mesh/solid_mesh", "geometry/tumbling"} <= decisive
     assert not decisive & {"running/run", "output/folder", "report/report", "sweeps/study", "running/solver"}
 
 

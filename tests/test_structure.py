@@ -9,7 +9,7 @@ from ffimpact.places import ROOT
 
 PACKAGE = ROOT / "orchestrate/ffimpact"
 # a room imports those before it, and the modules beside the rooms that stand in the same line; what is in no line imports nothing but itself
-ORDER = (("failure", "places", "progress", "stopping"), ("freefem",), ("input",), ("output",), ("geometry",), ("mesh",), ("scenes",), ("scene",), ("running",),
+ORDER = (("failure", "places", "progress"), ("freefem",), ("input",), ("output",), ("geometry",), ("mesh",), ("scenes",), ("scene",), ("running",),
          ("report",), ("sweeps",), ("model",), ("schema", "plot", "view"), ("result",), ("api",), ("__init__", "__main__"))
 MODULES = {path.relative_to(PACKAGE).with_suffix("").parts: path for path in sorted(PACKAGE.rglob("*.py"))}
 

@@ -1,6 +1,5 @@
 """The studies: runs in parallel that survive failures, limits and interruption; hard parameters on top."""
 
-import os
 import re
 import signal
 import sys
@@ -61,12 +60,13 @@ def test_time_limit_kills_and_reports(fake, tmp_path):
     assert not any(map(is_alive, fake.pids())) and not any((tmp_path / "runs").iterdir())
 
 
-def test_lost_process_is_a_row(fake, tmp_path, monkeypatch):
-    """A process that dies (as when memory runs out) costs its own row only."""
+def test_an_error_that_nobody_expects_is_a_row(fake, tmp_path, monkeypatch, capsys):
+    """An error of the program itself costs its own row only, and is printed."""
     work = study._outcome
-    monkeypatch.setattr(study, "_outcome", lambda folder, wanted, *more: os._exit(9) if wanted.values["speed"] == 4 else work(folder, wanted, *more))
+    monkeypatch.setattr(study, "_outcome", lambda folder, wanted, *more: 1 / 0 if wanted.values["speed"] == 4 else work(folder, wanted, *more))
     rows = go(tmp_path)
-    assert rows.exit.tolist() == [1, 1, 0, 0] and rows.message[0] == "its process ended with exit code 9"
+    assert rows.exit.tolist() == [1, 1, 0, 0] and rows.message[0] == "ZeroDivisionError: division by zero"
+    assert "Traceback" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("number, code", [(signal.SIGINT, 130), (signal.SIGTERM, 143)])

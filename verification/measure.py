@@ -1,17 +1,15 @@
 """Runs the FreeFEM scripts beside it, which print lines "name value", and the disc scene as users do without
 Python. For the tests and for `make verify`."""
 
-import os
 import re
-import signal
-import subprocess
+import tempfile
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 
-from ffimpact.failure import Failure
+from ffimpact.failure import Failure, TooLong
 from ffimpact.freefem import freefem
 from ffimpact.input import dimension, parameters
 from ffimpact.input.parameters import ROOT, Value
@@ -81,15 +79,16 @@ def prepared(folder: Path, tables: dict) -> dict[str, Value | Path]:
 
 def _start(script: str, given: dict[str, Value | Path], folder: Path = ROOT) -> str:
     """What FreeFem++ prints; Failure unless it ends with exit code 0 in LIMIT seconds."""
-    flags = freefem.words_of(given)
-    try:
-        process = freefem.find().call(script, *flags, cwd=folder, timeout=LIMIT, capture_output=False, stdout=subprocess.PIPE,
-                                      stderr=subprocess.STDOUT, preexec_fn=partial(freefem.die_with_parent, os.getpid(), signal.SIGKILL))
-    except subprocess.TimeoutExpired:
-        raise Failure(f"{script}: no end after {LIMIT} s: killed") from None
-    if process.returncode != 0:
-        raise Failure(f"{script}: exit code {process.returncode}: {_end(process.stdout)}   (flags {' '.join(flags)})")
-    return process.stdout
+    with tempfile.NamedTemporaryFile("r", errors="replace") as log:
+        try:
+            with freefem.limited(LIMIT):
+                code, _ = freefem.run(freefem.find(), script, given, Path(log.name), folder=folder)
+        except TooLong as error:
+            raise Failure(f"{script}: {error}") from None
+        said = log.read()
+    if code != 0:
+        raise Failure(f"{script}: exit code {code}: {_end(said)}   (flags {' '.join(freefem.words_of(given))})")
+    return said
 
 
 def _end(said: str) -> str:

@@ -8,11 +8,12 @@ import importlib
 import locale
 import os
 import re
+import signal
 import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from . import __version__, stopping
+from . import __version__
 from .failure import BadInput, Failure, NotInstalled, Unreadable, brief, unknown
 from .places import shown
 
@@ -164,6 +165,11 @@ def _figures(options: argparse.Namespace) -> None:
         print(f"ffimpact: without figures/solid.png: {reason}", file=sys.stderr)
 
 
+def leave(number: int, _) -> None:
+    """Ends the program on a signal through every `finally`, as Ctrl-C does: there FreeFem++ is ended and unfinished files go."""
+    sys.exit(128 + number)
+
+
 def start(run: Command | None = None) -> int:
     """A command as a program: ffimpact, or python -m."""
     if locale.getencoding().lower() not in ("utf-8", "utf8") and not sys.flags.utf8_mode:   # files are UTF-8 whatever the locale is
@@ -171,7 +177,9 @@ def start(run: Command | None = None) -> int:
     gc.set_threshold(100_000)                          # to look for garbage every few hundred objects takes longer than to keep it
     os.environ.setdefault("MPLBACKEND", "Agg")         # figures become files
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")   # numpy's too: to start its threads takes as long as to load it
-    stopping.obey()
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        if signal.getsignal(number) is signal.SIG_DFL:  # not under nohup
+            signal.signal(number, leave)
     for name in ("stdout", "stderr"):                  # closed by who started us
         if getattr(sys, name) is None:
             setattr(sys, name, open(os.devnull, "w"))

@@ -6,10 +6,8 @@ import hashlib
 import itertools
 import json
 import re
-import subprocess
-import sys
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,14 +15,13 @@ import numpy as np
 import pandas as pd
 
 from . import scene as files
-from .failure import BadInput, Failure, of_code, unknown
+from .failure import BadInput, Busy, Failure, unknown
 from .freefem import freefem
-from .input.toml_text import to_toml
 from .model import Scene
 from .places import RESULTS
-from .progress import Line
 from .result import Result
 from .running import run as running
+from .sweeps.study import side_by_side
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -160,8 +157,8 @@ def sweep(
 ) -> Study:
     """Every combination of the values of some entries, each a run with estimated errors; `workers` run at a time (as many as cores).
 
-    Each run is a process `ffimpact run` in a folder of its own below `out`; what is finished there is not run again. A run that
-    fails is a row with its exit code and message.
+    Each run has a folder of its own below `out`; what is finished there is not run again. A run that fails is a row with its exit
+    code and message.
     """
     _check(values, workers)
     given = dict(more)
@@ -171,28 +168,15 @@ def sweep(
     folder = Path(out) if out else place.with_name(f"{place.name}-sweep-{_digits(told)}")
     scenes = [wanted.override(given | point) for point in points]  # BadInput before anything is run
     folder.mkdir(parents=True, exist_ok=True)
-    outcomes = _side_by_side(scenes, folder, workers or freefem.CORES)
+    acts = {k: partial(_point, one, folder / f"{k:03d}") for k, one in enumerate(scenes, 1)}
+    found = dict(side_by_side(acts, workers or freefem.CORES, folder.name))
+    outcomes = [found[k] for k in acts]
     return Study(
         list(values),
         points,
         [one if isinstance(one, Result) else None for one in outcomes],
         [one if isinstance(one, Failure) else None for one in outcomes],
     )
-
-
-def _side_by_side(scenes: list[Any], folder: Path, workers: int) -> list[Result | Failure]:
-    """What each scene comes to, some at a time, with a line of progress."""
-    outcomes: list[Result | Failure] = []
-    line = Line(folder.name, {k: 1.0 for k in range(len(scenes))})
-    with line, ThreadPoolExecutor(workers) as pool:
-        tasks = [pool.submit(_point, one, folder / f"{k:03d}") for k, one in enumerate(scenes, 1)]
-        try:
-            for k, task in enumerate(tasks):
-                outcomes.append(task.result())
-                line.at(k, 1.0, f"{k + 1} of {len(tasks)} done")
-        finally:
-            pool.shutdown(cancel_futures=True)
-    return outcomes
 
 
 def _check(values: Any, workers: Any) -> None:
@@ -219,21 +203,11 @@ def _listed(name: str, value: Any) -> list[Any]:
     return list(value)
 
 
-def _point(wanted: Any, folder: Path) -> Result | Failure:
-    """One run in a process of its own: its result, or why there is none."""
-    file = folder.with_suffix(".toml")
-    file.write_text(to_toml(wanted.with_files_in(folder.parent, wanted.given)), "utf-8")
-    done = subprocess.run(
-        [sys.executable, "-m", "ffimpact", "run", str(file), "--out", str(folder), "--quiet"],
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-    if done.returncode:
-        return of_code(
-            done.returncode,
-            done.stderr.strip().removeprefix("ffimpact: ")
-            or f"ended with exit code {done.returncode}",
-        )
-    return Result(folder, reused=False)
+def _point(wanted: Any, folder: Path) -> Result | Failure | None:
+    """The result of one run, or why there is none; None where another program is writing it."""
+    try:
+        return Result(running.run(wanted, out=folder, progress=False).folder, reused=False)
+    except Busy:
+        return None
+    except Failure as failure:
+        return failure

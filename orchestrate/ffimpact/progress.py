@@ -1,26 +1,36 @@
 """Progress: one line on a terminal or in a notebook: what is being done, the share of it that is done, the time left.
 
 Work in parts has one line. What its parts say of themselves, each a line of its own where it stands alone, goes into that one: those of a
-part in this process (part, in_turn), and those of a process beside others (forward, in study.side_by_side).
+part in this thread (part, in_turn), and those of a thread beside others (forward, in study.side_by_side).
 """
 
 import contextlib
 import math
-import multiprocessing
 import sys
+import threading
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 
 FORMAT = "{desc} {percentage:3.0f}% |{bar}| {elapsed}, {remaining} left"
 Tell = Callable[[float, str], None]     # the share that is done, in [0, 1], and what is being done
 
-_outer: Tell | None = None              # the one who has the line, where it is not ours
+
+class _Thread(threading.local):
+    """The receiver of the lines that a thread makes; None: they are shown."""
+
+    tell: Tell | None = None
 
 
-def forward(tell: Tell | None) -> Tell | None:
-    """From here on lines go to `tell` (None: are shown); the one before."""
-    global _outer
-    before, _outer = _outer, tell
-    return before
+_thread = _Thread()
+
+
+@contextlib.contextmanager
+def forward(tell: Tell) -> Iterator[None]:
+    """Sends the lines that this thread makes inside the `with` to `tell`, which shows them as part of another line."""
+    before, _thread.tell = _thread.tell, tell
+    try:
+        yield
+    finally:
+        _thread.tell = before
 
 
 def in_notebook() -> bool:
@@ -33,14 +43,13 @@ class Line(contextlib.AbstractContextManager):
 
     def __init__(self, name: str, costs: Mapping[Hashable, float], watched: bool | None = None, words: str = ""):
         self.name, self.costs, self.shares = name, dict(costs), dict.fromkeys(costs, 0.0)
-        self.outer, self.bar, self.quiet = _outer, None, watched is False
+        self.outer, self.bar, self.quiet = _thread.tell, None, watched is False
         if not self.outer and (watched or watched is None and (sys.stderr.isatty() or in_notebook())):
             if in_notebook():
                 from tqdm.auto import tqdm
             else:
                 from tqdm import tqdm
             from tqdm.contrib import DummyTqdmFile
-            tqdm.monitor_interval = 0                  # no thread beside us: studies fork
             self.leaving = contextlib.ExitStack()
             if sys.stdout.isatty():                    # what is printed stands above the line
                 self.leaving.enter_context(contextlib.redirect_stdout(DummyTqdmFile(sys.stdout)))
@@ -66,8 +75,8 @@ class Line(contextlib.AbstractContextManager):
         return f"{self.name}: {words}" if words else self.name
 
     def say(self, sentence: str) -> None:
-        """A sentence of its own above the line, which stays; in a process beside others nobody would know of what."""
-        if not self.quiet and not multiprocessing.parent_process():
+        """Prints a sentence of its own above the line, which stays."""
+        if not self.quiet:
             from tqdm import tqdm
             tqdm.write(sentence, file=sys.stderr)
 
@@ -75,12 +84,9 @@ class Line(contextlib.AbstractContextManager):
     def part(self, part: Hashable, words: str) -> Iterator[None]:
         """What is done in here is that part: lines in it are words of this one."""
         self.at(part, 0.0, words)
-        before = forward(lambda share, inner: self.at(part, share, f"{words}, {inner}"))
-        try:
+        with forward(lambda share, inner: self.at(part, share, f"{words}, {inner}")):
             yield
-        finally:
-            forward(before)
-            self.at(part, 1.0, words)
+        self.at(part, 1.0, words)
 
 
 def in_turn(name: str, items: Iterable) -> Iterator:

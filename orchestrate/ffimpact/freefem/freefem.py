@@ -1,21 +1,24 @@
-"""FreeFem++: find it, check it, start processes and reap them whatever happens."""
+"""FreeFem++: finds and checks the program, starts its processes, waits for them, and ends them whatever happens."""
 
 import ctypes
-import fcntl
 import json
+import math
 import os
 import re
 import shutil
 import signal
 import subprocess
+import tempfile
+import threading
+import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple, TextIO
 
-from ..failure import BadInput, NotInstalled
+from ..failure import BadInput, NotInstalled, TooLong
 from ..places import INSTALLED, ROOT
 from . import kernels
 from .compiled import QUIET, compiled
@@ -28,7 +31,11 @@ CLOCK = ROOT / "edp/clock.c"
 OPEN_FILES = "/proc/self/fd/"
 BANNER = re.compile(r"FreeFem\+\+ v(\d+\.\d\d?)\b")
 SAYS = re.compile(r"progress (\S+) t=(\S+) steps=(\S+)(?: unknowns=(\S+) apart=(\S+))?$")
-UNREAD = 2**20                           # bytes that a process can say while nobody reads; then it waits
+POLL = 0.1                               # s between two looks at a process, its log and its limits
+# setpriv (util-linux) asks the kernel to kill what it starts as soon as the thread that started it ends, even by SIGKILL.
+# Where setpriv is missing FreeFem++ goes on to its end, and its folder stays locked until then: start() hands it the lock.
+SETPRIV = shutil.which("setpriv")
+LAUNCHER = (SETPRIV, "--pdeathsig", "KILL") if SETPRIV else ()
 WAYS = ("apt-get install freefem++ libfreefem++; conda install -c conda-forge freefem; a package of "
         "https://github.com/FreeFem/FreeFem-sources/releases; or set FREEFEM to where it is")
 HOW = f"install it: {WAYS}" if INSTALLED else f"run: make setup   (or: {WAYS})"
@@ -59,7 +66,7 @@ class FreeFem:
 
     def words(self, script: str | Path, *flags: str) -> list[str]:
         """The command that runs a script."""
-        return [self.command, "-nw", "-ne", "-v", "0", str(script), *filter(None, [self.plugin]), *flags]
+        return [*LAUNCHER, self.command, "-nw", "-ne", "-v", "0", str(script), *filter(None, [self.plugin]), *flags]
 
     @property
     def preloaded(self) -> list[int]:
@@ -155,62 +162,88 @@ def _probe(command: str, environment: dict[str, str]) -> dict | None:
         return None
 
 
+# ---- a process at work
+
+class _Limit(threading.local):
+    """When the FreeFem++ that a thread waits for has to end: after `seconds`, at the time `end`, or once another thread sets `stop`."""
+
+    seconds, end, stop = math.inf, math.inf, threading.Event()
+
+    def check(self) -> None:
+        """Raises TooLong after the end, and KeyboardInterrupt once `stop` is set."""
+        if self.stop.is_set():
+            raise KeyboardInterrupt
+        if time.monotonic() > self.end:
+            raise TooLong(f"no end after {self.seconds:g} s: killed")
+
+
+_limit = _Limit()
+
+
+@contextmanager
+def limited(seconds: float = math.inf, stop: threading.Event | None = None) -> Iterator[None]:
+    """Limits every FreeFem++ that this thread waits for inside the `with`. Without a `stop` the thread keeps the one it has."""
+    before = _limit.seconds, _limit.end, _limit.stop
+    _limit.seconds, _limit.end, _limit.stop = seconds, time.monotonic() + seconds, stop or _limit.stop
+    try:
+        yield
+    finally:
+        _limit.seconds, _limit.end, _limit.stop = before
+
+
 @dataclass(frozen=True)
 class Process:
-    """A FreeFem++ at work, and the files of its output and of what it says on stderr."""
+    """A FreeFem++ at work, the file of its stdout, and that of its stderr."""
 
     child: subprocess.Popen
-    log: TextIO
+    log: Path
     errors: TextIO
 
     def end(self, progress: Progress | None = None) -> tuple[int, str]:
-        """Its exit code, negative for a signal, and the script's line for the user, or "". Lines "progress <share> t=<time> steps=<n> ..."
-        go to `progress` as well."""
-        for line in self.child.stdout:
-            self.log.write(line)
-            if progress and (match := SAYS.match(line)):
-                progress(At(*(kind(text) for kind, text in zip(At.__annotations__.values(), match.groups()) if text)))
-        code = self.child.wait()
+        """Waits for the end, and raises what the limits of this thread raise.
+
+        Returns the exit code, negative for a signal, and the script's line for the user, or "". What the lines
+        "progress <share> t=<time> steps=<n> ..." of the log say goes to `progress`.
+        """
+        unread, code = "", None
+        with open(self.log, errors="replace") as lines:
+            while code is None:
+                _limit.check()
+                with suppress(subprocess.TimeoutExpired):
+                    code = self.child.wait(POLL)
+                *whole, unread = (unread + lines.read()).split("\n")
+                for match in filter(None, map(SAYS.match, whole if progress else ())):
+                    progress(At(*(kind(text) for kind, text in zip(At.__annotations__.values(), match.groups()) if text)))
         self.errors.seek(0)
         said = self.errors.read()
-        self.log.write(said)
+        with open(self.log, "a") as file:
+            file.write(said)
         return code, said_in(said)
 
 
 @contextmanager
-def start(freefem: FreeFem, script: str, flags: Mapping[str, object], log: Path, lock: int | None = None) -> Iterator[Process]:
-    """edp/<script>.edp at work, with its output in `log`.
+def start(freefem: FreeFem, script: str, flags: Mapping[str, object], log: Path, lock: int | None = None,
+          folder: Path = ROOT) -> Iterator[Process]:
+    """A script at work, started in `folder`, with its output in `log`.
 
-    The child has a process group of its own, is killed when this is left in any way, and by the kernel when this process dies. It
-    shares the open file `lock`, and so what is locked stays locked until it has ended.
+    FreeFem++ and the commands that it starts are a session, and so a process group, of their own: Ctrl-C on the terminal reaches
+    Python alone, which ends the group when this `with` is left in any way. FreeFem++ shares the open file `lock`: what is locked
+    stays locked until FreeFem++ has ended.
     """
-    with open(log, "w") as file, open(os.memfd_create("stderr"), "r+", errors="replace") as errors, subprocess.Popen(
-            freefem.words(f"edp/{script}.edp", *words_of(flags)), cwd=ROOT, env=freefem.environment, stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE, stderr=errors, text=True, errors="replace", process_group=0,
-            pass_fds=freefem.preloaded + ([] if lock is None else [lock]),
-            preexec_fn=partial(die_with_parent, os.getpid(), signal.SIGKILL)) as child:
+    with open(log, "w") as output, tempfile.TemporaryFile("w+", errors="replace") as errors:
+        child = subprocess.Popen(
+            freefem.words(script, *words_of(flags)), cwd=folder, env=freefem.environment, stdin=subprocess.DEVNULL,
+            stdout=output, stderr=errors, start_new_session=True, pass_fds=freefem.preloaded + ([] if lock is None else [lock]))
         try:
-            with suppress(OSError):
-                fcntl.fcntl(child.stdout, fcntl.F_SETPIPE_SZ, UNREAD)
-            yield Process(child, file, errors)
+            yield Process(child, log, errors)
         finally:
             if child.poll() is None:
                 os.killpg(child.pid, signal.SIGKILL)
-                child.communicate()   # to the end of its own children, too
+                child.wait()
 
 
 def run(freefem: FreeFem, script: str, flags: Mapping[str, object], log: Path, progress: Progress | None = None,
-        lock: int | None = None) -> tuple[int, str]:
-    """Runs edp/<script>.edp to its end; see start() and Process.end()."""
-    with start(freefem, script, flags, log, lock) as process:
+        folder: Path = ROOT) -> tuple[int, str]:
+    """Runs a script to its end; see start() and Process.end()."""
+    with start(freefem, script, flags, log, folder=folder) as process:
         return process.end(progress)
-
-
-_libc = ctypes.CDLL(None)
-
-
-def die_with_parent(parent: int, number: signal.Signals) -> None:
-    """Lets the kernel send this process the signal `number` when its parent dies; ends it if it is dead already."""
-    _libc.prctl(1, number)   # PR_SET_PDEATHSIG
-    if os.getppid() != parent:
-        os._exit(128 + number)

@@ -204,9 +204,18 @@ def _filled(gmsh, loops: Sequence[Sequence[int]], sizes: Callable) -> tuple[np.n
 
 # ---- gmsh
 
-@cache
+_alone = threading.RLock()     # gmsh has one model, and serves one thread at a time
+
+
 def start_gmsh() -> ModuleType:
-    """The module gmsh, started once in the life of this program; NotInstalled where a system library is missing.
+    """The module gmsh, started once in the life of this program; NotInstalled where a system library is missing."""
+    with _alone:
+        return _started()
+
+
+@cache
+def _started() -> ModuleType:
+    """The same, for the first thread that asks.
 
     For a moment gmsh sets signal handlers back to their defaults: a run starts it before it makes anything that a signal could leave
     behind.
@@ -254,15 +263,16 @@ def _answer() -> None:
 
 @contextmanager
 def gmsh_session() -> Iterator[ModuleType]:
-    """The module gmsh as it is at its start, silent."""
-    gmsh = start_gmsh()
-    gmsh.option.restoreDefaults()
-    gmsh.option.setNumber("General.Terminal", 0)
-    gmsh.option.setNumber("General.AbortOnError", 2)   # exceptions, as after initialize()
-    try:
-        yield gmsh
-    finally:
-        gmsh.clear()
+    """The module gmsh as it is at its start, silent, for this thread alone."""
+    with _alone:
+        gmsh = start_gmsh()
+        gmsh.option.restoreDefaults()
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.option.setNumber("General.AbortOnError", 2)   # exceptions, as after initialize()
+        try:
+            yield gmsh
+        finally:
+            gmsh.clear()
 
 
 def graded(field, kind: str, sources: Sequence[int], sizes: tuple[float, float], sampling: int = 0, flat: float = 0.0) -> int:

@@ -131,7 +131,11 @@ def _holds(lock: int, path: Path) -> bool:
 
 
 def _hold(path: Path, folder: Path) -> int:
-    """The folder `path` opened and locked; Busy where a run in `folder` holds it."""
+    """The folder `path` opened and locked; Busy where a run in `folder` holds it.
+
+    The lock is flock() on the folder itself. The scripts without Python lock their folder in the same way (edp/core/run/folder.idp),
+    FreeFem++ shares the open folder and so the lock, and no lock file is left.
+    """
     lock = os.open(path, os.O_RDONLY)
     try:
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)

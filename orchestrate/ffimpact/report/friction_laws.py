@@ -42,7 +42,7 @@ def tabulate(folder: Path, values: dict[str, parameters.Value]) -> pd.DataFrame:
             pass
     except OSError as error:
         raise Unreadable(f"{folder} cannot be written: {error.strerror}; choose another --out") from None
-    code, said = freefem.run(program, "friction-laws", values | {"out": folder}, folder / "log.txt")
+    code, said = freefem.run(program, "edp/friction-laws.edp", values | {"out": folder}, folder / "log.txt")
     if code != 0:
         raise Failure(said or f"FreeFem++ stopped with exit code {code}; see {folder / 'log.txt'}", code=code if said else 1)
     return pd.read_csv(folder / "laws.csv")

@@ -3,10 +3,10 @@ it is told which of them is at what; of one that will take long about how long, 
 
 import bisect
 import math
-import multiprocessing
 import os
 import shutil
 import signal
+import threading
 import time
 from collections.abc import Mapping
 from contextlib import AbstractContextManager, ExitStack, suppress
@@ -37,14 +37,14 @@ APART = 10.0                     # times that the slow body waits for the quick 
 
 class Solver(AbstractContextManager):
     """Runs the scene with some values in a folder, one run after the other, but the coarser one beside the main one where `pair` says that
-    it will be wanted and a core is free: a study has a run on every core already."""
+    it will be wanted and a core is free. A thread beside the main one belongs to a study, which has a run on every core already."""
 
     def __init__(self, program: freefem.FreeFem, scene: Scene, mesh_file: Path | None, foreign: bytes | None, stage: Path, lock: int,
                  line: Line, pair: bool):
         self.program, self.scene, self.mesh_file, self.foreign = program, scene, mesh_file, foreign
         self.scaled = partial(scaled, scene)
         self.stage, self.lock, self.line = stage, lock, line
-        self.pair = pair and freefem.CORES > 1 and not multiprocessing.parent_process()
+        self.pair = pair and freefem.CORES > 1 and threading.current_thread() is threading.main_thread()
         self.own_mesh = foreign is None and not scene.of_files
         self.number = 0
         self.beside: tuple[Path, dict[str, Value], freefem.Process] | None = None
@@ -87,7 +87,7 @@ class Solver(AbstractContextManager):
         if told:
             told.at("set-up")
         flags = flags | {"out": where} | ({"restart": where / "checkpoint"} if goes_on else {})
-        process = leaving.enter_context(freefem.start(self.program, scene.script, flags, where / "log.txt", self.lock))
+        process = leaving.enter_context(freefem.start(self.program, f"edp/{scene.script}.edp", flags, where / "log.txt", self.lock))
         if where == self.stage and self.pair:
             self._start_beside(used)
         return process
@@ -129,7 +129,7 @@ def _check(stage: Path, exit_code: int, said: str) -> None:
             if not np.isfinite(column).all():
                 raise Failure(f"history.csv: {name} is not finite from row {1 + np.argmin(np.isfinite(column))} on")
         return
-    log = (stage / "log.txt").read_text()
+    log = (stage / "log.txt").read_text(errors="replace")
     said = read_json(stage / "failure.json").get("message") or said
     if exit_code in FAILURES and said:
         raise of_code(exit_code, said)
@@ -143,7 +143,7 @@ def _check(stage: Path, exit_code: int, said: str) -> None:
 
 
 def _tail(stage: Path) -> str:
-    lines = [line.strip() for line in (stage / "log.txt").read_text().splitlines()]
+    lines = [line.strip() for line in (stage / "log.txt").read_text(errors="replace").splitlines()]
     said = [line for line in lines if line and not line.startswith("progress ")] or lines[-1:] or ["nothing"]
     return "end of its log: " + " | ".join(said[-4:])
 

@@ -1,22 +1,22 @@
 """Studies: many runs of one scene, one FreeFem++ a core at most; whatever a run comes to becomes a row of a table."""
 
 import hashlib
-import multiprocessing
 import os
-import signal
+import threading
 import time
-from collections import Counter, deque
-from collections.abc import Callable, Hashable, Iterable, Iterator
+import traceback
+from collections import Counter
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from functools import partial
-from multiprocessing.connection import Connection, wait
 from pathlib import Path
 from typing import Any, TypeVar
 
 import pandas as pd
 
-from .. import scene, stopping
-from ..failure import BadInput, Busy, Failure, TooLong, Unreadable
+from .. import scene
+from ..failure import BadInput, Busy, Failure, Unreadable
 from ..freefem import freefem
 from ..input.parameters import Value
 from ..mesh import mesh
@@ -26,7 +26,7 @@ from ..progress import Line, forward
 from ..running import run
 
 CORES = freefem.CORES
-STOPS = (signal.SIGTERM, signal.SIGHUP, signal.SIGINT)
+POLL = 0.2                  # s between two looks at the progress of the runs
 LONGEST = 200               # characters of a folder's name
 Key = TypeVar("Key", bound=Hashable)
 Point = dict[str, Value]    # the parameters that tell this run from the others of the study
@@ -47,8 +47,6 @@ def study(points: list[Point], folder: Path, base: Point, limit: float, name: st
     tasks = {where: given.override(base | point) for where, point in zip(places, points) if where not in found}
     if tasks:
         freefem.find()
-        if given.meshed:
-            mesh.start_gmsh()     # once for all runs, which are forks of this process
         (folder / "runs").mkdir(parents=True, exist_ok=True)   # here: a run takes away what it had to make if it is interrupted
     acts = {where: partial(_outcome, where, wanted, limit) for where, wanted in tasks.items()}
     for where, outcome in side_by_side(acts, cores, "/".join(folder.parts[-2:]), len(found)):
@@ -77,66 +75,57 @@ def place(folder: Path, point: Point) -> Path:
     return folder / "runs" / name
 
 
-def side_by_side(acts: dict[Key, Callable], cores: int, name: str, before: int = 0) -> Iterator[tuple[Key, Any]]:
-    """(key, what its act returns) as they are ready, `cores` at a time, a process each; a Failure where the process was lost. An act that
-    returns None is asked again later. Leaving this in any way ends them and their FreeFem++. A line of progress, by its `name`, says which
-    of how many, `before` of which were there already.
+def side_by_side(acts: Mapping[Key, Callable], cores: int, name: str, before: int = 0) -> Iterator[tuple[Key, Any]]:
+    """Calls the `acts`, `cores` of them at a time, each in a thread, which mostly waits for its FreeFem++.
+
+    Yields (key, what its act returns) as they end; a Failure where an act raises an error that it does not expect. An act that returns
+    None is called again later. Leaving this in any way ends the acts and their FreeFem++. A line of progress with this `name` says how
+    many of the acts are done, counting `before` that were done already.
     """
-    context = multiprocessing.get_context("fork")
-    waiting, running, done = deque(acts), {}, before
-    try:
-        with Line(name, dict.fromkeys(acts, 1.0), words=f"{done} of {before + len(acts)} done") as line:
-            while waiting or running:
-                while waiting and len(running) < cores:
-                    key = waiting.popleft()
-                    receiver, sender = context.Pipe(duplex=False)
-                    process = context.Process(target=_work, args=(sender, os.getpid(), acts[key]))
-                    signal.pthread_sigmask(signal.SIG_BLOCK, STOPS)      # a handler inside the fork would be lost
-                    process.start()
-                    signal.pthread_sigmask(signal.SIG_UNBLOCK, STOPS)
-                    sender.close()
-                    running[receiver] = key, process
-                for receiver in wait(running):
-                    key, process = running[receiver]
-                    try:
-                        ended, outcome = receiver.recv()
-                    except EOFError:
-                        process.join()
-                        ended, outcome = True, Failure(f"its process ended with exit code {process.exitcode}")
-                    if not ended:         # how far it is
-                        line.at(key, outcome, f"{done} of {before + len(acts)} done")
+    stop, done = threading.Event(), before
+    shares: dict[Key, float] = {}         # of the acts that are running
+    mesh.start_gmsh()                     # resets signal handlers, which only the main thread can restore
+
+    def told() -> str:
+        return f"{done} of {before + len(acts)} done"
+
+    with Line(name, dict.fromkeys(acts, 1.0), words=told()) as line:
+        pool = ThreadPoolExecutor(cores)
+        try:
+            running = {pool.submit(_work, key, act, stop, shares): key for key, act in acts.items()}
+            while running:
+                for future in wait(running, POLL, FIRST_COMPLETED).done:
+                    key, outcome = running.pop(future), _outcome_of(future)
+                    shares.pop(key, None)
+                    if outcome is None:   # another study is running it
+                        time.sleep(POLL)
+                        running[pool.submit(_work, key, acts[key], stop, shares)] = key
                         continue
-                    del running[receiver]
-                    if outcome is None:   # another study is at it: see later what came of it
-                        waiting.append(key)
-                        time.sleep(0.3)
-                    else:
-                        done += 1
-                        line.at(key, 1.0, f"{done} of {before + len(acts)} done")
-                        yield key, outcome
-    finally:
-        for _, process in running.values():
-            process.terminate()
-        for _, process in running.values():
-            process.join()
+                    done += 1
+                    line.at(key, 1.0, told())
+                    yield key, outcome
+                for key, share in shares.copy().items():
+                    line.at(key, share, told())
+        finally:
+            stop.set()
+            pool.shutdown(cancel_futures=True)
 
 
-def _work(sender: Connection, parent: int, act: Callable) -> None:
-    """One act in a process of its own."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)         # Ctrl-C is for the parent, who then ends us
-    stopping.on(signal.SIGTERM, stopping.leave)          # run() tidies up on the way out
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, STOPS)
-    freefem.die_with_parent(parent, signal.SIGTERM)
-    forward(lambda share, _: sender.send((False, share)))
-    sender.send((True, act()))
+def _work(key: Key, act: Callable, stop: threading.Event, shares: dict[Key, float]) -> Any:
+    """One act in its thread: its progress goes into `shares`, and its FreeFem++ ends once `stop` is set."""
+    with forward(lambda share, _: shares.update({key: share})), freefem.limited(stop=stop):
+        return act()
 
 
-def end_after(limit: float) -> None:
-    """TooLong is raised in `limit` seconds."""
-    def too_long(number):
-        raise TooLong(f"no end after {limit:g} s: killed")
-    stopping.on(signal.SIGALRM, too_long)                # run() tidies up on the way out
-    signal.setitimer(signal.ITIMER_REAL, limit)
+def _outcome_of(future: Future) -> Any:
+    """What an act has returned; a Failure where it raised an error that it does not expect, which is printed."""
+    error = future.exception()
+    if error is None:
+        return future.result()
+    if not isinstance(error, Exception):
+        raise error
+    traceback.print_exception(error)
+    return Failure(f"{type(error).__name__}: {error}")
 
 
 def there(folder: Path, wanted: scene.Scene) -> dict | None:
@@ -156,11 +145,11 @@ def there(folder: Path, wanted: scene.Scene) -> dict | None:
 def _outcome(folder: Path, wanted: scene.Scene, limit: float) -> dict | None:
     """Exit code, message, whether it was there already, and the numbers of the summary, as far as the run came in `limit` seconds; None
     where another run is at it."""
-    end_after(limit)
     if found := there(folder, wanted):
         return found
     try:
-        result = run.run(wanted, out=folder, estimate=False)
+        with freefem.limited(limit):
+            result = run.run(wanted, out=folder, estimate=False, progress=False)
         return _row(0, result.summary["message"], result.reused, result.summary)
     except Busy:
         return None
