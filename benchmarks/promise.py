@@ -14,7 +14,7 @@ from ffimpact.failure import Failure, TooLong
 from ffimpact.freefem import freefem
 from ffimpact.input.parameters import Value, whole
 from ffimpact.output import estimate, notes
-from ffimpact.output.results import read_answers
+from ffimpact.output.results import held_bodies, read_answers
 from ffimpact.running import run
 from ffimpact.scenes.finer import scaled
 from ffimpact.sweeps import study
@@ -145,7 +145,8 @@ def _compared(wanted: scene.Scene, folder: Path) -> dict:
     # the reference has itself the share `factor` of an error of first order, of flat strikes, else its square
     left = 1 - factor if answers.summary["front_rise"] else 1 - factor**2 if twice else 1.0
     apart = {name: error / left for name, error in
-             estimate.difference(best, answers.summary, answers.speed, answers.used.get("radius")).items()}
+             estimate.difference(best, answers.summary, answers.speed, answers.used.get("radius"),
+                                 held_bodies(answers.used)).items()}
     stated = found["estimated_error"]
     row = {answer: apart[answer] / asked for answer in estimate.BOUND}
     row |= {f"{answer} stated": stated[answer] / asked for answer in estimate.BOUND if answer in (stated or {})}

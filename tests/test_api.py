@@ -41,7 +41,7 @@ def test_a_built_in_scene_of_bodies_is_the_same_written_and_read_again(tmp_path,
     """As objects it has the same bodies, obstacles and parameters as read from its file."""
     scene, read = ff.Scene.load(name), files.load(name)
     assert ff.Scene.load(scene.save(tmp_path / "scene.toml")) == scene
-    again = scene.read()
+    again = scene.checked()
     assert (
         again.values == read.values
         and again.contact == read.contact
@@ -175,7 +175,9 @@ def test_numbers_have_errors_and_units(result):
     with pytest.raises(ff.BadInput, match="impulse"):
         result["impuls"]
     for contents in (result.summary, read_history(result.folder)):
-        with pytest.raises(ff.Unreadable, match="'normal_forc' is not known.*(accepted: .*)") as raised:
+        with pytest.raises(
+            ff.Unreadable, match="'normal_forc' is not known.*(accepted: .*)"
+        ) as raised:
             contents["normal_forc"]
         assert "\n" not in str(raised.value) and "delete" not in str(raised.value)
     assert "did you mean normal_force?" in str(raised.value)

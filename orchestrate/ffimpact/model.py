@@ -114,7 +114,7 @@ class Scene(models.Top):
     @model_validator(mode="after")
     def _is_accepted(self) -> Self:
         try:
-            self.read()
+            self.checked()
         except BadInput as error:
             if self.dimension or ".shape:" not in str(error):
                 raise
@@ -149,7 +149,7 @@ class Scene(models.Top):
         found["contact"] = self.contact.table()
         return {name: value for name, value in found.items() if value not in ({}, [])}
 
-    def read(self, name: str = "scene") -> reading.Scene:
+    def checked(self, name: str = "scene") -> reading.Scene:
         """What the program makes of it; BadInput where it does not accept it."""
         return reading.read(self.table(), self.folder, name)
 
@@ -192,7 +192,7 @@ class Scene(models.Top):
         """The same scene with entries set by their dotted names: scene.set(**{"body.1.velocity.2": -4, "accuracy": 0.01}),
         or scene.set({...})."""
         given = plain(dict(values or {}) | entries)
-        return type(self).of(self.read().override(given).given, self.folder)
+        return type(self).of(self.checked().override(given).given, self.folder)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Scene) and self.table() == other.table()

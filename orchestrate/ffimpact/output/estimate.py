@@ -23,14 +23,14 @@ promised, is a note (notes.py).
 import math
 import os
 import shutil
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
 from ..failure import Failure
 from ..input.parameters import OUTPUT, Value
-from .results import Answers, suffixes
+from .results import Answers, held_bodies, suffixes
 
 COARSER = math.sqrt(2)
 COARSE, FINE = "coarser", "finer"   # folders of the runs beside the main one
@@ -135,7 +135,7 @@ def _excludes(summary: Mapping, own_mesh: bool) -> list[str]:
 def _stated(fine: Answers, coarse: Answers, before: Mapping[str, float] | None = None) -> dict[str, float]:
     """The error that is stated of every answer of the finer run of a pair; `before`: what was stated of the coarser one."""
     summary = fine.summary
-    apart, way = difference(summary, coarse.summary, fine.speed, fine.used.get("radius")), course(fine, coarse)
+    apart, way = difference(summary, coarse.summary, fine.speed, fine.used.get("radius"), held_bodies(fine.used)), course(fine, coarse)
     if summary.get("front_transit"):
         lasts = summary["contact_time"] or math.inf
         found = front_errors(apart, way, summary["front_rise"] / lasts, summary["front_transit"] / lasts)
@@ -191,10 +191,11 @@ def loosened(accuracy: float, factor: float) -> float:
     return min(LARGEST, float(f"{factor**2 * accuracy:.9g}"))
 
 
-def difference(fine: Mapping, coarse: Mapping, speed: float, radius: float | None) -> dict[str, float]:
+def difference(fine: Mapping, coarse: Mapping, speed: float, radius: float | None, held: Collection[str] = ()) -> dict[str, float]:
     """How far the answers of two summaries differ, each over its scale: impulse, times and force over themselves, velocities and spin over
     `speed` [m/s] (spin times `radius` [m]; of several bodies the largest, and spin times its reach), energies and friction work over the
-    largest energy, where the summary has it, else over that at the start."""
+    largest energy, where the summary has it, else over that at the start. A body that is `held` (its suffix) vibrates: its velocities at
+    the end are of an instant and no answer."""
     def value(summary: Mapping, name: str) -> float:
         found = summary.get(name)
         return 0.0 if found is None or math.isnan(found) else float(found)
@@ -203,9 +204,10 @@ def difference(fine: Mapping, coarse: Mapping, speed: float, radius: float | Non
         return abs(value(fine, name) - value(coarse, name)) / abs(scale) if scale else 0.0
 
     energy = value(fine, "largest_energy") or value(fine, "energy_initial") or value(fine, "energy_final")
-    rebound = max(math.hypot(*(apart(f"rebound_v{axis}{of}", speed) for axis in "xyz")) for of in suffixes(fine))
-    rim = max(math.hypot(*(apart(f"rebound_spin{about}{of}", speed / (value(fine, f"reach{of}") or radius)) for about in ("", "_x", "_y")))
-              for of in suffixes(fine))
+    free = [of for of in suffixes(fine) if of not in held]
+    rebound = max((math.hypot(*(apart(f"rebound_v{axis}{of}", speed) for axis in "xyz")) for of in free), default=0.0)
+    rim = max((math.hypot(*(apart(f"rebound_spin{about}{of}", speed / (value(fine, f"reach{of}") or radius)) for about in ("", "_x", "_y")))
+               for of in free), default=0.0)
     found = {"impulse": apart("impulse", value(fine, "impulse")), "rebound": rebound, "rebound_spin": rim,
              "energy": max(apart(name, energy) for name in ("energy_final", "vibration_energy")),
              "friction_work": apart("friction_work", energy)}
@@ -231,12 +233,13 @@ def course(fine: Answers, coarse: Answers) -> dict[str, float]:
     def vector(*names: str) -> Callable[[Mapping], list[np.ndarray]]:
         return lambda one: [one[name] for name in names if name in one]
 
-    energy, work, bodies = summary["largest_energy"], summary["friction_work"] or 0.0, suffixes(fine.history)
+    energy, work = summary["largest_energy"], summary["friction_work"] or 0.0
+    bodies = [of for of in suffixes(fine.history) if of not in held_bodies(fine.used)]
     reach = {of: summary.get(f"reach{of}") or fine.used["radius"] for of in bodies}
     found = {"impulse": apart(lambda one: [np.cumsum(one["normal_force"] * one["dt"])], summary["impulse"]),
-             "rebound": max(apart(vector(*(f"v{axis}{of}" for axis in "xyz")), fine.speed) for of in bodies),
-             "rebound_spin": max(apart(vector(*(f"spin{about}{of}" for about in ("", "_x", "_y"))), fine.speed / reach[of])
-                                 for of in bodies),
+             "rebound": max((apart(vector(*(f"v{axis}{of}" for axis in "xyz")), fine.speed) for of in bodies), default=0.0),
+             "rebound_spin": max((apart(vector(*(f"spin{about}{of}" for about in ("", "_x", "_y"))), fine.speed / reach[of])
+                                  for of in bodies), default=0.0),
              "energy": apart(lambda one: [one["elastic"] + one["contact"]], energy)}
     for name in ("rebound", "energy", *(["rebound_spin"] if found["rebound_spin"] > NONE else [])):
         found[name] += THROUGH * apart(vector("friction_work"), energy)

@@ -7,7 +7,7 @@ import json
 import math
 import re
 import tomllib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -204,6 +204,13 @@ def suffixes(columns: Iterable[str]) -> list[str]:
 def body_names(used: dict) -> list[str]:
     """The names of several bodies of a scene as used, in the order of the suffixes."""
     return [body["name"] for body in used["body"]] if "body" in used else ["disc", "block"]
+
+
+def held_bodies(used: Mapping) -> set[str]:
+    """The suffixes of bodies that a support holds until the end, of a scene as used."""
+    tables = used.get("body", [])
+    holding = [any("release" not in one for one in body.get("support", [])) for body in tables]
+    return {f"_{b}" if len(tables) > 1 else "" for b, holds in enumerate(holding, 1) if holds}
 
 
 def read_summary(folder: Path) -> dict:
