@@ -204,7 +204,7 @@ class Disc:
         used = values | {name: values[name] or START[name] for name in START} | {"penalty": 1e10, "slip_velocity": 0.1, "friction_dynamic": 0.0}
         factor = (values["accuracy"] / self.values["accuracy"])**0.5      # on a mesh file the step alone
         if any(factor == pytest.approx(each) for each in self.fails):
-            raise Failure(f"no step at {factor:.2f}", self.code)
+            raise Failure(f"no step at {factor:.2f}", code=self.code)
         folder.mkdir(exist_ok=True)
         summary = ANSWERS | {"impulse": 2 * (1 + self.error * factor**2), "cpu_seconds": 1.0, "ellipticity_lost_time": self.lost}
         (folder / "result.json").write_text(json.dumps([summary, used, 10.0]))

@@ -63,7 +63,7 @@ def run(
 def _wanted(scene: Scene | str | Path, given: dict[str, Any]) -> tuple[Any, Path]:
     """The scene as it is read, and where its results go; `given` gets the states to keep."""
     if isinstance(scene, Scene):
-        wanted = scene.read(_word(scene.title or "scene"))
+        wanted = scene.checked(_word(scene.title or "scene"))
     elif isinstance(scene, str | Path):
         wanted = files.load(scene)
     else:
