@@ -1,15 +1,18 @@
 """What pages say that the scripts say of themselves, between marks: the tables of docs/results.md and docs/warnings.md, and that of
-equations in README.md and docs/method.md."""
+equations in README.md and docs/method.md; the whole of docs/parameters.md."""
 
 import argparse
 import re
 import shutil
 import sys
+from collections.abc import Collection, Mapping
 from pathlib import Path
 
 from ffimpact import schema
 from ffimpact.__main__ import start
 from ffimpact.freefem.describe import describe_results
+from ffimpact.input import models, parameters
+from ffimpact.input.parameter import Parameter, Rule
 from ffimpact.places import ROOT, shown
 
 TABLES = (("history.csv", "history", ("columns", "body_columns")), ("summary.json", "summary", ("summary", "body_summary")),
@@ -62,12 +65,64 @@ def pages() -> dict[Path, str]:
     """The text of every page by its file: what stands between the marks of a part is made anew."""
     parts = {"docs/results.md": ("columns", results()), "docs/warnings.md": ("warnings", warnings()),
              "README.md": ("equations", equations()), "docs/method.md": ("equations", equations("../"))}
-    made = {schema.FILE: schema.text()}
+    made = {schema.FILE: schema.text(), ROOT / "docs/parameters.md": entries()}
     for name, (part, text) in parts.items():
         begin, end = f"<!-- {part} -->\n", f"<!-- end of {part} -->\n"
         before, _, rest = (ROOT / name).read_text().partition(begin)
         made[ROOT / name] = before + begin + text + end + rest.partition(end)[2]
     return made
+
+
+def entries() -> str:
+    """All entries of a scene: table by table, with unit, what is accepted and meaning."""
+    text = "# Entries of a scene\nWritten by `python docs/pages.py` from `orchestrate/ffimpact/input/table.py` and `models.py`. All in SI units.\n"
+    text += "\n## Parameters of a run\nAt the top of a scene file, by `--set name=value`, as flags of the scripts, and in Python.\n"
+    text += "\n| name | unit | default | accepted | meaning |\n|---|---|---|---|---|\n"
+    for one in parameters.PARAMETERS.values():
+        default = one.default if isinstance(one.default, str) else f"{one.default:g}"
+        text += f"| `{one.name}` | {one.unit} | {default} | {cell(one.accepted)} | {cell(one.help)} |\n"
+    text += "\n## Materials\nIn Python `material = NeoHookean(...)` and so on; in a file the same entries in a body's table, or at the top for all bodies.\n\n"
+    text += "".join(f"- `{name}`, `{one.__name__}`: {first_line(one)}\n" for name, one in models.LAWS.items())
+    text += table_of("Bodies", "`[[body]]`, `Body` in Python: what bodies of all shapes have.", models.Body)
+    text += kinds("shape", models.BODIES, models.Body)
+    text += table_of("Supports", "`[[body.support]]`, `Support`.", models.Support)
+    text += table_of("Loads", "`[[body.load]]`, `Load`: one of traction, pressure and gas.", models.Load)
+    text += table_of("Gas", "`gas = {...}` of a load, `Gas`.", models.Gas)
+    text += table_of("Rigid obstacles", "`[[obstacle]]`, `Obstacle`: what obstacles of all kinds have.", models.Obstacle)
+    text += kinds("kind", models.OBSTACLES, models.Obstacle)
+    text += table_of("Contact", "`[contact]`, `Contact`: of the whole scene.", models.Contact)
+    return text + table_of("Pairs", "`[[contact.pair]]`, `Pair`: what differs between two partners.", models.Pair)
+
+
+def first_line(model: type) -> str:
+    """What a class is, by its docstring."""
+    return (model.__doc__ or "").strip().split("\n")[0]
+
+
+def table_of(heading: str, words: str, model: type[models.Entries]) -> str:
+    """The entries of a model under a heading."""
+    return f"\n## {heading}\n{words}\n\n| name | unit | accepted | meaning |\n|---|---|---|---|\n" + rows(model)
+
+
+def rows(model: type[models.Entries], but: Collection[str] = (), first: str = "") -> str:
+    """A row an entry."""
+    text = ""
+    for name, field in model.model_fields.items():
+        rule = next((one for one in field.metadata if isinstance(one, Rule)), None)
+        if rule and name not in but:
+            unit, meaning = (rule.unit, rule.help) if isinstance(rule, Parameter) else ("", rule.meaning)
+            needed = ", needed" if field.is_required() else ""
+            text += f"|{first} `{name}`{needed} | {unit} | {cell(rule.accepted)} | {cell(meaning)} |\n"
+    return text
+
+
+def kinds(word: str, table: Mapping[str, type], common: type[models.Entries]) -> str:
+    """What each shape of a body or kind of an obstacle has beside what all have."""
+    text = f"\n| {word}, entry | unit | accepted | meaning |\n|---|---|---|---|\n"
+    for name, model in table.items():
+        dimensions = ", ".join(one.name for one in model.dimensions)
+        text += f"| **`{name}`** | | {dimensions} | {cell(first_line(model))} |\n{rows(model, common.model_fields)}"
+    return text
 
 
 def results() -> str:
