@@ -97,3 +97,12 @@ def test_wrong_sections(tmp_path, capsys, entries, named):
     assert main(["run", str(file), "--out", str(tmp_path / "out")]) == 10
     said = capsys.readouterr().err
     assert named in said and said.count("\n") == 1
+
+
+def test_a_wall_too_thin_to_mesh_is_refused(tmp_path, capsys):
+    """At once, instead of a mesh of millions of elements."""
+    scene = tmp_path / "thin.toml"
+    scene.write_text('dimension = "axisymmetric"\nlaw = "neohookean"\nyoung = 7e6\nnu = 0.45\ndensity = 1000\n[[body]]\nshape = "shell"\nradius = 0.05\n'
+                     'inner_radius = 0.0499999\nposition = 0.06\nvelocity = -1\n[[obstacle]]\nkind = "plane"\npoint = [0, 0]\nnormal = [0, 1]\n')
+    assert main(["run", str(scene), "--out", str(tmp_path / "out")]) == 10
+    assert capsys.readouterr().err.startswith("ffimpact: mesh_size: ")

@@ -66,10 +66,12 @@ WRONG = {
     "no list": (held(where="left", motion="up"), "motion: 'up' is no [x, y] (accepted: 2 numbers or expressions of t, or a CSV file)"),
     "one component": (moved(0), "motion: '[0]' is no [x, y]"),
     "open cavity": (loaded(where="top", gas={"gauge_pressure": 1e3}), "body.1.load.1.where: is no closed cavity of 'bar', which a gas is in"),
+    "two gases": (BASE | {"body": [RING | {"load": [{"where": "inner", "gas": {"gauge_pressure": 1e3}}] * 2}]},
+                  "body.1.load.2.where: there is a gas in this cavity of 'ring' already"),
     "gas outside": (loaded(RING, where="outer", gas={"gauge_pressure": 1e3}), "is no closed cavity of 'ring'"),
     "half a cavity": (loaded(RING, where=HALF | {"point": [0, 0.2], "normal": [0, 1]}, gas={"gauge_pressure": 1e3}), "no closed cavity of 'ring'"),
     "less than vacuum": (loaded(RING, where="inner", gas={"gauge_pressure": -2e5}), "gas.gauge_pressure: -200000.0 is out of range (accepted: -101325"),
-    "no equilibrium": (loaded(RING, where="inner", gas={"gauge_pressure": 1e7}), "gas: the bodies find no equilibrium with their gauge pressures"),
+    "no equilibrium": (loaded(RING, where="inner", gas={"gauge_pressure": 1e7}), "body.1.load: its gas finds no equilibrium"),
     "gas a number": (loaded(RING, where="inner", gas=5e3), "gas: '5000.0' is no table (accepted: a table with gauge_pressure,"),
     "empty gas": (loaded(RING, where="inner", gas={}), "gas.gauge_pressure: is missing"),
     "exponent": (loaded(RING, where="inner", gas={"gauge_pressure": 1, "exponent": -1}), "gas.exponent: -1 is out of range (accepted: 0 to 10)"),
@@ -89,7 +91,8 @@ WRONG = {
     "key of a support": (held(where="left", moton=[0, 0]), "body.1.support.1.moton: no such entry, set to '[0, 0]'; did you mean motion?"),
     "key of a load": (loaded(where="left", presure=1), "body.1.load.1.presure: no such entry, set to '1'; did you mean pressure?"),
     "no list of tables": (BASE | {"body": [BAR | {"support": {"where": "left"}}]}, "body.1.support: '{'where': 'left'}' is no list of tables"),
-    "release": (held(where="left", release=-1), "body.1.support.1.release: -1 is out of range (accepted: 0 to 1e+09)"),
+    "release": (held(where="left", release=-1), "body.1.support.1.release: -1 is out of range (accepted: 1e-12 to 1e+09)"),
+    "released at once": (held(where="left", release=0), "body.1.support.1.release: 0 is out of range"),
     "at the top": (held(where="left") | {"support": [{"where": "left"}]}, "support: no such entry, set to '[{'where': 'left'}]'; did you mean body.1.support?"),
 }
 

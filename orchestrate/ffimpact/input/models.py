@@ -288,7 +288,7 @@ class Support(Entries):
         Parameter("", "word", None, "", "what is held", words=("all", "x", "y", "z", "normal")),
     ] = None
     motion: Annotated[Any, Function("displacement [m], a function of t for each axis")] = None
-    release: Annotated[float | None, number(0.0, LONGEST, "s", "time from which it is free")] = None
+    release: Annotated[float | None, number(1e-12, LONGEST, "s", "time from which it is free")] = None
 
 
 class Gas(Entries):

@@ -69,6 +69,9 @@ class Mesh:
         return replace(self, points=self.points * factor, hubs=hubs)
 
 
+MOST_ON_CURVE = 50_000      # samples of a curve: more than any run could follow
+
+
 @dataclass(frozen=True)
 class Sizes:
     """Element sizes of a body [m]: in the bulk, and within `near` (its points, as it is in its mesh) on the outline, to `slack`."""
@@ -160,6 +163,9 @@ def nodes_on(curve: Curve, largest: float, sizes: Sizes) -> np.ndarray:
         step = np.linalg.norm(np.diff(curve(s), axis=0), axis=1)
         coarse = step > SAMPLED * np.minimum(size[1:], size[:-1])
         s = np.sort(np.concatenate([s, (s[1:] + s[:-1])[coarse] / 2]))
+        if len(s) > MOST_ON_CURVE:
+            raise BadInput(f"mesh_size: {min(sizes.contact, sizes.bulk):.3g} m is too small for an outline of "
+                           f"{step.sum():.3g} m (accepted: larger ones, or a body that is less thin)")
     passed = np.concatenate([[0.0], np.cumsum(step * (1 / size[1:] + 1 / size[:-1]) / 2)])
     count = max(1, round(passed[-1]))
     return curve(np.interp(passed[-1] * np.arange(count) / count, passed, s))

@@ -37,10 +37,14 @@ def sections(bodies: Sequence[Body], meshes: Sequence[Mesh | SolidMesh], obstacl
             numbers = _numbered(functions, [one if held else None for one, held in zip(support.motion, fixed)])
             supports.append((k, *map(int, fixed), *[0] * (3 - of.axes), support.release, *numbers, len(found), *(first + found)))
         _refuse_all_held(body, surface)
+        filled: set[int] = set()                     # elements of cavities with a gas
         for load in body.loads:
             found = surface.elements(load.part)
             if load.kind == "gas":
                 surface.refuse_open(load.part, found)
+                if filled & set(found.tolist()):
+                    raise BadInput(f"{load.part.entry}: there is a gas in this cavity of '{body.name}' already (accepted: one gas a cavity)")
+                filled |= set(found.tolist())
             numbers = _numbered(functions, list(load.functions))
             loads.append((k, KINDS[load.kind], *numbers, *load.gas[:2], load.gas[2], len(found), *(first + found)))
         first += len(made.sides)
