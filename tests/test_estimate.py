@@ -381,3 +381,16 @@ def test_errors_of_several_impacts_fall_no_faster_than_second_order():
     assert estimate.strikes_again(small, way, None)["rebound"] == 1e-3
     again = estimate.strikes_again(small, way, {name: 1e-2 for name in estimate.BOUND})
     assert again["rebound"] == pytest.approx(5e-3) and again["peak_force"] == 1e-6
+
+
+@pytest.mark.parametrize("used, intervals, least", [
+    ({"body": [{"rigid": True}, {}]}, 1, 0.25), ({"body": [{}, {"support": [{"where": "left"}]}]}, 2, 0.625),
+    ({"body": [{"load": [{"where": "inner"}]}]}, 1, 0.25), ({"body": [{}], "obstacle": [{"motion": [0, 1]}]}, 1, 0.25),
+    ({"body": [{}], "obstacle": [{"kind": "plane"}]}, 2, 0.0), ({}, 1, 0.0)])
+def test_what_is_held_or_rigid_is_stated_with_a_share_of_the_accuracy(used, intervals, least):
+    """No less than that, whatever the pair says; a larger estimate stays, and an answer that is exactly 0 too."""
+    run = Answers({"contact_intervals": intervals}, used | {"accuracy": 0.02}, 1.0, {})
+    small = dict.fromkeys(estimate.BOUND, 1e-6)
+    assert estimate.held_errors(small, run, run)["impulse"] == pytest.approx(max(1e-6, least * 0.02))
+    large = dict.fromkeys(estimate.BOUND, 1.0) | {"friction_work": 0.0}
+    assert estimate.held_errors(large, run, run) == large

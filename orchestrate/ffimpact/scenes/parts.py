@@ -43,7 +43,8 @@ def sections(bodies: Sequence[Body], meshes: Sequence[Mesh | SolidMesh], obstacl
             if load.kind == "gas":
                 surface.refuse_open(load.part, found)
                 if filled & set(found.tolist()):
-                    raise BadInput(f"{load.part.entry}: there is a gas in this cavity of '{body.name}' already (accepted: one gas a cavity)")
+                    raise BadInput(f"{load.part.entry}: there is a gas in this cavity of '{body.name}' already "
+                                   f"(accepted: one gas a cavity)")
                 filled |= set(found.tolist())
             numbers = _numbered(functions, list(load.functions))
             loads.append((k, KINDS[load.kind], *numbers, *load.gas[:2], load.gas[2], len(found), *(first + found)))
