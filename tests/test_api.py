@@ -77,6 +77,12 @@ def test_entries_are_set_by_dotted_names():
     assert changed != drop()
 
 
+def test_a_body_may_be_given_as_the_table_of_a_file():
+    table = drop().table()
+    made = ff.Scene(bodies=table["body"], obstacles=table["obstacle"], contact=drop().contact)
+    assert made == drop() and isinstance(made.bodies[0], ff.Disc)
+
+
 def test_all_that_is_wrong_with_a_scene_is_told_at_once():
     """A line each, whatever table it is in."""
     given = drop().table()
@@ -121,6 +127,11 @@ def test_all_that_is_wrong_with_a_scene_is_told_at_once():
             ),
             ("body.1.shape", "disc", "dimension", "3d"),
         ),
+        (lambda: ff.Scene(bodies=[3]), ("bodies.1", "3")),
+        (lambda: ff.Scene(), ("bodies", "missing")),
+        (lambda: ff.Scene(bodies=[{"shap": "disc"}]), ("body.1.shape", "missing", "disc")),
+        (lambda: ff.Disc(radius=1, position=(0, 1), material="soft"), ("material", "soft")),
+        (lambda: ff.Disc(radius=1, position=(0, 1), support=3), ("support", "3")),
         (lambda: ff.run(drop(), entries=["a"]), ("entries", "a")),
         (lambda: ff.sweep(drop(), {"accuracy": [0.1]}, workers=0), ("workers", "0")),
         (lambda: ff.run(3), ("scene", "3")),

@@ -21,8 +21,6 @@ from .failure import BadInput
 from .input import models
 from .input.dimension import AXISYMMETRIC, DIMENSIONS, PLANE_STRAIN, SOLID, Dimension
 from .input.models import (
-    BODIES,
-    OBSTACLES,
     Ball,
     Body,
     Bowl,
@@ -99,13 +97,28 @@ __all__ = [
 ]
 
 
+def _of_tables(key: str) -> BeforeValidator:
+    """Bodies or obstacles, each as an object or as the table of a file."""
+
+    def objects(given: Any) -> Any:
+        listed = models.several(given)
+        if not isinstance(listed, list):
+            return given
+        made = [
+            models.of_table(f"{key}.{k}", one, key) if isinstance(one, dict) else one
+            for k, one in enumerate(listed, 1)
+        ]
+        return made
+
+    return BeforeValidator(objects)
+
+
 class Scene(models.Top):
     """Bodies, obstacles, contact, and how the run is to be made. Entries are those of a TOML file, under the same names."""
 
-    bodies: Annotated[list[Body], BeforeValidator(models.several)] = Field(
-        description="at least one"
-    )
-    obstacles: Annotated[list[Obstacle], BeforeValidator(models.several)] = []
+    nested = {"contact": Contact}
+    bodies: Annotated[list[Body], _of_tables("body")]
+    obstacles: Annotated[list[Obstacle], _of_tables("obstacle")] = []
     contact: Contact = Contact()
     folder: Path = Field(
         Path("."), exclude=True, repr=False, description="from which files of the scene are sought"
@@ -183,10 +196,8 @@ class Scene(models.Top):
             for name, value in given.items()
             if name not in ("body", "obstacle", "contact")
         }
-        bodies = [_model(BODIES, "shape", one) for one in given["body"]]
-        obstacles = [_model(OBSTACLES, "kind", one) for one in given.get("obstacle", [])]
-        contact = Contact(**given.get("contact", {}))
-        return cls(folder=folder, bodies=bodies, obstacles=obstacles, contact=contact, **top)
+        tables = {"bodies": given["body"], "obstacles": given.get("obstacle", [])}
+        return cls(folder=folder, contact=Contact(**given.get("contact", {})), **tables, **top)
 
     def set(self, values: Mapping[str, Any] | None = None, /, **entries: Any) -> Scene:
         """The same scene with entries set by their dotted names: scene.set(**{"body.1.velocity.2": -4, "accuracy": 0.01}),
@@ -196,7 +207,3 @@ class Scene(models.Top):
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Scene) and self.table() == other.table()
-
-
-def _model(known: dict[str, Any], word: str, given: dict[str, Any]) -> Any:
-    return known[given[word]](**{name: value for name, value in given.items() if name != word})

@@ -81,7 +81,11 @@ class Entries(BaseModel, metaclass=_Made):
     _given: dict[str, Any] = PrivateAttr(default_factory=dict)
 
     def __repr_args__(self) -> list[tuple[str | None, Any]]:
-        return [(name, value) for name, value in self if value is not None]
+        return [
+            (name, value)
+            for name, value in self
+            if value is not None and type(self).model_fields[name].repr
+        ]
 
     def __contains__(self, name: str) -> bool:
         return getattr(self, name, None) is not None
@@ -119,7 +123,7 @@ class Entries(BaseModel, metaclass=_Made):
         return _no_such(name, value, [*cls.heading, *cls.names(of)])
 
     @classmethod
-    def read(cls, entry: str, given: Any, of: Dimension) -> Self:
+    def read(cls, entry: str, given: Any, of: Dimension | None) -> Self:
         """The model of the table `entry` of a scene; BadInput with a line for each thing that is wrong in it."""
         if not isinstance(given, dict):
             raise BadInput(
@@ -288,7 +292,9 @@ class Support(Entries):
         Parameter("", "word", None, "", "what is held", words=("all", "x", "y", "z", "normal")),
     ] = None
     motion: Annotated[Any, Function("displacement [m], a function of t for each axis")] = None
-    release: Annotated[float | None, number(1e-12, LONGEST, "s", "time from which it is free")] = None
+    release: Annotated[float | None, number(1e-12, LONGEST, "s", "time from which it is free")] = (
+        None
+    )
 
 
 class Gas(Entries):
@@ -384,8 +390,15 @@ class Body(Entries):
 
     @model_validator(mode="before")
     @classmethod
-    def _of_material(cls, entries: dict[str, Any]) -> dict[str, Any]:
+    def _of_material(cls, entries: Any) -> Any:
         """With the entries of the material that it is said to be of."""
+        if not isinstance(entries, dict):
+            return entries
+        if not isinstance(entries.get("material"), Material | None):
+            given = brief(entries["material"])
+            raise BadInput(
+                f"material: '{given}' is no material (accepted: NeoHookean(young=..., nu=..., density=...), say)"
+            )
         own = {name: value for name, value in entries.items() if name != "material"}
         return (entries["material"].table() if "material" in entries else {}) | own
 
@@ -805,27 +818,21 @@ def read(given: dict[str, Any], of: Dimension) -> Tables:
 
 def tables(given: dict[str, Any], key: str, of: Dimension) -> list[Any]:
     """The bodies or obstacles of a scene's tables [[key]]."""
-    acts = [
-        partial(_by_word, f"{key}.{k}", one, *KINDS[key], of)
-        for k, one in enumerate(listed(given, key), 1)
-    ]
-    return gathered(acts)
+    listed_ones = enumerate(listed(given, key), 1)
+    return gathered([partial(of_table, f"{key}.{k}", one, key, of) for k, one in listed_ones])
 
 
-def _by_word(
-    entry: str, given: dict[str, Any], word: str, models: dict[str, type[Any]], of: Dimension
-) -> Entries:
-    """The body or obstacle of a table, by its shape or kind."""
-    accepted = [name for name, one in models.items() if of in one.dimensions]
+def of_table(entry: str, given: dict[str, Any], key: str, of: Dimension | None = None) -> Any:
+    """The body or obstacle of a table, by its shape or kind; where the dimension is not known, of any."""
+    word, models = KINDS[key]
+    accepted = [name for name, one in models.items() if of is None or of in one.dimensions]
     name = given.get(word)
     if name is None:
         raise BadInput(f"{entry}.{word}: is missing (accepted: {'|'.join(accepted)})")
     if not isinstance(name, str) or name not in accepted:
         raise BadInput(f"{entry}.{word}: {unknown(name, accepted)}")
-    found: Entries = models[name].read(
-        entry, {key: value for key, value in given.items() if key != word}, of
-    )
-    return found
+    own = {key: value for key, value in given.items() if key != word}
+    return models[name].read(entry, own, of)
 
 
 def listed(given: dict[str, Any], key: str) -> list[dict[str, Any]]:
