@@ -41,7 +41,6 @@ from .table import PARAMETERS
 MOST_PRESSURE = 1e15  # Pa
 MOST_TURN = 36000.0  # degrees
 SIDES = ("left", "right", "bottom", "top", "back", "front", "all", "outer", "inner", "axis")
-Turn = number(-MOST_TURN, MOST_TURN, "deg")
 
 
 def shared(name: str, meaning: str = "") -> Parameter:
@@ -73,7 +72,7 @@ class _Made(type(BaseModel)):  # type: ignore[misc]
 class Entries(BaseModel, metaclass=_Made):
     """What all tables of a scene have in common."""
 
-    model_config = ConfigDict(extra="forbid", validate_default=False, arbitrary_types_allowed=True)
+    model_config = ConfigDict(extra="forbid")
     nested: ClassVar[dict[str, type[Entries]]] = {}  # the models of tables in it
     only: ClassVar[dict[str, tuple[Dimension, ...]]] = {}  # entries that not all dimensions have
     heading: ClassVar[tuple[str, ...]] = ()  # the entry that says which model it is
