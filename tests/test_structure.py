@@ -57,3 +57,22 @@ def test_lines_fit_a_screen():
     """No line of the Python side, the scripts and the kernels has more than 140 characters."""
     files = [*MODULES.values(), *(path for path in (ROOT / "edp").rglob("*") if path.suffix in (".edp", ".idp", ".hpp", ".cpp"))]
     assert not [f"{path.relative_to(ROOT)}:{k}" for path in files for k, line in enumerate(path.read_text().splitlines(), 1) if len(line) > LINE]
+
+
+@pytest.mark.parametrize("module", [one for one in MODULES if one[-1] != "__init__"], ids="/".join)
+def test_a_module_says_what_it_gives(module):
+    """Its public names stand in __all__, and are there; what others take of it is among them."""
+    tree = ast.parse(MODULES[module].read_text())
+    given = next(ast.literal_eval(node.value) for node in tree.body if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") == "__all__")
+    made = {getattr(node, "name", "") for node in tree.body}
+    assert not {name for name in made if name and not name.startswith("_")} - set(given)
+
+
+@pytest.mark.parametrize("module", MODULES, ids="/".join)
+def test_no_private_name_of_another_module_is_taken(module):
+    """Names with an underscore in front are of their own module alone."""
+    tree = ast.parse(MODULES[module].read_text())
+    taken = [name.name for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) for name in node.names]
+    modules = {(name.asname or name.name) for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) and node.level for name in node.names}
+    taken += [node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id in modules]
+    assert not [name for name in taken if name.startswith("_") and not name.startswith("__")]

@@ -17,6 +17,8 @@ from . import __version__
 from .failure import BadInput, Failure, NotInstalled, Unreadable, brief, unknown
 from .places import shown
 
+__all__ = ["execute", "guarded", "leave", "main", "start"]
+
 Command = Callable[[list[str]], int | None]
 # the commands with a module of their own, which has a main(argv)
 OWN_MAIN = {"sweep": "ffimpact.sweeps.sweep", "friction-laws": "ffimpact.report.friction_laws",

@@ -5,6 +5,11 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Self, TypeVar
 
+__all__ = [
+    "BadInput", "Busy", "Failure", "MaterialFailed", "NotInstalled", "StepFailed", "TooLong",
+    "Unreadable", "brief", "gathered", "of_code", "shortened", "suggestion", "unknown",
+]
+
 T = TypeVar("T")
 
 MORE = " ..."  # behind a text that is cut

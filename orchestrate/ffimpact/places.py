@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+__all__ = ["INSTALLED", "PACKAGE", "RESULTS", "ROOT", "shown"]
+
 PACKAGE = Path(__file__).resolve().parent                             # the Python side: scenes, sweeps
 # the folder that edp/ lies in: the package where it is installed, else the source folder
 ROOT = PACKAGE if (PACKAGE / "edp").is_dir() else PACKAGE.parents[1]

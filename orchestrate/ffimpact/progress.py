@@ -10,6 +10,8 @@ import sys
 import threading
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 
+__all__ = ["Line", "forward", "in_notebook", "in_turn"]
+
 FORMAT = "{desc} {percentage:3.0f}% |{bar}| {elapsed}, {remaining} left"
 Tell = Callable[[float, str], None]     # the share that is done, in [0, 1], and what is being done
 

@@ -8,6 +8,8 @@ from .failure import BadInput, suggestion
 from .input import parameters
 from .scenes.scene import Scene, read
 
+__all__ = ["SCENES", "absent", "built_in", "load", "read_toml"]
+
 SCENES = Path(__file__).resolve().parent / "scenes"
 
 

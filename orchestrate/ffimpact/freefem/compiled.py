@@ -11,6 +11,8 @@ from platformdirs import user_cache_path
 
 from .. import __version__
 
+__all__ = ["QUIET", "compiled"]
+
 QUIET = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.DEVNULL)
 
 

@@ -8,6 +8,8 @@ from functools import cache
 from ..failure import BadInput, NotInstalled
 from . import freefem
 
+__all__ = ["describe", "describe_results"]
+
 LIMIT = 60                               # s; an answer takes some tenths
 
 

@@ -23,6 +23,11 @@ from ..places import INSTALLED, ROOT
 from . import kernels
 from .compiled import QUIET, compiled
 
+__all__ = [
+    "At", "CORES", "DESCRIBE", "FreeFem", "HOW", "LAUNCHER", "Process", "find", "limited", "run",
+    "said_in", "start", "words_of",
+]
+
 CORES = len(os.sched_getaffinity(0))
 OLDEST = (4, 9)                          # the version in the banner; Debian's 4.11 calls itself 4.9
 DEBIAN_PLUGINS = "/usr/lib/freefem++"    # where Debian puts the plugins, and its FreeFem++ does not look

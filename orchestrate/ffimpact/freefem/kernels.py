@@ -10,6 +10,8 @@ from pathlib import Path
 from ..places import ROOT
 from .compiled import QUIET, compiled
 
+__all__ = ["SOURCES", "build"]
+
 SOURCES = ROOT / "edp/kernels"
 LIBRARIES = ("-lcholmod", "-lumfpack")
 THREADS = ("-fopenmp",), ()              # where the compiler has no OpenMP: one thread

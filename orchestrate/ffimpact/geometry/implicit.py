@@ -10,6 +10,11 @@ import numpy as np
 
 from ..failure import BadInput, brief
 
+__all__ = [
+    "Stop", "bending", "closest", "gap", "is_mirrored", "nearest", "program", "radius_at", "run",
+    "settled",
+]
+
 ACCEPTED = "numbers, pi, {names}, + - * / ^, sin cos sqrt exp abs min max and parentheses"
 LONGEST = 1000               # characters of an expression
 TWO = {ast.Add: 4, ast.Sub: 5, ast.Mult: 6, ast.Div: 7, ast.Pow: 8, "min": 9, "max": 10}

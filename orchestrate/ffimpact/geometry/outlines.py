@@ -9,6 +9,11 @@ import numpy as np
 
 from ..input.rules import SHORTEST
 
+__all__ = [
+    "Loop", "Outline", "Shape", "TubeOutline", "circle_loop", "cross", "ellipse_loop", "folding",
+    "normal_of", "polygon_centre", "polygon_loop", "rotation", "self_crossing", "signed_area",
+]
+
 SAMPLES = 400                # points on a loop where its shape is wanted as a polygon
 CHUNK = 500                  # points at a time, against as many segments as there are
 FINEST = 4000                # points on an outline at most where it is asked what touches

@@ -14,6 +14,8 @@ import numpy as np
 from ..failure import BadInput
 from .outlines import cross
 
+__all__ = ["Sides", "check", "gap", "numbers", "radius_at", "sides_of"]
+
 CORNER = math.radians(30)    # what turns by less at a vertex is no corner (edp/core/contact/shapes.idp)
 NEAR = 1e-12                 # of the chain's size: what round-off cannot tell apart
 

@@ -5,6 +5,8 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
+__all__ = ["fastest", "rotation", "turned"]
+
 STEP = 0.05                  # rad: a step of Runge and Kutta's fourth order; its error is some 1e-9
 PRINCIPAL = 1e-9             # of spin and angular momentum, how far they may be from parallel for an axis to be principal
 

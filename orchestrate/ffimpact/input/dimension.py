@@ -4,6 +4,11 @@ from dataclasses import dataclass
 
 from .parameters import Parameter
 
+__all__ = [
+    "AXISYMMETRIC", "DIMENSIONS", "Dimension", "PLANE_STRAIN", "SCRIPTS", "SOLID", "of",
+    "per_metre",
+]
+
 
 @dataclass(frozen=True)
 class Dimension:

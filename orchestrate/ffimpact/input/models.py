@@ -38,6 +38,15 @@ from .rules import (
 )
 from .table import PARAMETERS
 
+__all__ = [
+    "BODIES", "Ball", "Body", "Bowl", "Box", "CONTACT", "Circle", "Contact", "Cylinder", "Disc",
+    "Ellipse", "Ellipsoid", "Entries", "Gas", "Implicit", "Incompressible", "LAWS", "Load",
+    "MATERIAL", "MOST_PRESSURE", "Material", "Mesh", "MooneyRivlin", "NeoHookean", "OBSTACLES",
+    "OWN", "Obstacle", "Ogden", "Pair", "Plane", "Polygon", "Polyline", "Rectangle", "Ring",
+    "SaintVenantKirchhoff", "Shell", "Sphere", "Support", "Surface", "Tables", "Top", "Torus",
+    "Tube", "listed", "of_table", "read", "several", "shared", "tables",
+]
+
 MOST_PRESSURE = 1e15  # Pa
 MOST_TURN = 36000.0  # degrees
 SIDES = ("left", "right", "bottom", "top", "back", "front", "all", "outer", "inner", "axis")

@@ -9,6 +9,11 @@ from .parameter import Value as Value
 from .parameter import with_unit as with_unit
 from .table import PARAMETERS as PARAMETERS
 
+__all__ = [
+    "FOLLOWS", "NOT_DECISIVE", "OUTPUT", "PARAMETERS", "Parameter", "ROOT", "Value", "check",
+    "defaults", "names", "overrides", "taken", "whole", "with_unit",
+]
+
 # What a scene fixes for others of its entries: where one of those is set and it is not, it is open again, as by default (auto, 0).
 # friction_static alone sets both coefficients, loss the viscosity; a penalty is of a material, a size and an exponent; a step and meshes
 # are of a size. slip_velocity and end_time stay, with their warnings.

@@ -7,6 +7,8 @@ import tomli_w
 
 from ..failure import BadInput, brief
 
+__all__ = ["to_toml"]
+
 
 def to_toml(table: dict) -> str:
     """The tables, lists of tables and values of `table` as the text of a TOML file, numbers with all their digits. Reading the text gives

@@ -12,6 +12,8 @@ import numpy as np
 from .mesh import pieces
 from .solid_mesh import Curved
 
+__all__ = ["surfaces"]
+
 WIDEST = math.radians(30)    # what two faces that meet, an edge, a normal may differ by; what a surface bends by at least
 ON = 1e-9                    # of the radius
 PLACES = 5                   # around the axis of a cylinder at least

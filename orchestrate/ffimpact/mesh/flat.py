@@ -21,6 +21,8 @@ from ..input.models import Body, Mesh, Polygon, Ring
 from ..input.rules import LONGEST, SHORTEST
 from . import gmsh_file, mesh
 
+__all__ = ["check_simple", "mesh_file", "mesh_outline", "motion", "shape"]
+
 LOOPS = {"disc": lambda radius: (circle_loop(radius),), "ring": lambda radius, inner: (circle_loop(radius), circle_loop(inner)),
          "ellipse": lambda semi_axes: (ellipse_loop(*semi_axes),),
          "rectangle": lambda *sides: (Loop(np.array(sides) / 2 * [[-1, -1], [1, -1], [1, 1], [-1, 1]]),)}

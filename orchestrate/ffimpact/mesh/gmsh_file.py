@@ -10,6 +10,8 @@ import numpy as np
 from ..failure import BadInput
 from . import mesh
 
+__all__ = ["load", "read", "taken"]
+
 TRIANGLES = {2: 3, 9: 6}        # gmsh's types of element that are read: their nodes, of which the first three are the corners
 LINES = {1: 2, 8: 3}            # likewise, the first two are the ends
 OTHER = mesh.Mesh.NEVER         # the label of what is neither contact nor axis

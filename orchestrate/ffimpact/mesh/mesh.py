@@ -29,6 +29,12 @@ from scipy.spatial import cKDTree
 from ..failure import BadInput, NotInstalled
 from ..places import INSTALLED, PACKAGE
 
+__all__ = [
+    "AXIS", "Curve", "DIGITS", "FREE", "GROWTH", "Mesh", "Sizes", "boundary", "counter_clockwise",
+    "disc", "elements_of", "gmsh_session", "graded", "in_own_process", "inner_outlines",
+    "mesh_body", "nearest", "nodes_on", "pieces", "read", "start_gmsh", "without_inner", "write",
+]
+
 FREE, AXIS = 1, 2          # boundary labels
 # of a triangle; of a tetrahedron, seen from outside
 SIDES = {3: np.array([[0, 1], [1, 2], [2, 0]]), 4: np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])}

@@ -23,6 +23,10 @@ from ..geometry.outlines import (
 from ..input.models import Body, Mesh, Polygon, Shell, Torus, Tube
 from . import flat, mesh
 
+__all__ = [
+    "boundary", "closed_over_axis", "image", "mirrored", "motion", "right_half", "shape", "whole",
+]
+
 LOOPS = {"ball": circle_loop, "ellipsoid": lambda semi_axes: ellipse_loop(*semi_axes),
          "cylinder": lambda r, height: Loop(np.array([r, height / 2]) * [[0, -1], [1, -1], [1, 1], [0, 1], [-1, 1], [-1, -1]])}
 

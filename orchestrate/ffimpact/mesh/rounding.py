@@ -15,6 +15,8 @@ import numpy as np
 from . import mesh
 from .mesh import GROWTH, Sizes
 
+__all__ = ["Rounding", "TURN", "fields", "roundings"]
+
 TURN = 20                          # elements on a full turn of a curved surface that they resolve
 GRID = 7                           # points along each parameter at which a surface is evaluated
 FINER = 1.1                        # ratio of one size that is tried to the next smaller one

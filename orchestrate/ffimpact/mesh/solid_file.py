@@ -15,6 +15,8 @@ from . import mesh
 from .mesh import FREE, Sizes, boundary, in_own_process, pieces
 from .solid_mesh import SolidMesh, cell_volumes, cells_of, generate
 
+__all__ = ["GEOMETRIES", "Geometry", "MESHES", "is_geometry", "meshed", "read", "takes_in_others"]
+
 MESHES, GEOMETRIES = (".msh", ".mesh"), (".geo", ".step", ".stp")
 OTHERS = re.compile(r"\b(Merge|Include|ShapeFromFile)\b")       # in a .geo: takes in another file
 CONTACT = "contact"

@@ -14,6 +14,11 @@ import numpy as np
 from . import mesh, rounding
 from .mesh import AXIS, FREE, GROWTH, Sizes
 
+__all__ = [
+    "Curved", "DEPTH", "MOST_CELLS", "MOST_UNKNOWNS", "SolidMesh", "cell_volumes", "cells_of",
+    "expected_cells", "generate", "mesh_shape", "right_handed", "unknowns", "write",
+]
+
 DEPTH = 3
 PLANES = {0: AXIS, 2: DEPTH}       # of symmetry: the axis across it, and its label
 LARGEST = 0.52                     # element of a ball over its radius: twelve on a full turn

@@ -17,6 +17,11 @@ from ..input.models import Body, Mesh
 from . import curved, solid_file
 from .solid_mesh import MOST_CELLS, Sizes, SolidMesh, expected_cells, mesh_shape
 
+__all__ = [
+    "Shape", "Solid", "ball", "box", "cylinder", "distance_to_triangles", "mesh_of", "motion",
+    "shape", "surface",
+]
+
 MADE = {"ball": lambda radius: ball(radius), "box": lambda *extent: box(np.array(extent)),
         "cylinder": lambda radius, height: cylinder(radius, height)}
 SAMPLES = 1500               # points on a surface where its shape is wanted as points

@@ -32,6 +32,13 @@ from ..failure import Failure
 from ..input.parameters import OUTPUT, Value
 from .results import Answers, held_bodies, suffixes
 
+__all__ = [
+    "ALIKE", "BOUND", "COARSE", "COARSER", "COURSE", "FRONT", "HIGHEST", "INSTANT", "LARGEST",
+    "LEVER", "MOST", "OF_ITSELF", "PROMISED", "STILL", "USUAL", "alike", "course", "difference",
+    "driven", "errors", "excess", "front_errors", "held_errors", "highest", "largest", "loosened",
+    "other", "output", "resolved", "settle", "strikes_again", "touches", "wanted",
+]
+
 COARSER = math.sqrt(2)
 COARSE, FINE = "coarser", "finer"   # folders of the runs beside the main one
 MOST = 2                    # refinements: elements and steps are then half as large as at first

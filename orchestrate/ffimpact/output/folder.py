@@ -19,6 +19,11 @@ from ..failure import Busy, Unreadable
 from ..places import shown
 from .results import read_summary, why
 
+__all__ = [
+    "FIGURES", "checkpoints", "clear", "failed_beside", "finished_in", "replace", "result_folder",
+    "staging", "unfinished",
+]
+
 # what the program writes into a folder: what a run leaves, what it needs on its way, and its pictures
 RECORDS = ("scene.toml", "history.csv", "contacts.csv", "modes.csv", "summary.json")
 FIELDS = [f"fields/{name}" for name in ("[0-9][0-9][0-9][0-9].vtu", "contact.csv", "contact.pvd", "contact-[0-9][0-9][0-9][0-9].vtp")]

@@ -10,6 +10,8 @@ from collections.abc import Iterable
 
 from ..failure import shortened
 
+__all__ = ["BEHIND", "WIDEST", "line", "name", "number", "settled"]
+
 WIDEST = 100                # columns of a printed line
 # Warnings about the accuracy of an answer. An answer has none where the law has no answer, or a body
 # passes through itself.

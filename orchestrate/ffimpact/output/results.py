@@ -22,6 +22,12 @@ from ..input.parameters import Value
 if TYPE_CHECKING:
     from pandas import DataFrame  # takes longer to load than a run: only where a table is wanted
 
+__all__ = [
+    "Answers", "Contents", "RunResult", "body_names", "check_files", "content", "files_of",
+    "held_bodies", "mechanical_energy", "read_answers", "read_frame", "read_history", "read_json",
+    "read_scene", "read_summary", "read_table", "reading", "suffixes", "why", "write_json",
+]
+
 # what is read again
 WRITTEN = ("scene.toml", "history.csv", "contacts.csv", "modes.csv", "fields.pvd", "fields/*.vtu", "fields/contact.csv")
 STILL = 1e-6                 # of the speed of all energy: a body as slow does not move

@@ -11,6 +11,11 @@ import numpy as np
 
 from .results import Contents, content, reading
 
+__all__ = [
+    "FACES", "Skin", "Snapshot", "Solid", "between", "lattice", "read", "read_solid", "series",
+    "split",
+]
+
 KINDS = TRIANGLE, QUADRATIC_TRIANGLE, QUADRATIC_TETRAHEDRON = "triangle", "triangle6", "tetra10"
 FINEST, MOST = 6, 2_000      # straight triangles along a side of a quadratic one, at most; and of all, where that is more than two a side
 # a quadratic tetrahedron as its corners and the four about the diagonal 4-9

@@ -46,6 +46,11 @@ from .figures import (
     side_by_side,
 )
 
+__all__ = [
+    "are_several", "columns_of", "down_the_slope", "draw", "draw_obstacles", "ends", "energies",
+    "forces", "limits", "obstacles_of", "panels", "shapes", "title", "velocities", "width",
+]
+
 ALONE = ("disc-plane", "ball-axisymmetric", "ball-plane")     # scripts of one body on the plane
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, "#56b4e9", "#e69f00")    # of bodies
 ACROSS = 3       # panels side by side

@@ -29,6 +29,8 @@ from .figures import (
     touched,
 )
 
+__all__ = ["draw", "main"]
+
 
 def main(argv: list[str]) -> int:
     """Runs or reuses every scene, prints the reports, draws DIR/<names>.png. A scene that fails does not keep the others."""

@@ -13,6 +13,8 @@ from ..input.parameters import Value
 from ..output.results import read_table
 from .figures import BLACK, BLUE, ORANGE, STICKS, evenly, legend, plt
 
+__all__ = ["PRESSURE", "SLIDES", "draw", "hertz", "read"]
+
 INSTANTS = 6                     # profiles at most
 SLOW = 0.03                      # speed over sqrt(E/rho) up to which the pressure of a ball is shown beside Hertz'
 MOST_BODIES = 4                  # those with the largest pressure

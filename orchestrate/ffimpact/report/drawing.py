@@ -15,6 +15,8 @@ from . import bodies, impacts, solid
 from . import contact as contacts
 from .figures import BODY, STYLE, as_written, is_half, material, per_metre, plt, save, touched
 
+__all__ = ["LETTERS", "MOST_LINES", "draw", "title", "wrapped"]
+
 LETTERS, MOST_LINES = 14, 4       # of a title: letters an inch, lines of each of its parts
 
 

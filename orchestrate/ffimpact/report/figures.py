@@ -20,6 +20,15 @@ from ..mesh import mesh
 from ..output import vtu
 from . import literature
 
+__all__ = [
+    "ABOVE", "BAND", "BELOW", "BLACK", "BLUE", "BODY", "Body", "COLOURED", "DASHED", "GREEN",
+    "GREY", "LAWS", "ORANGE", "ORIGIN", "PURPLE", "Pose", "SHAPES", "SMALL", "STICKS", "STRESS",
+    "STYLE", "VISCOUS", "amid", "as_written", "balance_error", "deformed", "diameter", "draw_body",
+    "end_of_contact", "evenly", "flight", "friction_force", "goes_along", "is_half", "least",
+    "legend", "material", "numbers_of_the_paper", "over_time", "per_metre", "published", "rolling",
+    "save", "scale_bar", "side_by_side", "touched",
+]
+
 LAWS = {"svk": "St. Venant–Kirchhoff", "neohookean": "neo-Hookean", "mooney-rivlin": "Mooney–Rivlin", "ogden": "Ogden",
         "incompressible": "neo-Hookean with J = 1"}
 BLUE, ORANGE, GREEN, PURPLE, BLACK, GREY = "#0072b2", "#d55e00", "#009e73", "#aa4499", "#222222", "#999999"

@@ -13,6 +13,8 @@ from ..output.folder import result_folder
 from ..places import RESULTS, shown
 from .figures import BELOW, BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE, legend, save
 
+__all__ = ["VALUES", "draw", "main", "tabulate"]
+
 VALUES = {"friction_static": 0.7, "friction_dynamic": 0.5, "slip_velocity": 0.1}   # of section 3.1 and figure 3
 LABELS = {"linear": (r"linear, $\phi^3$ with $v_T/\varepsilon$", BLUE, "-"), "sqrt": (r"sqrt, $\phi^1$", GREEN, "-"),
           "tanh": (r"tanh, $\phi^2$", ORANGE, "-"),

@@ -8,6 +8,11 @@ import numpy as np
 from ..output.results import Contents, read_table
 from .figures import BLUE, GREEN, GREY, ORANGE, legend, plt
 
+__all__ = [
+    "HIGHEST", "draw", "heights", "read", "read_modes", "several", "spectrum", "vibration",
+    "with_flights",
+]
+
 LIGHTEST = 0.01                  # of the largest impulse of a meeting: what is less is the grazing end of an impact
 # of the approach, and of the largest slip of a meeting: of less the restitution along the partner is that of vibrations
 LEAST_SLIP = 0.05

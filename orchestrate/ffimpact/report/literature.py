@@ -6,6 +6,8 @@ from pathlib import Path
 
 from ..input.parameters import Value
 
+__all__ = ["REFERENCE", "published", "references"]
+
 REFERENCE = Path(__file__).resolve().parent / "reference"
 # No source has damping: what `when` does not name of these is 0 there.
 UNDAMPED = dict.fromkeys(("viscosity", "bulk_viscosity", "relaxation_modulus", "loss"), 0)

@@ -37,6 +37,8 @@ from .figures import (
     per_metre,
 )
 
+__all__ = ["Motion", "PlaneStage", "SolidStage", "Stage", "main", "of", "write"]
+
 SECONDS = 8.0     # of the film
 MOST = 400        # frames, 50 a second: players show a faster GIF slower
 DPI = 110

@@ -11,6 +11,8 @@ from ..output.results import RunResult, body_names, suffixes
 from ..places import shown
 from . import literature
 
+__all__ = ["Quantity", "draw", "marks", "report", "rows", "stiffness", "told"]
+
 LEFT_OUT_AT_ZERO = ("external_work", "friction_work", "creep_work", "rotation_energy", "impulse_ratio", "rebound_vx", "rebound_vz",
                     "rebound_spin_x", "rebound_spin_y", "rebound_spin", "sliding_time", "sticking_time", "reverse_slip_time",
                     "unsolved_jumps")

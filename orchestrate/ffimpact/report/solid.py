@@ -18,6 +18,11 @@ from .bodies import obstacles_of
 from .contact import PRESSURE
 from .figures import STRESS, evenly, plt
 
+__all__ = [
+    "AXES", "INSTALL", "PIXELS", "Pressure", "Sight", "Views", "bars", "draw", "in_front",
+    "missing", "skin", "whole",
+]
+
 INSTALL = f"{shown(Path(sys.executable))} -m pip install pyvista vtk"
 PROBE = ("import pyvista; p = pyvista.Plotter(off_screen=True, window_size=(8, 8)); p.add_mesh(pyvista.Sphere()); "
          "p.screenshot(None, return_img=True)")

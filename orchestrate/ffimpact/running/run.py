@@ -49,6 +49,8 @@ from ..scene import Scene
 from ..scenes.bodies import SIZES
 from .solver import FAILURES, USED, Solver, runs
 
+__all__ = ["ENTRANCE", "HARMLESS", "code_hash", "commit", "imported", "reusable", "run"]
+
 ENTRANCE = "scenes/assembly"           # the module that makes flags, mesh and scene.dat, with all that it imports
 # of these: what asks, starts, says and reads, and does not decide a result
 HARMLESS = {"failure", "places", "freefem/describe", "freefem/freefem"}

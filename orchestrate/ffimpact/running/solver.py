@@ -25,6 +25,8 @@ from ..scene import Scene
 from ..scenes.assembly import prepare
 from ..scenes.finer import scaled
 
+__all__ = ["FAILURES", "Solver", "Told", "USED", "between", "entry", "forecast", "runs"]
+
 FAILURES = {10: "bad input", 11: "step failed", 12: "material broke down", 13: "not installed", 14: "unreadable"}
 COST = estimate.COARSER**-3       # of a run with larger elements and steps, over that of the one beside it
 LONG = 60.0                      # s

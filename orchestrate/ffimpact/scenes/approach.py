@@ -20,6 +20,8 @@ from .conditions import WHOLE
 from .obstacles import Obstacle
 from .scene import Scene, gap_between
 
+__all__ = ["Meeting", "loaded_pull", "meetings", "refuse_nothing", "refuse_sinking", "turned"]
+
 STEPS = 2000                 # of bodies within reach of each other: what has not met by then is not known to
 # of the smaller thickness: a gap from an obstacle without parts to be within reach of, that is followed no further
 FAR = 1e9

@@ -31,6 +31,11 @@ from .mirror import COPIES, FOLDED, copies
 from .parts import sections
 from .scene import Pair, Scene
 
+__all__ = [
+    "Asker", "Assembly", "assemble", "contact_values", "data_file", "pair_values", "prepare",
+    "side_by_side", "stack", "used_tables",
+]
+
 ROUND = 0.5                  # largest element size on a circle or ellipse, over its smaller semi-axis
 LIKE = ("radius", "young", "nu", "density", "speed", "angle", "spin")
 # of the contact of a disc on a plane: where less of an outline is near, elements are smaller; of two equal discs it is 0.71

@@ -22,6 +22,8 @@ from ..mesh.solid_mesh import SolidMesh
 from ..mesh.solids import Solid
 from .conditions import Load, Support, read_loads, read_supports
 
+__all__ = ["Body", "DAMPED", "DAMPING", "SIZES", "STIFF", "read", "stiffened"]
+
 GEOMETRY = {PLANE_STRAIN: flat, AXISYMMETRIC: revolution, SOLID: solids}     # shape(), motion()
 DAMPING = ("viscosity", "bulk_viscosity", "relaxation_modulus", "relaxation_time")
 DAMPED = ("viscosity", "bulk_viscosity", "relaxation_modulus", "loss")     # one of which is above 0

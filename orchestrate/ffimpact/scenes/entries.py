@@ -11,6 +11,8 @@ from ..failure import BadInput, brief
 from ..input import parameters
 from ..input.parameters import Value
 
+__all__ = ["release", "set_entry", "toml_value"]
+
 SHAPE = ("shape", "semi_axes", "width", "height", "depth", "inner_radius", "section", "vertices", "file",
          "scale")     # sizes of a body, beside radius
 EVERYWHERE = ("penalty", "dt")

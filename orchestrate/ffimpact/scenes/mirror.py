@@ -8,6 +8,8 @@ from ..input.dimension import SOLID
 from .bodies import Body
 from .obstacles import Obstacle
 
+__all__ = ["COPIES", "FOLDED", "copies"]
+
 COPIES = {"full": 1, "half": 2, "quarter": 4}
 FOLDED = {1: (), 2: (2,), 4: (0, 2)}      # the axes across which what is computed is one side
 AXES = "xyz"

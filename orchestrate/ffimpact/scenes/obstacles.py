@@ -16,6 +16,8 @@ from ..input.rules import Vector, placeholder
 from ..mesh import solids, surface_file
 from ..mesh.revolution import mirrored
 
+__all__ = ["Drive", "Obstacle", "read", "settled"]
+
 DRIVE = ("motion", "rotation", "pivot", "axis")      # entries of an obstacle that follows functions of time
 
 

@@ -26,6 +26,8 @@ from .bodies import SIZES, Body
 from .entries import release, set_entry, toml_value
 from .obstacles import Obstacle
 
+__all__ = ["Pair", "RUN", "Scene", "gap_between", "gap_to_obstacle", "read"]
+
 RUN = ("gravity", "body_force_x", "body_force_y", "degree", "integrator", "dt", "accuracy", "accuracy_of", "tolerance", "breakdown",
        "chatter", "end_time", "until", "fields", "modes", "checkpoint_every", "without")
 # of Outline.folding: that of a ring as thick as its inner radius; what closes only at more does not touch itself

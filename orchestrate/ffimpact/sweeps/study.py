@@ -25,6 +25,11 @@ from ..output.results import read_json
 from ..progress import Line, forward
 from ..running import run
 
+__all__ = [
+    "CORES", "Point", "cell", "complete", "outcomes", "place", "save", "side_by_side", "study",
+    "table", "there", "warned",
+]
+
 CORES = freefem.CORES
 POLL = 0.2                  # s between two looks at the progress of the runs
 LONGEST = 200               # characters of a folder's name

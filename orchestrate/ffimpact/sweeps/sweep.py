@@ -41,6 +41,8 @@ from ..output.folder import result_folder
 from ..places import RESULTS, shown
 from . import study, sweep_figures
 
+__all__ = ["Sweep", "built_in", "collect", "load", "main", "report", "table"]
+
 SWEEPS = Path(__file__).resolve().parent   # the built-in sweeps are beside us
 LIMIT = 600.0                   # seconds a run may take
 MOST_RUNS = 20_000              # more than that is a slip of the pen

@@ -41,6 +41,12 @@ from ..report.figures import (
 )
 from . import study
 
+__all__ = [
+    "FALLS", "LEVEL", "MAXIMUM", "MINIMUM", "RISES", "Trend", "UNEVEN", "bars", "bars_of_all",
+    "check", "course", "distance", "distances", "draw", "findings", "force", "label", "level_set",
+    "ranges", "spans", "steps_against", "trend", "unit_of",
+]
+
 KINDS = {"lines": ("x", "y", "by"), "map": ("x", "y", "colour", "by", "panel", "level", "band"), "histories": ("y", "panel", "by")}
 WORDS = {"nu": "ν", "penalty": "k"}
 SPAN = 1e3       # of the values over an axis from which it is logarithmic
