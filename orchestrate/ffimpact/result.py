@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from .plot import Plots
 
-__all__ = ["Result", "compare", "load"]
+__all__ = ["Fields", "Result", "compare", "load"]
 
 LINES = 9  # of numbers that are printed
 SHOWN = (

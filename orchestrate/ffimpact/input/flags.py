@@ -11,7 +11,7 @@ from ..places import ROOT
 from .parameter import Parameter
 from .table import PARAMETERS
 
-__all__ = ["FILE", "flags", "written"]
+__all__ = ["FILE", "flags", "variable", "written"]
 
 FILE = ROOT / "edp/core/input/parameters.idp"
 BEGIN, END = "// THE TABLE", "// END OF THE TABLE\n"

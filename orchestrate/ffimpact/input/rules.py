@@ -13,22 +13,24 @@ from .parameter import Parameter, Rule
 
 __all__ = [
     "ALIAS",
-    "LONGEST",
-    "REGIONS",
-    "SHORTEST",
     "Flag",
     "Function",
     "InSpace",
+    "LONGEST",
     "Name",
     "Partners",
     "Place",
     "Points",
     "Polygons",
+    "REGIONS",
+    "SHORTEST",
     "Text",
     "Vector",
     "Where",
     "number",
     "placeholder",
+    "points",
+    "vector",
 ]
 
 LONGEST = 1e9  # m, m/s: beyond the largest of anything

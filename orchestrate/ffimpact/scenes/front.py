@@ -20,7 +20,7 @@ from .approach import Meeting
 from .bodies import Body
 from .scene import Scene
 
-__all__ = ["Front", "fronts"]
+__all__ = ["Front", "fronts", "wave_speed"]
 
 FLAT = 0.3             # share of a body's width that lands while the front passes an element
 PER_ACCURACY = 5.0     # element size over the length along the normal, over the accuracy
