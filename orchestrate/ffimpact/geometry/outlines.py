@@ -227,7 +227,9 @@ class Outline(Shape):
         return float(min(self.extent.min() / 2, 2 * self.area / self.length))
 
     def placed(self, centre: np.ndarray, angle: float) -> "Outline":
-        return Outline(tuple(loop.placed(centre, angle) for loop in self.loops))
+        found = Outline(tuple(loop.placed(centre, angle) for loop in self.loops))
+        found.__dict__["reach"] = self.reach              # of hundreds of sides: not once more for every place
+        return found
 
     def turned(self, angle: float, spin: float, t: float) -> float:
         """The angle [rad] with what a spin [rad/s] adds in the time t."""

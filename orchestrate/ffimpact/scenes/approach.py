@@ -58,12 +58,28 @@ class Meeting:
 
 
 def meetings(scene: Scene) -> list[Meeting]:
-    """One for each two bodies and each body with each obstacle, and those that follow as a hit turns them."""
+    """One for each two bodies that may come near each other and each body with each obstacle, and those that follow as a hit turns them."""
     scene = replace(scene, bodies=[body.carried_along for body in scene.bodies],
                     obstacles=[one.carried_along for one in scene.obstacles])
-    bodies = len(scene.bodies)
-    pairs = [(i, j) for i in range(bodies) for j in [*range(i + 1, bodies), *(-1 - k for k in range(len(scene.obstacles)))]]
+    obstacles = [-1 - k for k in range(len(scene.obstacles))]
+    pairs = [(i, j) for i, others in enumerate(_near(scene)) for j in [*others, *obstacles]]
     return [one for pair in pairs for one in _in_turn(scene, _meeting(scene, *pair))]
+
+
+def _near(scene: Scene) -> list[list[int]]:
+    """Of every body the later ones that it may touch: all but those that pass it by, the spheres around them apart, where nothing turns
+    either from its straight way, or both fall alike."""
+    places, ways = (np.array([getattr(body, name) for body in scene.bodies]) for name in ("position", "velocity"))
+    reaches = np.array([body.outline.reach for body in scene.bodies])
+    free = np.array([not body.driven and not body.supports for body in scene.bodies])
+    found = []
+    for i in range(len(scene.bodies)):
+        r, v = places[i + 1:] - places[i], ways[i + 1:] - ways[i]
+        speed = np.maximum((v * v).sum(axis=1), np.finfo(float).tiny)
+        nearest = r + v * np.maximum(0.0, -(r * v).sum(axis=1) / speed)[:, None]
+        within = np.linalg.norm(nearest, axis=1) <= 1.01 * (reaches[i] + reaches[i + 1:])
+        found.append((i + 1 + np.flatnonzero(within | ~free[i] | ~free[i + 1:])).tolist())
+    return found
 
 
 def _fall(scene: Scene) -> np.ndarray:
@@ -219,7 +235,7 @@ def refuse_nothing(scene: Scene, met: list[Meeting]) -> None:
     if not any(np.any(one) for one in moving) and not any(forces) and not driven and not any(body.supports or body.loads
                                                                                         for body in scene.bodies):
         raise BadInput("velocity: 0 of every body, without spin, gravity or body force: nothing would ever move (accepted: one of them)")
-    if scene.values["end_time"] == 0 and all(one.never for one in met) and met:
+    if scene.values["end_time"] == 0 and all(one.never for one in met) and len(scene.bodies) + len(scene.obstacles) > 1:
         raise BadInput("end_time: 0 is the end of the contact, but nothing ever touches: the bodies miss each other and every obstacle "
                        "(accepted: an end_time > 0, or velocities and positions that lead them together)")
     for one in met if scene.values["end_time"] == 0 and scene.values["until"] != "rest" else []:

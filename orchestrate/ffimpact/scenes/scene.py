@@ -11,6 +11,7 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from ..failure import BadInput, brief, gathered, unknown
 from ..freefem.describe import describe, describe_results
@@ -320,9 +321,13 @@ def _partners(path: str, given, index: dict[str, int]) -> tuple[int, int]:
 
 def _apart(found: Scene) -> None:
     """BadInput where a body overlaps another one or an obstacle at the start."""
-    for (i, body), (j, other) in itertools.combinations(enumerate(found.bodies, 1), 2):
-        _refuse_overlap(f"body.{i}", body, f"body.{j}", other.name, gap_between(body.placed, other.placed),
-                        _units(found, i, body) or _units(found, j, other))
+    placed = [body.placed for body in found.bodies]
+    centres, reaches = np.array([one.area_centre for one in placed]), np.array([one.reach for one in placed])
+    for i, j in sorted(cKDTree(centres).query_pairs(2 * reaches.max())):
+        if np.linalg.norm(centres[i] - centres[j]) <= reaches[i] + reaches[j]:
+            body, other = found.bodies[i], found.bodies[j]
+            _refuse_overlap(f"body.{i + 1}", body, f"body.{j + 1}", other.name, gap_between(placed[i], placed[j]),
+                            _units(found, i + 1, body) or _units(found, j + 1, other))
     for (i, body), (j, other) in itertools.product(enumerate(found.bodies, 1), enumerate(found.obstacles, 1)):
         _refuse_overlap(f"body.{i}", body, f"obstacle.{j}", other.name, gap_to_obstacle(body.placed, other),
                         _units(found, i, body))
