@@ -176,7 +176,7 @@ def measure(name: str, out: Path, quick: bool) -> tuple[pd.DataFrame, dict[str, 
     fine = study.study(wanted, best_folder, {"fields": 0} | of.base, LIMIT, of.scene, cores=1)
     rows = study.study([point for _, point in labels], folder, {"fields": 0} | case.base, LIMIT, case.scene, cores=1)
     if fine.exit.any():
-        raise study.Failure(f"bench: the reference of {name} failed: {fine.message[fine.exit != 0].iloc[0]}", int(fine.exit.max()))
+        raise study.Failure(f"bench: the reference of {name} failed: {fine.message[fine.exit != 0].iloc[0]}", code=int(fine.exit.max()))
     histories = [_force(study.place(best_folder, point)) for point in wanted]
     best = fine[list(case.answers)].mean()
     bars = {answer: 50 * abs(fine[answer].iloc[0] - fine[answer].iloc[1]) / abs(best[answer]) for answer in case.answers}

@@ -157,7 +157,7 @@ def measure(case: Case) -> tuple[pd.DataFrame, pd.DataFrame]:
         runs += [runs[0] and once(case, program, point)[0] for point in points]
         fine[program] = [answers(case, program, each) for each in runs]
     if None in fine[OURS]:
-        raise study.Failure(f"equal-errors: the reference of {case.title} failed", 11)
+        raise study.Failure(f"equal-errors: the reference of {case.title} failed", code=11)
     for row in rows:
         if of_it := found[row["program"], row["setting"]]:
             row |= {name: of_it[name] for name in ("dofs", "steps", *SECONDS)}

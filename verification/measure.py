@@ -82,12 +82,12 @@ def _start(script: str, given: dict[str, Value | Path], folder: Path = ROOT) -> 
     with tempfile.NamedTemporaryFile("r", errors="replace") as log:
         try:
             with freefem.limited(LIMIT):
-                code, _ = freefem.run(freefem.find(), script, given, Path(log.name), folder=folder)
+                code, line = freefem.run(freefem.find(), script, given, Path(log.name), folder=folder)
         except TooLong as error:
             raise Failure(f"{script}: {error}") from None
         said = log.read()
     if code != 0:
-        raise Failure(f"{script}: exit code {code}: {_end(said)}   (flags {' '.join(freefem.words_of(given))})")
+        raise Failure(f"{script}: exit code {code}: {f'ffimpact: {line}' if line else _end(said)}   (flags {' '.join(freefem.words_of(given))})")
     return said
 
 

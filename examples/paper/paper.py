@@ -74,7 +74,7 @@ def require(results: judging.Results) -> None:
     missing = dict.fromkeys(target for target, files, there in _needed(results) if not (all(file.exists() for file in files) and there()))
     if missing:
         raise Failure(f"paper: no results of the present scenes and code for {', '.join(missing)}; run: make {' '.join(missing)}   "
-                      "(or: make paper)", Unreadable.code)
+                      "(or: make paper)", code=Unreadable.code)
 
 
 def _needed(results: judging.Results) -> Iterator[tuple[str, list[Path], Callable[[], bool]]]:

@@ -112,7 +112,7 @@ def main(argv: list[str]) -> int:
         again = "" if bad.exit.isin(LASTING).all() else "; the same command runs again what was killed or did not end"
         first = study.place(Path(), bad[wanted.axes].iloc[0].to_dict()).name
         raise Failure(f"{wanted.name}: {len(bad)} of {len(rows)} points have no answer, first: {first}: {bad.message.iloc[0]}{again}",
-                      int(bad.exit.iloc[0]) if bad.exit.nunique() == 1 else 1)
+                      code=int(bad.exit.iloc[0]) if bad.exit.nunique() == 1 else 1)
     return 0
 
 
