@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
 from ..failure import BadInput, brief
 from ..input.rules import LONGEST
@@ -49,6 +48,7 @@ class TimeFunction:
         times, values, slopes = self.knots.T
         if len(times) == 1:
             return values[0] + 0 * np.asarray(t)
+        from scipy.interpolate import CubicHermiteSpline  # most scenes need none
         return CubicHermiteSpline(times, values, slopes)(np.clip(t, times[0], times[-1]))
 
 
@@ -91,6 +91,8 @@ def of_table(entry: str, times: object, values: object) -> TimeFunction:
         where = int(np.argmin(np.diff(t) > 0)) + 1
         raise BadInput(f"{entry}: the time {t[where]:g} s follows {t[where - 1]:g} s (accepted: times "
                        f"that grow)")
+    from scipy.interpolate import PchipInterpolator
+
     return TimeFunction(np.column_stack([t, value, PchipInterpolator(t, value).derivative()(t)]))
 
 

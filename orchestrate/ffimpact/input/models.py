@@ -81,7 +81,7 @@ class _Made(type(BaseModel)):  # type: ignore[misc]
 class Entries(BaseModel, metaclass=_Made):
     """What all tables of a scene have in common."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", defer_build=True)  # built where they are used
     nested: ClassVar[dict[str, type[Entries]]] = {}  # the models of tables in it
     only: ClassVar[dict[str, tuple[Dimension, ...]]] = {}  # entries that not all dimensions have
     heading: ClassVar[tuple[str, ...]] = ()  # the entry that says which model it is
