@@ -61,8 +61,10 @@ ALIKE = {"D": 1.4, "impulse": 0.3, "rebound": 0.7, "rebound_spin": 0.5, "energy"
 FRONT = {"impulse": 3.0, "rebound": 3.0, "rebound_spin": 5.0, "energy": 3.0, "friction_work": 3.0, "thresholded_contact_time": 3.8,
          "contact_time": 3.2, "peak_force": 9.0}
 # of scenes with supports, loads, rigid bodies or moving obstacles: held_errors(), calibrated likewise
-HELD = {"impulse": 0.25, "rebound": 0.5, "rebound_spin": 0.05, "energy": 1.3, "friction_work": 0.2, "thresholded_contact_time": 0.7,
-        "contact_time": 0.8, "peak_force": 3.0}
+HELD = {"impulse": 0.1, "rebound": 0.8, "rebound_spin": 0.05, "energy": 0.35, "friction_work": 0.3, "thresholded_contact_time": 0.7,
+        "contact_time": 1.0, "peak_force": 1.0}
+LOADED = {"impulse": 0.7, "rebound": 1.2, "rebound_spin": 0.05, "energy": 4.0, "friction_work": 0.3, "thresholded_contact_time": 1.5,
+          "contact_time": 1.5, "peak_force": 7.0}
 TOUCHES_AGAIN = 2.5
 SHARP, RESOLVED = {"impulse": 0.12, "rebound": 0.24, "energy": 0.48}, 7.5
 PROMISED = tuple(USUAL)[:6]
@@ -353,18 +355,19 @@ def held_errors(estimated: Mapping[str, float], fine: Answers, coarse: Answers) 
 
     A heavy rigid body stays in contact for hundreds of steps, a beam and a shell with gas strike again as they vibrate: both runs of a
     pair then follow the same course, right or wrong, and differ by too little. So an error is no less than HELD of the accuracy of the
-    sizes of elements and steps, and TOUCHES_AGAIN times that where bodies touch several times. No finer run follows from that alone.
+    sizes of elements and steps, of bodies with loads LOADED, and TOUCHES_AGAIN times that where bodies touch several times. No finer
+    run follows from that alone.
     """
-    if not _is_held(fine.used):
-        return dict(estimated)
+    loaded = any(body.get("load") for body in fine.used.get("body", []))
+    shares = LOADED if loaded else HELD if _is_held(fine.used) else {}
     again = max(one.summary.get("contact_intervals", 1) for one in (fine, coarse)) > 1
     accuracy = fine.used["accuracy"] * (TOUCHES_AGAIN if again else 1.0)
-    return dict(estimated) | {name: max(estimated[name], share * accuracy) for name, share in HELD.items() if estimated[name] > NONE}
+    return dict(estimated) | {name: max(estimated[name], share * accuracy) for name, share in shares.items() if estimated[name] > NONE}
 
 
 def _is_held(used: Mapping) -> bool:
-    """Whether a scene as used has supports, loads, rigid bodies or obstacles that follow functions of time."""
-    return (any(body.get("rigid") or body.get("support") or body.get("load") for body in used.get("body", []))
+    """Whether a scene as used has supports, rigid bodies or obstacles that follow functions of time."""
+    return (any(body.get("rigid") or body.get("support") for body in used.get("body", []))
             or any("motion" in one or "rotation" in one for one in used.get("obstacle", [])))
 
 
