@@ -6,7 +6,7 @@ SWEEPS := oblique friction-jump friction-steps slip-limit contact-time-svk law-c
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws $(SWEEPS) stick-slip verify paper movie docs pictures check test robustness bench bench-quick scaling equal-errors promise disc-block-errors pairing-comparison oblique-angles viscoelastic rubber clean
+.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws $(SWEEPS) stick-slip verify paper movie docs pictures check unit coverage test robustness bench bench-quick scaling equal-errors promise disc-block-errors pairing-comparison oblique-angles viscoelastic rubber clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z0-9-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
@@ -88,13 +88,21 @@ pictures: disc-normal disc-oblique ## the README's pictures, drawn again from th
 
 CHECKED := $(addprefix orchestrate/ffimpact/,__init__.py api.py model.py plot.py result.py schema.py view.py \
   input/flags.py input/parameter.py input/table.py)
-check: $(READY) ## style and types: ruff everywhere, its format and mypy --strict for the modules of the Python interface
+check: $(READY) unit ## style, types, spelling and the tests without FreeFEM, in under a minute; format and mypy --strict for the modules of the Python interface
 	@$(PYTHON) -m ruff check -q orchestrate examples benchmarks verification tests docs conftest.py
-	@$(PYTHON) -m ruff format -q --check $(CHECKED) tests/test_api.py conftest.py
+	@$(PYTHON) -m ruff format -q --check $(CHECKED) tests/unit/test_api.py tests/run/test_api.py tests/support/api.py conftest.py
 	@$(PYTHON) -m mypy --strict --follow-imports=silent $(CHECKED)
+	@$(PYTHON) -m mypy orchestrate/ffimpact
+	@$(PYTHON) -m codespell_lib
+
+unit: $(READY) ## the tests that need no FreeFEM, some twenty seconds
+	@$(PYTHON) -m pytest -q -n 2 --dist worksteal tests/unit $(ARGS)
+
+coverage: $(READY) ## the lines of the package that the tests without FreeFEM run
+	@$(PYTHON) -m pytest -q -n 2 --dist worksteal --cov=ffimpact --cov-report=term:skip-covered tests/unit $(ARGS)
 
 test: $(READY) ## run all tests, on two cores: some seven minutes
-	@$(PYTHON) -m pytest -q -n 2 --dist worksteal $(ARGS)
+	@$(PYTHON) -m pytest -q -n 2 --dist worksteal $(if $(filter check unit,$(MAKECMDGOALS)),--ignore=tests/unit) $(ARGS)
 
 robustness: $(READY) ## the tests that make test leaves out, malformed input and kills; hard runs drawn at random, and every combination of hard parameters: nothing is silently wrong, lost or left behind
 	@$(PYTHON) -m pytest -q -n 2 --dist worksteal -m robustness

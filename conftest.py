@@ -1,15 +1,21 @@
-"""Which cases of a test run by default: marker few(n) keeps n of them, evenly spread, and leaves the others to make robustness."""
+"""Which cases of a test run by default: marker few(n) keeps n of them, evenly spread, and leaves the others to make robustness, as all of tests/hostile are."""
 
 from collections import defaultdict
+from pathlib import Path
 
 import pytest
+
+pytest.register_assert_rewrite("tests.support", "verification.stress", "verification.tangents")
+HOSTILE = Path(__file__).parent / "tests/hostile"
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
     cases = defaultdict(list)
     for item in items:
-        if item.get_closest_marker("few"):
+        if item.path.is_relative_to(HOSTILE):
+            item.add_marker(pytest.mark.robustness)
+        elif item.get_closest_marker("few"):
             cases[item.nodeid.partition("[")[0]].append(item)
     for items_of_test in cases.values():
         count = items_of_test[0].get_closest_marker("few").args[0]

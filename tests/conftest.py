@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-import fake_freefem
+from tests.support import fake_freefem
 
 signal.signal(signal.SIGINT, signal.default_int_handler)   # a shell lets what it starts in the background ignore Ctrl-C, which tests send
 

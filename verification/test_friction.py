@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ffimpact.mesh import mesh
-from triangles import whole_of
+from tests.support.triangles import whole_of
 
 COARSE = dict(mesh_size=0.025, contact_mesh_size=0.0079, accuracy=0.03, slip_velocity=0.1)
 RUBBING = dict(friction_static=0.7, friction_dynamic=0.5)

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from verification import test_stress
+from verification import stress
 from verification.test_residual_and_tangent import MOONEY, OGDEN
 
 TERMS = ((1.3, 0.5), (5.0, 0.2), (-2.0, 0.3))                    # exponents and shares of OGDEN
@@ -16,11 +16,11 @@ SCRIPTS = {"disc-plane": {"accuracy": 0.1}, "ball-axisymmetric": {"accuracy": 0.
 
 def test_stress_is_that_of_the_formula(measure, tmp_path):
     """sigma of x = F X is F S F^T/J, S = mu [(1-b) I + b (I1 I - C)] + (l ln J - mu (1+b)) C^-1, l = lambda - 2 b mu, to the file's 9 digits."""
-    largest = measure("homogeneous", degree=2, young=test_stress.YOUNG, nu=test_stress.NU, accuracy=0.1, out=tmp_path, **MOONEY)
-    F, mu, b = test_stress.F, test_stress.MU, float(MOONEY["law_parameters"])
+    largest = measure("homogeneous", degree=2, young=stress.YOUNG, nu=stress.NU, accuracy=0.1, out=tmp_path, **MOONEY)
+    F, mu, b = stress.F, stress.MU, float(MOONEY["law_parameters"])
     C, J, I = F.T @ F, np.linalg.det(F), np.eye(3)
-    S = mu * ((1 - b) * I + b * (np.trace(C) * I - C)) + ((test_stress.LAMBDA - 2 * b * mu) * np.log(J) - mu * (1 + b)) * np.linalg.inv(C)
-    test_stress.assert_stress(largest, tmp_path / "homogeneous.vtu", F @ S @ F.T / J, F)
+    S = mu * ((1 - b) * I + b * (np.trace(C) * I - C)) + ((stress.LAMBDA - 2 * b * mu) * np.log(J) - mu * (1 + b)) * np.linalg.inv(C)
+    stress.assert_stress(largest, tmp_path / "homogeneous.vtu", F @ S @ F.T / J, F)
 
 
 def energy(law: str, L: np.ndarray, nu: float) -> float:

@@ -4,12 +4,11 @@ import math
 
 import pytest
 
+from verification.tangents import COARSE, MOONEY, OGDEN, kernels_are_the_scripts
+
 LAWS = ["svk", "neohookean"]
 REGULARIZATIONS = ["linear", "linear-printed", "sqrt", "tanh"]
 TRANSITIONS = ["jump", "smooth"]
-COARSE = {"disc": {"accuracy": 0.1}, "ball": {"accuracy": 0.1}, "3d": {"mesh_size": 0.025, "contact_mesh_size": 0.015}}
-MOONEY = {"law": "mooney-rivlin", "law_parameters": "0.3"}
-OGDEN = {"law": "ogden", "law_parameters": "1.3,0.5,5,0.2,-2,0.3"}
 TANGENTS = [*((body, {"law": law, "degree": degree, "integrator": integrator} | ({"nu": 0.3} if body == "3d" else {}))
               for body, integrator in (("block", "newmark"), ("block", "midpoint"), ("disc", "newmark"), ("disc", "midpoint"), ("ball", "newmark"), ("3d", "midpoint"))
               for law in LAWS for degree in (1, 2)),
@@ -30,12 +29,6 @@ def test_residual_is_the_one_of_the_equations(measure, law, integrator, exponent
     assert found["state"] == 0 and found["strain"] > 0.3
     assert found["before"] > 0 and found["switching"] > 0 and found["after"] < found["points"]
     assert found["elastic"] < 1e-10 and found["contact"] < 1e-10 and found["total"] < 1e-10
-
-
-def kernels_are_the_scripts(found: dict, factor: bool = True) -> None:
-    """Deformation, forces, tangent and, where it has one, its factor, as kernels.idp prints them: to round-off, where there is a compiler."""
-    names = ["deformed", "forces", "product", *(["solve", "response", "compliance"] if factor else [])]
-    assert not found["built"] or max(found[name] for name in names) < 1e-12 and (found["refused"] == 0 or not factor)
 
 
 @pytest.mark.few(12)

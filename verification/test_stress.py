@@ -1,26 +1,9 @@
 """The stress in the snapshots, and the energy of a step, against closed forms."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
-from ffimpact.output import vtu
-
-YOUNG, NU = 7e6, 0.4
-LAMBDA, MU = YOUNG * NU / ((1 + NU) * (1 - 2 * NU)), YOUNG / (2 * (1 + NU))
-F = np.array([[1.2, 0.3, 0], [-0.1, 0.7, 0], [0, 0, 1]])   # of homogeneous.edp
-
-
-def cauchy(law: str, F: np.ndarray = F) -> np.ndarray:
-    """sigma = F S F^T / J [Pa], (3, 3), of the laws (5) and (6) in three dimensions."""
-    C, J = F.T @ F, np.linalg.det(F)
-    if law == "svk":
-        E = (C - np.eye(3)) / 2
-        S = LAMBDA * np.trace(E) * np.eye(3) + 2 * MU * E
-    else:
-        S = MU * np.eye(3) + (LAMBDA * np.log(J) - MU) * np.linalg.inv(C)
-    return F @ S @ F.T / J
+from verification.stress import LAMBDA, MU, NU, YOUNG, F, assert_stress, cauchy
 
 
 @pytest.mark.parametrize("law", ["svk", "neohookean"])
@@ -28,17 +11,6 @@ def cauchy(law: str, F: np.ndarray = F) -> np.ndarray:
 def test_homogeneous_deformation_has_the_stress_of_the_closed_form(measure, tmp_path, law, degree):
     """Cauchy stress, its von Mises stress and det F of x = F X at every node of the curved half disc, to the file's 9 digits."""
     assert_stress(measure("homogeneous", law=law, degree=degree, young=YOUNG, nu=NU, accuracy=0.1, out=tmp_path), tmp_path / "homogeneous.vtu", cauchy(law), F)
-
-
-def assert_stress(largest: dict, path: Path, sigma: np.ndarray, F: np.ndarray) -> None:
-    """Cauchy stress, its von Mises stress and det F of a snapshot are these at every node; von Mises, tension and shear of stress.idp are those of this stress."""
-    found, principal = vtu.read(path).fields, np.linalg.eigvalsh(sigma)
-    mises, count = np.sqrt(((principal - np.roll(principal, 1)) ** 2).sum() / 2), len(found["jacobian"])
-    assert count > 20 and found["cauchy_stress"] == pytest.approx(np.tile(sigma[[0, 1, 2, 0, 1, 0], [0, 1, 2, 1, 2, 2]], (count, 1)), rel=1e-7)   # xx yy zz xy yz xz
-    assert found["von_mises"] == pytest.approx(np.full(count, mises), rel=1e-7)
-    assert found["jacobian"] == pytest.approx(np.full(count, np.linalg.det(F)), rel=1e-7)
-    assert largest["mises"] == pytest.approx(mises, rel=1e-10)
-    assert largest["tension"] == pytest.approx(max(principal[2], 0.0), rel=1e-9) and largest["shear"] == pytest.approx((principal[2] - principal[0]) / 2, rel=1e-9)
 
 
 def longer(found: dict, name: str) -> np.ndarray:

@@ -1,0 +1,28 @@
+"""The command line: exit codes, one-line errors, interruption, and that `make` lists its targets."""
+
+import subprocess
+import sys
+
+import pytest
+
+from tests.support.cli import ROOT, call, start, wait_for
+
+
+@pytest.mark.robustness
+def test_what_a_run_does_not_load():
+    """A run that is there is told of without matplotlib, pandas and pydantic."""
+    for loads, heavy, said in (("import ffimpact.running.run", {"matplotlib", "pandas", "pydantic"}, "set()\n"),):
+        known = subprocess.run([sys.executable, "-c", f"{loads}; import sys; print({heavy} & set(sys.modules))"], cwd=ROOT, capture_output=True, text=True)
+        assert known.stdout == said, known.stderr
+
+
+@pytest.mark.robustness
+def test_two_runs_do_not_share_a_folder(fake, tmp_path):
+    """A second run into the same folder is refused while the first one is at work."""
+    fake("slow")
+    first = start("run", "disc-normal", "--out", str(tmp_path / "out"))
+    wait_for(fake.starts)
+    code, _, err = call("run", "disc-normal", "--out", str(tmp_path / "out"))
+    assert code == 14 and "being written by another run" in err and first.poll() is None
+    first.terminate()
+    first.communicate()

@@ -1,0 +1,16 @@
+"""Scenes with friction: that they load, run, are reported and drawn as the paper's figures 4 to 6 are."""
+
+import pytest
+
+from ffimpact.__main__ import main
+
+
+@pytest.mark.robustness
+def test_compare_runs_reports_and_draws(fake, tmp_path, capsys):
+    """Each scene is run once, with a coarser run for its error, and reported, then compared in one picture; a second time all is there."""
+    arguments = ["compare", "disc-oblique-svk", "disc-oblique", "--out", str(tmp_path / "both"), "--set", "fields=0"]
+    assert main(arguments) == 0 and fake.starts() == 4
+    out = capsys.readouterr().out
+    assert "disc-oblique-svk: finished" in out and out.strip().endswith("disc-oblique-svk-and-disc-oblique.png")
+    assert (tmp_path / "both/disc-oblique-svk-and-disc-oblique.png").stat().st_size > 20_000
+    assert main(arguments) == 0 and fake.starts() == 4

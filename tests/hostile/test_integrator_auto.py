@@ -1,0 +1,20 @@
+"""`integrator = auto`: explicit steps where their count says that they are the cheaper way, the default elsewhere; what was chosen is said."""
+
+import pytest
+
+from ffimpact import scene
+from ffimpact.running import run
+
+
+@pytest.mark.robustness
+def test_a_stated_error_covers_an_explicit_answer(tmp_path):
+    """The run beside it, which estimates the error, takes the same integrator; the answers of the default's finer run are within what is stated, and the energy's
+    error is no less than its drift."""
+    wanted = scene.load("ball-axisymmetric")
+    found = run.run(wanted, {"integrator": "auto"}, tmp_path / "auto")
+    assert len([words for words in found.summary["skipped"] if words.startswith("implicit steps (a step takes")]) == 1
+    assert found.summary["integrator"] == "central-difference" and found.summary["estimated_error"]["energy"] >= found.summary["energy_drift"] > 0
+    finer = run.run(wanted, {"accuracy": 0.0005}, tmp_path / "finer", estimate=False).summary
+    for name, stated, scale in (("impulse", "impulse", finer["impulse"]), ("rebound_vy", "rebound", 8), ("energy_final", "energy", finer["energy_initial"]),
+                                ("thresholded_contact_time", "thresholded_contact_time", finer["thresholded_contact_time"])):
+        assert abs(found.summary[name] - finer[name]) <= found.summary["estimated_error"][stated] * scale, name

@@ -1,0 +1,37 @@
+"""Malformed input over all three routes: each is one line on stderr that names what is wrong, exit code 10 or 14, nothing left behind, no hang."""
+
+import signal
+from pathlib import Path
+
+import pytest
+
+from tests.support.malformed import directly, special
+
+
+@pytest.fixture(autouse=True)
+def place(tmp_path, monkeypatch):
+    """An empty working folder; afterwards nothing is in it but what the test itself put there. Twenty seconds at most."""
+    def too_long(*_):
+        raise AssertionError("no answer after 20 s")
+    before = signal.signal(signal.SIGALRM, too_long)
+    signal.alarm(20)
+    monkeypatch.chdir(tmp_path)
+    yield tmp_path
+    signal.alarm(0)
+    signal.signal(signal.SIGALRM, before)
+
+
+@pytest.mark.robustness
+def test_more_snapshots_than_memory(capsys):
+    """Snapshots that do not fit into the memory are refused with the number that does."""
+    bytes_there = next(int(line.split()[1]) * 1024 for line in Path("/proc/meminfo").read_text().splitlines() if line.startswith("MemAvailable"))
+    if bytes_there > 60e9:
+        pytest.skip("so much memory that the mesh would be too fine for a test")
+    directly(r"fields: 10000 .*accepted here: 0 to \d+\)", "-fields", "10000", "-mesh_size", "7e-4", "-out", "a/out")
+
+
+@pytest.mark.robustness
+def test_path_of_a_checkpoint():
+    """A checkpoint that is not there, or is none: exit code 14, and the folders made for it are gone again."""
+    for kind in ("pipe", "folder", "file", "nowhere", "loop", "device"):
+        directly("checkpoint '", "-restart", special(kind), "-out", "a/b/out", code=14)

@@ -1,0 +1,96 @@
+"""`until = rest`: bodies bounce under gravity, each time lower, until all rests (edp/core/run/rest.idp)."""
+
+import math
+
+import numpy as np
+import pytest
+
+from ffimpact import scene
+from ffimpact.failure import BadInput, Failure
+from ffimpact.report import drawing
+from ffimpact.running import run
+from tests.support.rest import (
+    DENSITY,
+    FALL,
+    GRAVITY,
+    NU,
+    RADIUS,
+    REST,
+    YOUNG,
+    rests,
+    weight,
+)
+from verification.measure import bodies, disc
+
+
+@pytest.mark.robustness
+def test_a_ball_comes_to_rest(tmp_path):
+    """As a body of revolution: its contact is Hertz' circle, a^3 = 3 P R (1 - nu^2)/(4 E), to an element."""
+    found = disc(tmp_path, "ball-axisymmetric", **FALL | {"height": 0.02, "contact_mesh_size": 0.001, "loss": 2})
+    load = weight(4 / 3 * math.pi * RADIUS**3)
+    rests(found, load)
+    assert found.history["contact_half_width"][-1] == pytest.approx((0.75 * load * RADIUS * (1 - NU**2) / YOUNG)**(1 / 3), abs=0.001)
+
+
+@pytest.mark.robustness
+def test_friction_stops_a_disc(tmp_path):
+    """With a backspin of 2 v/R friction takes sliding and spin alike: the disc stops where it no longer slides, on a rough plane after v^2/(2 mu g)."""
+    found = disc(tmp_path, **REST | {"speed": 0.5, "angle": 0, "spin": 20, "friction_static": 0.5, "symmetry": "full"})
+    rests(found, weight(math.pi * RADIUS**2))
+    energy = weight(math.pi * RADIUS**2) / GRAVITY * (0.5**2 / 2 + (RADIUS * 20)**2 / 4)
+    assert found.summary["friction_work"] == pytest.approx(energy, rel=0.02)
+    assert np.interp(0.1, found.history["t"], found.history["x"]) == pytest.approx(0.5**2 / (2 * 0.5 * GRAVITY), rel=0.05)
+
+
+@pytest.mark.robustness
+def test_what_rolls_on_ends_the_run(tmp_path):
+    """A soft disc that rolls loses a few percent of its energy a second: the run ends as it rolls, its weight on the plane, and says so; its outline is fine all around.
+    With an end_time it goes on."""
+    rolls = REST | {"young": 7e5, "speed": 0.5, "angle": 0, "spin": -10, "friction_static": 0.5, "loss": 0.2, "accuracy": 0.2, "symmetry": "full", "mesh_size": 0.025,
+                    "contact_mesh_size": 0.003}
+    found = disc(tmp_path / "on", **rolls)
+    assert found.summary["ended"] == "rolling" and found.summary["energy_drift"] < 1e-9 and any(said.startswith("rest: ") for said in found.summary["warnings"])
+    assert found.history["normal_force"][-1] == pytest.approx(weight(math.pi * RADIUS**2), rel=0.2)
+    assert found.history["vx"][-1] == pytest.approx(0.5, rel=0.05) == pytest.approx(-RADIUS * found.history["spin"][-1], rel=0.05)
+    assert disc(tmp_path / "until", **rolls, end_time=0.05).summary["ended"] == "end_time"
+
+
+@pytest.mark.robustness
+def test_a_scene_says_it_in_toml_and_python(tmp_path):
+    """The built-in scene, coarser: the picture of its height is drawn; a word that is none is refused; a block that is free has nothing to rest on."""
+    coarse = {"mesh_size": 0.02, "contact_mesh_size": 0.005, "loss": 2, "penalty": 1e10, "height": 0.05, "accuracy": 0.2}
+    found = run.run(scene.load("disc-rest"), coarse, tmp_path / "out", estimate=False)
+    assert found.scene["until"] == "rest" and found.summary["ended"] == "rest"
+    drawing.draw(found.folder)
+    assert (found.folder / "figures/height.png").stat().st_size > 5000
+    with pytest.raises(BadInput, match="until: 'sleep'"):
+        scene.load("disc-rest").override({"until": "sleep"})
+    with pytest.raises(Failure, match="until: rest needs an obstacle"):
+        run.run(scene.load("disc-block"), {"until": "rest", "gravity": 9.81, "loss": 1, "accuracy": 0.3}, tmp_path / "block", estimate=False)
+
+
+@pytest.mark.robustness
+def test_two_bodies_rest(tmp_path):
+    """A disc that falls on another one in a bowl: both rest, their weights on the bowl."""
+    body = {"shape": "disc", "radius": 0.05, "law": "neohookean", "young": 2e6, "nu": 0.3, "density": 1000.0, "loss": 2.0, "mesh_size": 0.03,
+            "contact_mesh_size": 0.01}
+    tables = {"gravity": 9.81, "until": "rest", "accuracy": 0.2, "contact": {"friction_static": 0.3},
+              "body": [body | {"name": "low", "position": [0.0, 0.051]}, body | {"name": "high", "position": [0.0, 0.16]}],
+              "obstacle": [{"kind": "plane", "point": [0, 0], "normal": [0, 1]}, {"kind": "plane", "point": [-0.0501, 0], "normal": [1, 0]},
+                           {"kind": "plane", "point": [0.0501, 0], "normal": [-1, 0]}]}
+    found = bodies(tmp_path, tables)
+    assert found.summary["ended"] == "rest" and found.summary["energy_drift"] < 1e-9
+    assert found.history["y_2"][-1] - found.history["y_1"][-1] == pytest.approx(0.1, rel=0.02)
+
+
+@pytest.mark.robustness
+def test_nothing_rests_while_another_body_falls(tmp_path):
+    """A slab lies still long before the disc above it lands: the run ends when both do, with the weight of each on what bears it."""
+    slab = {"name": "slab", "shape": "rectangle", "width": 0.4, "height": 0.1, "position": [0, 0.05], "loss": 2.0, "mesh_size": 0.05, "contact_mesh_size": 0.05}
+    falls = {"name": "disc", "shape": "disc", "radius": 0.005, "position": [0, 0.16], "loss": 1.0, "mesh_size": 0.004}
+    found = bodies(tmp_path / "out", REST | {"young": 1e6, "density": DENSITY, "loss": 0, "accuracy": 0.2, "body": [slab, falls], "obstacle": [
+        {"name": "floor", "kind": "plane", "point": [0, 0], "normal": [0, 1]}]})
+    table = np.genfromtxt(tmp_path / "out/run/contacts.csv", delimiter=",", names=True)
+    last = table[table["partner"] == 2][-1]
+    assert found.summary["ended"] == "rest" and last["over"] == 0 and last["start"] > math.sqrt(2 * 0.055 / GRAVITY)
+    assert found.history["force_y_2"][-1] == pytest.approx(weight(math.pi * 0.005**2), rel=0.2)

@@ -1,0 +1,16 @@
+"""make rubber: the verdict can fail, and two runs make a row each and a figure."""
+
+import pytest
+
+from benchmarks import rubber
+
+
+@pytest.mark.robustness
+def test_runs_become_rows_and_a_figure(tmp_path, monkeypatch):
+    """Both bodies, with the mean volume and plain where they differ; the report ends with the verdict."""
+    monkeypatch.setattr(rubber, "BASE", rubber.BASE | {"accuracy": 0.1})
+    found = rubber.compare([0.45, 0.499], 60, tmp_path)
+    assert len(found) == 6 and (found.outcome == "").all() and (found[found.volume == "projected"].energy < 1e-9).all()
+    assert (found["finer [ms]"].notna() == (found.volume == "projected")).all()
+    rubber.draw(found, tmp_path / "rubber.png")
+    assert (tmp_path / "rubber.png").exists() and "The requirement" in rubber.report(found, []).splitlines()[-1]

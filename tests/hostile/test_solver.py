@@ -1,0 +1,30 @@
+"""The runs of a scene: the one that estimates the error beside the main one where a core is free, and what is left where one of them is lost."""
+
+import pytest
+
+from ffimpact.freefem import freefem
+from tests.support.kills import at_work
+from tests.support.solver import ANSWERS, go
+
+
+@pytest.mark.robustness
+@pytest.mark.parametrize("lost", ["checkpoint", "coarser/checkpoint"])
+def test_each_goes_on_from_its_own_checkpoint(monkeypatch, tmp_path, lost):
+    """Killed with a checkpoint of only one of the two, the same command makes the other anew, and the answer is the same."""
+    monkeypatch.setattr(freefem, "CORES", 2)
+    out, real = tmp_path / "out", freefem.Process.end
+    straight = go("disc-normal", tmp_path / "straight", checkpoint_every="5")
+
+    def killed(process, progress=None):
+        while not all((tmp_path / "out.part" / name).exists() for name in ("checkpoint", "coarser/checkpoint")):
+            assert process.child.poll() is None, "it ended before it could be killed"
+        raise KeyboardInterrupt
+    monkeypatch.setattr(freefem.Process, "end", killed)
+    with pytest.raises(KeyboardInterrupt):
+        go("disc-normal", out, checkpoint_every="5")
+    monkeypatch.setattr(freefem.Process, "end", real)
+    assert not at_work(tmp_path)
+    (tmp_path / "out.part" / lost).unlink()
+    found = go("disc-normal", out, checkpoint_every="5")
+    assert all((straight.folder / file).read_bytes() == (out / file).read_bytes() for file in ANSWERS)
+    assert found.summary["estimated_error"] == straight.summary["estimated_error"] and not list(tmp_path.glob("out.*"))

@@ -1,0 +1,15 @@
+"""Bodies of revolution that do not reach the axis: tubes, rings, O-rings."""
+
+import pytest
+
+from tests.support.tubes import run
+
+
+@pytest.mark.robustness
+def test_a_polygon_to_the_right_of_the_axis_is_the_same_tube(tmp_path):
+    """Its vertices in either direction."""
+    corners = [[0.02, 0], [0.03, 0], [0.03, 0.1], [0.02, 0.1]]
+    tube = run(tmp_path, 'shape = "tube"\nradius = 0.03\ninner_radius = 0.02\nheight = 0.1\nposition = [0, 0.0501]', accuracy=0.1)
+    for one in (corners, corners[::-1]):
+        found = run(tmp_path, f'shape = "polygon"\nvertices = {one}\nposition = [0, 0.0501]', accuracy=0.1)
+        assert found["restitution"] == pytest.approx(tube["restitution"], abs=5e-3)

@@ -1,0 +1,224 @@
+"""The Python interface: scenes as models, runs, sweeps, comparisons, figures."""
+
+import json
+import subprocess
+import sys
+import tomllib
+
+import jsonschema
+import numpy as np
+import pandas as pd
+import pytest
+
+import ffimpact as ff
+from ffimpact import scene as files
+from ffimpact import schema
+from ffimpact.output.results import read_history
+from tests.support.api import RUBBER, drop
+
+
+@pytest.fixture(scope="module")
+def result(tmp_path_factory):
+    return ff.run(drop(), accuracy=0.1, fields=6, out=tmp_path_factory.mktemp("api") / "run")
+
+
+# ---- scenes
+
+
+@pytest.mark.parametrize("name", [name for name in files.built_in() if files.load(name).bodies])
+def test_a_built_in_scene_of_bodies_is_the_same_written_and_read_again(tmp_path, name):
+    """As objects it has the same bodies, obstacles and parameters as read from its file."""
+    scene, read = ff.Scene.load(name), files.load(name)
+    assert ff.Scene.load(scene.save(tmp_path / "scene.toml")) == scene
+    again = scene.checked()
+    assert (
+        again.values == read.values
+        and again.contact == read.contact
+        and len(again.pairs) == len(read.pairs)
+    )
+    assert [(one.name, one.young, one.nu, one.density, one.mesh_size) for one in again.bodies] == [
+        (one.name, one.young, one.nu, one.density, one.mesh_size) for one in read.bodies
+    ]
+
+
+# ---- results
+
+
+def test_numbers_have_errors_and_units(result):
+    """The impulse is that of the momentum; its error bar is the estimated share of it; a number that is not there is named."""
+    assert result["impulse"] == pytest.approx(
+        1722 * np.pi * 0.05**2 * (8 + result["rebound_vy"]), rel=1e-3
+    )
+    assert result.errors["impulse"] == pytest.approx(
+        result.summary["estimated_error"]["impulse"] * result["impulse"]
+    )
+    assert result.errors["rebound_vy"] == pytest.approx(
+        result.summary["estimated_error"]["rebound"] * 8, rel=0.01
+    )
+    assert result.units["impulse"] == "N s/m" and result.units["t"] == "s"
+    assert result.scene["body"][0]["young"] == 7e6 and isinstance(result.warnings, list)
+    with pytest.raises(ff.BadInput, match="impulse"):
+        result["impuls"]
+    for contents in (result.summary, read_history(result.folder)):
+        with pytest.raises(
+            ff.Unreadable, match="'normal_forc' is not known.*(accepted: .*)"
+        ) as raised:
+            contents["normal_forc"]
+        assert "\n" not in str(raised.value) and "delete" not in str(raised.value)
+    assert "did you mean normal_force?" in str(raised.value)
+    with pytest.raises(ff.BadInput, match="field: 'von_mise' is not known; did you mean von_mises"):
+        result.plot.shapes(field="von_mise")
+
+
+def test_tables(result):
+    assert isinstance(
+        result.history, pd.DataFrame
+    ) and result.history.normal_force.max() == pytest.approx(result["peak_force"])
+    assert list(result.contacts.body) == [1] and "impulse" in result.table.index
+    lines = repr(result).splitlines()
+    assert 5 < len(lines) <= 12 and any(
+        "impulse" in line and "±" in line and "N s/m" in line for line in lines
+    )
+    assert "<table>" in result._repr_html_()
+
+
+def test_figures_are_drawn_into_axes(result):
+    """Force and energies are those of the history; a given panel is drawn into and returned."""
+    plt = pytest.importorskip("matplotlib.pyplot")
+    figure, panels = plt.subplots(2)
+    assert (
+        result.plot.force(ax=panels[0]) is panels[0]
+        and result.plot.energies(ax=panels[1]) is panels[1]
+    )
+    assert panels[0].lines[0].get_ydata().max() == pytest.approx(1e-3 * result["peak_force"])
+    for ax in (result.plot.velocities(), result.plot.shapes()):
+        assert ax.has_data()
+    with pytest.raises(ff.BadInput, match="von_mises"):
+        result.plot.shapes(field="stress")
+    plt.close("all")
+
+
+def test_states_are_grids(result):
+    pytest.importorskip("pyvista")
+    assert (
+        len(result.fields) == len(result.fields.times) and result.fields[-1]["von_mises"].max() > 0
+    )
+
+
+def test_a_player_is_one_file(result, tmp_path):
+    pytest.importorskip("k3d")
+    path = result.view(tmp_path / "impact.html")
+    assert path.stat().st_size > 1e5 and "<script" in path.read_text()[:10_000]
+
+
+def test_a_run_that_is_there_is_not_made_again(result):
+    assert ff.run(drop(), accuracy=0.1, fields=6, out=result.folder).reused
+    assert ff.load(result.folder)["impulse"] == result["impulse"]
+    with pytest.raises(ff.Unreadable):
+        ff.load("nowhere")
+
+
+def test_comparison_says_what_agrees(result):
+    """A run agrees with itself; one with another impulse does not."""
+    other = ff.load(result.folder)
+    assert ff.compare(result, other).agree.all()
+    other.summary = other.summary | {"impulse": 2 * result["impulse"]}
+    assert not ff.compare(result, other, names=["impulse"]).agree.any()
+
+
+def test_a_result_is_of_one_run(tmp_path):
+    """Where another run has taken its place in the folder, what is read later says so."""
+    first = ff.run(drop(), accuracy=0.2, estimate=False, out=tmp_path / "run")
+    ff.run(drop(), {"body.1.velocity.2": -4}, accuracy=0.2, estimate=False, out=tmp_path / "run")
+    with pytest.raises(ff.Unreadable, match="another run"):
+        _ = first.history
+
+
+def test_states_are_as_many_as_the_scene_says(tmp_path):
+    """None where it says none; some where it is left open."""
+    none = ff.run(drop(fields=0), accuracy=0.3, estimate=False, out=tmp_path / "none")
+    some = ff.run(drop(), accuracy=0.3, estimate=False, out=tmp_path / "some")
+    assert len(none.fields) == 0 < len(some.fields) <= 41
+
+
+def test_friction_is_drawn_and_bodies_have_their_names(tmp_path):
+    """Of two discs that meet off their centres."""
+    disc = {"radius": 0.03, "material": RUBBER}
+    pair = [
+        ff.Disc(name="a", position=(-0.031, 0.01), velocity=(2, 0), **disc),
+        ff.Disc(name="b", position=(0.031, -0.01), velocity=(-2, 0), **disc),
+    ]
+    scene = ff.Scene(bodies=pair, contact=ff.Contact(friction_static=0.5), accuracy=0.2)
+    found = ff.run(scene, estimate=False, out=tmp_path / "run")
+    assert [line.get_label() for line in found.plot.force().lines] == ["normal", "friction"]
+    labels = {line.get_label() for line in found.plot.velocities().lines}
+    assert labels == {"vx a", "vx b", "vy a", "vy b"}
+    assert "rebound_vx" not in found.table.index and "rebound_vx_2" in found.table.index
+    compared = ff.compare(found, str(found.folder), names="impulse")
+    assert compared.agree.isna().all() and list(compared.index) == ["impulse"]
+
+
+def test_a_sweep(tmp_path):
+    """A row for each combination, in order; a run that fails is a row with its code; what is there is not run again; error bars are drawn."""
+    values = {"body.1.velocity.2": [-2, -4], "contact.friction_static": [0.1]}
+    study = ff.sweep(drop(accuracy=0.2, fields=0), values, workers=2, out=tmp_path / "study")
+    assert list(study.table["body.1.velocity.2"]) == [-2, -4] and (study.table.exit == 0).all()
+    assert study.table.impulse[1] > 1.8 * study.table.impulse[0]
+    ax = study.plot(x="body.1.velocity.2", y="restitution", by="contact.friction_static")
+    assert ax.get_legend() and len(ax.containers) == 1
+    made = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("summary.json")}
+    ff.sweep(drop(accuracy=0.2, fields=0), values, workers=2, out=tmp_path / "study")
+    assert len(made) == 2 and made == {
+        path: path.stat().st_mtime_ns for path in tmp_path.rglob("summary.json")
+    }
+    with pytest.raises(ff.BadInput, match="impuls"):
+        study.plot(x="body.1.velocity.2", y="impuls")
+
+
+def test_importing_it_changes_nothing_global():
+    """Neither matplotlib's settings and docstrings, nor signals, nor filters of warnings."""
+    state = (
+        "import json, signal, warnings, matplotlib.pyplot, pandas, pydantic, scipy.spatial, matplotlib as mpl; from matplotlib.lines import Line2D; "
+        "state = lambda: [str(dict(mpl.rcParams)), str(signal.getsignal(signal.SIGINT)), str(signal.getsignal(signal.SIGTERM)), "
+        "str(warnings.filters), Line2D.set.__doc__]; before = state(); "
+    )
+    code = (
+        state
+        + "import ffimpact as ff; [getattr(ff, name) for name in ff.__all__]; import ffimpact.plot; print(json.dumps(before == state()))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-W", "default", "-c", code], capture_output=True, text=True
+    )
+    assert done.returncode == 0 and json.loads(done.stdout), done.stderr
+
+
+# ---- the schema of scene files
+
+
+@pytest.fixture(scope="module")
+def validator():
+    told = json.loads(schema.text())
+    jsonschema.Draft202012Validator.check_schema(told)
+    return jsonschema.Draft202012Validator(told)
+
+
+@pytest.mark.parametrize("name", files.built_in())
+def test_built_in_scenes_are_valid_by_the_schema(validator, name):
+    """They name the schema, too, for editors."""
+    text = (files.SCENES / f"{name}.toml").read_text()
+    assert validator.is_valid(tomllib.loads(text))
+    assert text.startswith(f"#:schema {schema.FILE.name}\n")
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"accuracy": 3},
+        {"accurcy": 0.1},
+        {"body": [{"shape": "disc", "radius": 0.05, "position": [0, 1], "yong": 3}]},
+        {"body": [{"shape": "disc", "position": [0, 1]}]},
+        {"contact": {"regularization": "cubic"}},
+    ],
+)
+def test_the_schema_refuses_what_the_program_refuses(validator, changed):
+    assert validator.is_valid(drop().table()) and not validator.is_valid(drop().table() | changed)

@@ -1,0 +1,104 @@
+"""The ball in three dimensions: what its scenes take, leave and say, by either way in."""
+
+import math
+
+import numpy as np
+import pytest
+
+from ffimpact import scene
+from ffimpact.failure import BadInput
+from ffimpact.input import parameters
+from ffimpact.output import estimate, vtu
+from ffimpact.report import contact, figures, report
+from ffimpact.running import run
+from tests.support.direct import call
+from tests.support.triangles import areas
+
+SCRIPT = "ball-plane"
+MASS = 4 / 3 * math.pi * 0.05**3 * 1722
+
+
+@pytest.fixture(scope="module")
+def result(tmp_path_factory):
+    found = run.run(scene.load("ball"), {"accuracy": 0.05, "fields": 3}, tmp_path_factory.mktemp("ball") / "ball")
+    report.draw(found)
+    return found
+
+
+@pytest.fixture(scope="module")
+def oblique(tmp_path_factory):
+    found = run.run(scene.load("ball-oblique"), {"accuracy": 0.1, "fields": 5, "end_time": 2e-3}, tmp_path_factory.mktemp("ball") / "ball", estimate=False)
+    report.draw(found)
+    return found
+
+
+def test_run_of_a_whole_ball(result):
+    """Energy in J, momentum in N s of the whole ball, to the mesh's geometric error; what was left out is named; its error is estimated; the
+    columns of the third dimension are there."""
+    s, h = result.summary, result.history
+    assert s["energy_initial"] == pytest.approx(MASS * 8**2 / 2, rel=2e-3)
+    assert s["impulse"] == pytest.approx(MASS * (8 + s["rebound_vy"]), rel=2e-3)
+    assert "three quarters of the body (symmetry)" in s["skipped"] and "error estimate" not in s["skipped"]
+    assert s["energy_drift"] < 1e-9 and s["momentum_drift"] < 1e-9
+    assert 0 < estimate.largest(s["estimated_error"]) < 0.2
+    assert list(h) == scene.load("ball").columns and not h["vz"].any()
+
+
+@pytest.mark.robustness
+def test_units_and_pictures_are_those_of_a_ball(result, oblique):
+    """Nothing is per metre; all pictures are drawn, of a quarter with its mirror image."""
+    text = report.report(result)
+    assert "N s" in text and "/m" not in text.replace("m/s", "").replace("Pa/m", "").replace("kg/m3", "")
+    pictures = {"energies", "force", "velocity", "shapes", "contact"}
+    assert {path.stem for path in (result.folder / "figures").iterdir()} == pictures
+    assert {path.stem for path in (oblique.folder / "figures").iterdir()} == pictures | {"flight", "rolling"}
+    assert figures.is_half(result.scene) and not figures.is_half(oblique.scene)
+
+
+def test_scene_as_used_is_a_scene_again(result):
+    """scene.toml has every parameter that the ball takes, no other."""
+    known = set(parameters.names(SCRIPT))
+    assert {"angle", "spin", "symmetry", "body_force_x"} <= known and {"block_width", "pairing"} & known == set()
+    assert set(result.scene) == known | {"script"} and result.scene["symmetry"] == "quarter"
+    assert scene.load(str(result.folder / "scene.toml")).values["penalty"] == result.scene["penalty"]
+
+
+def test_snapshots_are_cuts_through_the_middle(result, oblique):
+    """Of the quarter the half x >= 0 of the disc z = 0, of the half all of it; triangles counter-clockwise that fill it; the plane stays a plane."""
+    for found, share in ((result, 0.5), (oblique, 1.0)):
+        snapshot = vtu.read(vtu.series(found.folder / "fields.pvd")[-1][1])
+        area = areas(snapshot)
+        assert (area > 0).all() and area.sum() == pytest.approx(share * math.pi * 0.05**2, rel=0.05)
+        assert np.abs(snapshot.fields["displacement"][:, 2]).max() < 1e-15
+        assert snapshot.fields["cauchy_stress"].shape[1] == 6 and np.abs(snapshot.fields["cauchy_stress"][:, 2]).max() > 0
+
+
+def test_contact_points_carry_the_load(oblique):
+    """The sum of pressure and shear over the surface are the forces of the history at that instant; half the ball has both sides of z = 0 in its
+    weights, and the shear along z cancels there."""
+    table, history = contact.read(oblique.folder), oblique.history
+    for t in np.unique(table.t):
+        rows = table[table.t == t]
+        row = np.argmin(np.abs(history["t"] - t))
+        assert (rows.pressure * rows.weight).sum() == pytest.approx(history["normal_force"][row], rel=1e-6)
+        assert (rows.shear * rows.weight).sum() == pytest.approx(history["friction_force"][row], rel=1e-6)
+    assert (table.z > -1e-9).all() and np.abs(table.y).max() < 1e-3 and np.abs(table.shear_z).max() > 0
+
+
+@pytest.mark.parametrize("flags, said", [
+    (("-symmetry", "quarter", "-angle", "60"), "symmetry: quarter needs a normal impact without spin"),
+    (("-mesh", "x.msh"), "mesh: ball-plane takes no such parameter"),
+    (("-block_width", "3"), "block_width: ball-plane takes no such parameter"),
+    (("-pairing", "pairwise"), "pairing: ball-plane takes no such parameter"),
+    (("-mesh_size", "0.06"), "mesh_size: 0.06 is larger than the radius 0.05"),
+])
+def test_what_is_refused(tmp_path, flags, said):
+    """By exit code 10 and the name."""
+    code, _, error = call(*flags, cwd=tmp_path, script=SCRIPT)
+    assert code == 10 and said in error
+
+
+def test_a_disc_has_no_quarter(tmp_path):
+    """symmetry = quarter is of three dimensions."""
+    with pytest.raises(BadInput, match="symmetry: quarter, which only a body in three dimensions has .accepted: auto.full.half"):
+        scene.load("disc-normal").override({"symmetry": "quarter"}).description()

@@ -1,0 +1,149 @@
+"""The axisymmetric ball: what its scenes take, leave and say, by either way in."""
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from ffimpact import scene
+from ffimpact.failure import BadInput
+from ffimpact.freefem import freefem
+from ffimpact.freefem.describe import describe
+from ffimpact.input import parameters
+from ffimpact.mesh import mesh
+from ffimpact.output import estimate, results, vtu
+from ffimpact.report import compare, contact, figures, report
+from ffimpact.running import run
+from tests.support.direct import COARSE, call
+
+SCRIPT = "ball-axisymmetric"
+MASS = 4 / 3 * math.pi * 0.05**3 * 1722
+
+
+@pytest.fixture(scope="module")
+def result(tmp_path_factory):
+    found = run.run(scene.load("ball-axisymmetric"), {"accuracy": 0.02, "fields": 3}, tmp_path_factory.mktemp("ball") / "ball")
+    report.draw(found)
+    return found
+
+
+def ball(*flags: str, cwd):
+    return call("-law", "neohookean", *flags, cwd=cwd, script=SCRIPT)
+
+
+def test_run_of_a_whole_ball(result):
+    """Energy in J, momentum in N s of the whole ball, to the mesh's geometric error; what was left out is named; its error is estimated."""
+    s = result.summary
+    assert s["energy_initial"] == pytest.approx(MASS * 8**2 / 2, rel=1e-3)
+    assert s["impulse"] == pytest.approx(MASS * (8 + s["rebound_vy"]), rel=1e-3)
+    assert "all but half a meridian plane (axisymmetric)" in s["skipped"] and "error estimate" not in s["skipped"]
+    assert s["energy_drift"] < 1e-9 and s["momentum_drift"] < 1e-9
+    assert 0 < estimate.largest(s["estimated_error"]) < 0.05
+
+
+def test_units_are_those_of_a_ball(result):
+    """Nothing is per metre: not in the report, not in the figures, not in what the script prints."""
+    text = report.report(result)
+    assert "N s" in text and "/m" not in text.replace("m/s", "").replace("Pa/m", "").replace("kg/m3", "")
+    assert figures.per_metre(result.scene) == "" and figures.per_metre({"script": "disc-plane"}) == "/m"
+    printed = (result.folder / "log.txt").read_text()
+    assert " N s, peak force " in printed and "J/m" not in printed and "N/m" not in printed
+    assert {path.stem for path in (result.folder / "figures").iterdir()} == {"energies", "force", "velocity", "shapes", "contact"}
+
+
+def test_a_disc_beside_a_ball(result, tmp_path, monkeypatch):
+    """Figure 11: a disc, per metre, and a ball are compared by the accelerations of their centres, v'(t) of the histories, and by shares of energy."""
+    disc = run.run(scene.load("disc-normal-neohookean"), {"accuracy": 0.2}, tmp_path / "disc", estimate=False)
+    assert compare._mass(disc) == pytest.approx(math.pi * 0.05**2 * 1722, rel=1e-3)
+    assert compare._mass(result) == pytest.approx(MASS, rel=1e-3)
+    monkeypatch.setattr(compare.plt, "close", lambda figure: None)
+    compare.draw({"disc": disc, "ball": result}, tmp_path / "both.png")
+    force, _, energy, _ = compare.plt.gcf().axes
+    assert "acceleration" in force.get_ylabel() and "over that at the start" in energy.get_ylabel()
+    totals = [line for line in energy.lines if line.get_linewidth() > 2]
+    assert len({line._unscaled_dash_pattern[0] for line in totals}) == len(totals) == 2     # totals that lie on one another: dashes in turn
+    h, line = result.history, [line for line in force.lines if len(line.get_ydata()) > 2][1]     # not the marks of the last touch
+    inside = slice(1, None)
+    np.testing.assert_allclose(1e3 * line.get_ydata()[inside], np.diff(h["vy"]) / h["dt"][inside], rtol=1e-6, atol=1e-3)
+
+
+def test_scene_as_used_is_a_scene_again(result):
+    """scene.toml has every parameter that the ball takes, no other, and makes the same run."""
+    known = set(parameters.names(SCRIPT))
+    assert {"angle", "spin", "symmetry", "body_force_x", "block_width"} & known == set()
+    assert set(result.scene) == known | {"script"}
+    again = scene.load(str(result.folder / "scene.toml"))
+    assert again.script == SCRIPT and again.values["penalty"] == result.scene["penalty"]
+
+
+def test_fields_are_those_of_a_meridian_plane(result):
+    """Snapshots of the half x >= 0; its points on the axis stay there, and there the hoop stress is the radial one."""
+    snapshot = vtu.read(vtu.series(result.folder / "fields.pvd")[1][1])
+    axis = np.abs(snapshot.points[:, 0]) < 1e-12
+    assert snapshot.points[:, 0].min() > -1e-12 and axis.sum() > 5
+    assert np.abs(snapshot.fields["displacement"][axis, 0]).max() < 1e-15
+    stress = snapshot.fields["cauchy_stress"]
+    assert np.abs(stress[axis, 0] - stress[axis, 2]).max() < 0.1 * np.abs(stress).max() and np.abs(stress[:, 2]).max() > 0
+    assert figures.is_half(result.scene)
+
+
+@pytest.mark.parametrize("name, value", [("angle", 60), ("spin", 3), ("body_force_x", 1), ("symmetry", "full")])
+def test_what_no_body_of_revolution_has(tmp_path, name, value):
+    """Speed along the axis, no spin, no force across: exit code 10 and the name, of the script and of Python."""
+    code, _, error = ball(f"-{name}", str(value), cwd=tmp_path)
+    assert code == 10 and f"{name}: {SCRIPT} takes no such parameter (accepted: in disc-plane|disc-block" in error
+    with pytest.raises(BadInput, match=f"{name}: {SCRIPT} takes no such parameter"):
+        scene.load("ball-axisymmetric").override({name: value})
+
+
+@pytest.mark.parametrize("shift, labels, said", [(0.0, True, None), (0.1, True, "its axis is x = 0.1 .accepted: half a meridian plane, to the right of its axis x = 0"),
+                                                 (0.0, False, "no edge has the label 2 of the axis .accepted: half a meridian plane")])
+def test_a_mesh_is_half_a_meridian_plane(tmp_path, shift, labels, said):
+    """With its axis on x = 0, labelled as such; anything else is refused by exit code 10."""
+    given = mesh.disc(0.05, 0.02, 0.01, half=labels)
+    mesh.write(mesh.Mesh(given.points + (shift, 0), given.triangles, given.edges, given.labels), tmp_path / "my.msh")
+    if said:
+        with pytest.raises(BadInput, match=said):
+            scene.load("ball-axisymmetric").description((tmp_path / "my.msh").read_bytes())
+    code, out, error = ball(*COARSE[2:], "-mesh", "my.msh", "-out", "out", cwd=tmp_path)
+    assert (code, error) == (0, "") if not said else code == 10
+    if not said:
+        assert results.read_summary(tmp_path / "out")["energy_initial"] == pytest.approx(MASS * 32, rel=5e-3)
+
+
+def test_both_ways_in_run_the_same_flags(tmp_path):
+    """The script on Python's mesh, with Python's flags, leaves the very history."""
+    found = run.run(scene.load("ball-axisymmetric"), {"accuracy": 0.1, "end_time": 1e-3}, tmp_path / "ball", estimate=False)
+    flags = freefem.words_of({name: value for name, value in found.scene.items() if name != "script"})
+    code, _, _ = call(*flags, "-mesh", str(found.folder / "mesh.msh"), "-out", str(tmp_path / "direct"), cwd=tmp_path, script=SCRIPT)
+    assert code == 0
+    assert (tmp_path / "direct/history.csv").read_text() == (found.folder / "history.csv").read_text()
+
+
+def test_sizes_follow_hertz():
+    """Mesh and penalty of a slower ball are finer and stiffer as Hertz' contact is narrower, (v/c)^(2/5); those of a disc are its own."""
+    fast, slow = (describe({"speed": speed, "law": "neohookean"}, SCRIPT)["used"] for speed in (1, 0.1))
+    narrower = 10 ** -0.4
+    assert slow["contact_mesh_size"] / fast["contact_mesh_size"] == pytest.approx(narrower, rel=1e-9)
+    assert slow["penalty"] / fast["penalty"] == pytest.approx(1 / narrower, rel=1e-9)
+    disc = [describe({"speed": speed, "law": "neohookean"})["used"]["contact_mesh_size"] for speed in (1, 0.1)]
+    assert disc[1] / disc[0] == pytest.approx(10**-0.5, rel=1e-9)
+
+
+def test_pressure_of_hertz(tmp_path):
+    """At the largest force of a slow impact the pressure over the radius is p0 sqrt(1 - r^2/a^2) of that force, to 4 % of p0 (rms over the area), and
+    the contact as wide, to 2 % (Johnson, Contact mechanics, 4.2); not that of twice the force."""
+    found = run.run(scene.load("ball-axisymmetric"), {"speed": 0.1, "nu": 0.3, "penalty": "auto", "fields": 20}, tmp_path / "slow", estimate=False)
+    points = pd.DataFrame(contact.read(found.folder))
+    force = points.assign(force=points.pressure * points.weight).groupby("t").force.sum()
+    now = points[points.t == force.idxmax()]
+
+    def off(load: float) -> tuple[float, float]:
+        a = (3 * load * 0.05 * (1 - 0.3**2) / (4 * 7e6)) ** (1 / 3)
+        most = 3 * load / (2 * math.pi * a**2)
+        wrong = now.pressure / most - np.sqrt(np.clip(1 - (now.x / a) ** 2, 0, None))
+        return math.sqrt((wrong**2 * now.weight).sum() / now.weight.sum()), now.x.max() / a
+
+    rms, wide = off(force.max())
+    assert rms < 0.04 and wide == pytest.approx(1, abs=0.02) and off(2 * force.max())[0] > 2 * rms

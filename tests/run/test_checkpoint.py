@@ -1,0 +1,266 @@
+"""Checkpoint and restart: a run that is killed goes on from its last checkpoint as if nothing had happened."""
+
+import json
+import re
+import shutil
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+
+from ffimpact import scene
+from ffimpact.failure import Failure, Unreadable
+from ffimpact.input import parameters
+from ffimpact.output import results
+from ffimpact.running import run
+from tests.support.checkpoint import EFFORT, assert_same, direct, kill_at, rows_known
+from tests.support.cli import call, is_alive, start, wait_for
+from verification.measure import prepared
+
+COARSE = dict(law="neohookean", nu=0.4)
+SCENES = {   # flags of edp/disc-plane.edp, steps between checkpoints, rows of history that the last checkpoint must know
+    "energy-momentum": (COARSE | dict(accuracy=0.2, angle=60, friction_static=0.7, friction_dynamic=0.5, fields=5), 7, 20),
+    "relaxing": (COARSE | dict(accuracy=0.2, relaxation_modulus=2e6, relaxation_time=1e-3, viscosity=5), 7, 20),
+    "until rest": (COARSE | dict(accuracy=0.2, loss=2, speed=0, height=0.05, gravity=9.81, until="rest"), 7, 60),
+    "svk": (dict(accuracy=0.1, exponent=1.5, penalty=1e11, height=1e-3, gravity=9.81), 7, 20),
+    "midpoint": (COARSE | dict(accuracy=0.2, spin=50, friction_static=0.5, friction_dynamic=0.5, degree=1, integrator="midpoint"),
+                 7, 20),
+    "newmark": (COARSE | dict(accuracy=0.1, dt=2e-5, integrator="newmark"), 10, 100),
+    "backward-euler": (COARSE | dict(accuracy=0.1, dt=2e-5, integrator="backward-euler"), 10, 100),
+    "bdf2": (COARSE | dict(accuracy=0.1, dt=2e-5, integrator="bdf2"), 10, 100),
+    "central-difference": (COARSE | dict(accuracy=0.2, angle=60, friction_static=0.5, friction_dynamic=0.4, slip_velocity=0.1,
+                                         dt=3e-5, integrator="central-difference"), 10, 80),
+}
+OFTEN = ("energy-momentum", "relaxing", "bdf2", "central-difference")     # the others keep no more between steps: make robustness
+
+
+@pytest.mark.parametrize("name", [name if name in OFTEN else pytest.param(name, marks=pytest.mark.robustness) for name in SCENES])
+def test_half_a_run_and_the_rest_are_the_whole(tmp_path, name):
+    """A run that is killed twice, and goes on each time, equals the run without checkpoints in every column and number.
+
+    So checkpoints do not change the answer either.
+    """
+    flags, every, rows = SCENES[name]
+    straight = direct(flags, tmp_path / "straight")
+    assert straight.communicate(timeout=120) and straight.returncode == 0
+    flags, out = flags | {"checkpoint_every": every}, tmp_path / "out"
+    kill_at(direct(flags, out), out / "checkpoint", rows // 2)
+    kill_at(direct(flags | {"restart": out / "checkpoint"}, out), out / "checkpoint", rows)
+    knows, there = rows_known(out / "checkpoint"), (out / "unfinished/history.csv").read_text()
+    (out / "unfinished/history.csv").write_text(there + "rows that were written after the checkpoint\n")
+    last = direct(flags | {"restart": out / "checkpoint"}, out)
+    assert last.communicate(timeout=120) and last.returncode == 0
+    assert_same(out, tmp_path / "straight")
+    summary = results.read_summary(out)
+    assert summary["resumed_at"] == results.read_history(out)["t"][knows - 1]
+    assert results.read_summary(tmp_path / "straight")["resumed_at"] is None
+    assert not {path.name for path in out.iterdir()} - {"scene.toml", "history.csv", "contacts.csv", "summary.json", "fields", "fields.pvd"}
+
+
+BALL = COARSE | dict(mesh_size=0.03, contact_mesh_size=0.015, accuracy=0.2, fields=2, end_time=1e-3, dt=2e-5, checkpoint_every=7)
+SOFT = {"law": "neohookean", "young": 2e6, "nu": 0.4, "density": 1000.0}
+# two balls of revolution on a surface of its own expression
+BALLS = {"dimension": "axisymmetric", "accuracy": 0.2, "end_time": 6e-3, "checkpoint_every": 4, "obstacle": [{"kind": "implicit", "distance": "y + 10*x^2"}],
+         "body": [SOFT | {"shape": "ball", "radius": 0.04, "mesh_size": 0.015, "contact_mesh_size": 0.006, "name": name, "position": [0.0, y], "velocity": [0.0, v]}
+                  for name, y, v in (("a", 0.0403, -3.0), ("b", 0.1205, -5.0))]}
+# a rigid disc on a pad that is moved from below, a ring with air in it beside it, and a roller that turns
+DRIVEN = SOFT | {"accuracy": 0.2, "end_time": 8e-3, "checkpoint_every": 4, "gravity": 9.81, "contact": {"friction_static": 0.4}, "body": [
+    {"shape": "disc", "radius": 0.03, "rigid": True, "position": [0.0, 0.0502], "velocity": [0.5, -1.0]},
+    {"shape": "rectangle", "width": 0.3, "height": 0.04, "position": [0.0, 0.0],
+     "support": [{"where": "bottom", "motion": [0, "0.002*sin(500*t)"]}]},
+    {"shape": "ring", "radius": 0.03, "inner_radius": 0.02, "position": [0.09, 0.052], "velocity": [0.0, -1.0],
+     "load": [{"where": "inner", "gas": {"gauge_pressure": 2e4, "exponent": 1.4}}]}],
+    "obstacle": [{"kind": "circle", "centre": [-0.1, 0.0402], "radius": 0.02, "rotation": "-3000*t", "motion": [0, "-0.1*t"]}]}
+
+
+@pytest.mark.few(3)
+@pytest.mark.parametrize("script, flags", [
+    ("bodies", DRIVEN), ("bodies-axisymmetric", BALLS), ("disc-block", COARSE | dict(radius=0.5, speed=10, accuracy=0.02, pairing="pairwise", checkpoint_every=10)),
+    ("ball-plane", BALL), ("ball-plane", BALL | dict(angle=60, friction_static=0.5, friction_dynamic=0.4))])
+def test_bodies_go_on_to_the_last_bit(tmp_path, script, flags):
+    """Bodies of revolution, bodies that are rigid, held, driven or filled with air, a disc on a block by pairs of points, and balls in
+    space: what steps have learnt of gaps and of the contact's window goes on with the run."""
+    flags = prepared(tmp_path, flags) if "body" in flags else flags
+    out = tmp_path / "out"
+    assert direct(flags, tmp_path / "straight", script).communicate(timeout=120)
+    rows = len(results.read_history(tmp_path / "straight")["t"])
+    kill_at(direct(flags, out, script), out / "checkpoint", rows // 2)
+    assert direct(flags | {"restart": out / "checkpoint"}, out, script).communicate(timeout=120)
+    assert_same(out, tmp_path / "straight")
+    assert results.read_summary(out)["resumed_at"] > 0 and (out / "history.csv").read_bytes() == (tmp_path / "straight/history.csv").read_bytes()
+
+
+# ---- the same command
+
+SET = dict(law="neohookean", nu=0.4, accuracy=0.1, dt=2e-5, fields=2, checkpoint_every=10)
+COMMAND = ("run", "disc-normal", "--quiet", "--checkpoint-every", "10", "--set",
+           *(f"{name}={value}" for name, value in SET.items() if name != "checkpoint_every"), "--out")
+
+
+def go(out: Path, **changed) -> results.RunResult:
+    options = {name: changed.pop(name) for name in ("force", "mesh_file") if name in changed}
+    return run.run(scene.load("disc-normal"), SET | changed, out, **options)
+
+
+def children(process: subprocess.Popen) -> list[int]:
+    return [int(pid) for pid in Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()]
+
+
+@pytest.fixture(scope="module")
+def straight(tmp_path_factory) -> results.RunResult:
+    """The run that is never killed."""
+    return go(tmp_path_factory.mktemp("straight") / "out", checkpoint_every=0)
+
+
+@pytest.fixture(scope="module")
+def killed(tmp_path_factory) -> Path:
+    """out.part of a run whose driver was killed."""
+    out = tmp_path_factory.mktemp("killed") / "out"
+    process = start(*COMMAND, str(out))
+    wait_for(lambda: rows_known(out.with_name("out.part") / "checkpoint") > 100)
+    freefems = children(process)
+    process.kill()
+    process.communicate()
+    assert freefems
+    wait_for(lambda: not any(map(is_alive, freefems)))   # nothing is orphaned
+    time.sleep(0.5)                          # but for a shell that is just putting a checkpoint in its place
+    assert not out.exists()
+    return out.with_name("out.part")
+
+
+@pytest.fixture
+def out(killed, tmp_path) -> Path:
+    """A result folder whose run was killed."""
+    shutil.copytree(killed, tmp_path / "out.part")
+    return tmp_path / "out"
+
+
+def test_killed_driver(out, straight):
+    """After kill -9 of the driver the same command goes on, and leaves the folder that a straight run leaves."""
+    assert call(*COMMAND, str(out)) == (0, "", "")
+    result = results.RunResult(out, results.read_summary(out), False)
+    assert result.summary["resumed_at"] > 1.5e-3
+    assert set(result.summary["provenance"]) == set(straight.summary["provenance"])
+    assert {path.name for path in out.iterdir()} == {path.name for path in straight.folder.iterdir()} | {"figures"}
+    assert_same(out, straight.folder)
+    assert not list(out.parent.glob("out.*"))
+
+
+RISING = """accuracy = 0.005
+young = 7e6
+nu = 0.45
+density = 1722
+law = "neohookean"
+checkpoint_every = 2
+[[body]]
+shape = "disc"
+radius = 0.05
+position = [0, 0.051]
+velocity = [0, -2]
+[[obstacle]]
+kind = "plane"
+point = [0, 0]
+normal = [0, 1]
+velocity = [0, 3]
+"""
+
+
+@pytest.mark.robustness
+def test_killed_behind_the_run_that_estimates_the_error(tmp_path):
+    """What that run has left is known as of this scene, its moving obstacle too: the same stated errors, and no needless finer run."""
+    (tmp_path / "rising.toml").write_text(RISING)
+    out, stage, command = tmp_path / "out", tmp_path / "out.part", ["run", str(tmp_path / "rising.toml"), "--quiet", "--out"]
+    assert call(*command, str(tmp_path / "straight"))[0] == 0
+    process = start(*command, str(out))
+    wait_for(lambda: (stage / "coarser/summary.json").exists() and (stage / "checkpoint").exists())
+    process.kill()
+    process.communicate()
+    assert not out.exists() and call(*command, str(out))[0] == 0
+    one, other = (results.read_summary(folder) for folder in (tmp_path / "straight", out))
+    assert [one[name] == other[name] for name in one if name not in EFFORT] == [True] * (len(one) - sum(name in one for name in EFFORT))
+    assert_same(out, tmp_path / "straight")
+
+
+@pytest.mark.robustness
+def test_killed_freefem(tmp_path, straight):
+    """After kill -9 of FreeFem++ one line says that the same command goes on, and so it does."""
+    out, stage = tmp_path / "out", tmp_path / "out.part"
+    process = start(*COMMAND, str(out))
+    wait_for(lambda: rows_known(stage / "checkpoint") > 50)
+    subprocess.run(["kill", "-9", *map(str, children(process))], check=True)
+    said, err = process.communicate(timeout=10)
+    assert process.returncode == 1 and err.count("\n") == 1 and "killed by SIGKILL" in err and "the same command goes on" in err
+    assert str(stage) in said and not out.exists()
+    assert go(out).summary["resumed_at"] > 0
+    assert_same(out, straight.folder)
+
+
+@pytest.mark.parametrize("changed", [{"speed": 7.5}, {"force": True}, {"mesh_file": True}, {}],
+                         ids=["scene", "force", "mesh", "code"])
+def test_another_run_starts_anew(out, straight, monkeypatch, changed):
+    """Another scene, mesh or code, and --force, do not go on from the checkpoint that is there: it goes."""
+    if "mesh_file" in changed:
+        changed = {"mesh_file": straight.folder / "mesh.msh"}
+    if not changed:
+        monkeypatch.setattr(run, "code_hash", lambda: "other")
+    result = go(out, **changed, end_time=2e-4)
+    assert result.summary["resumed_at"] is None and result.history["t"][-1] == pytest.approx(2e-4)
+    assert not list(out.parent.glob("out.*"))
+
+
+def test_checkpoints_are_not_part_of_the_run(out, straight):
+    """How often checkpoints are made decides neither whether a run goes on nor whether a finished one is reused."""
+    assert go(out, checkpoint_every=0).summary["resumed_at"] > 0
+    assert go(out, checkpoint_every=1000).reused
+
+
+def test_failed_run_leaves_no_checkpoint(tmp_path):
+    """A run that fails of itself keeps its files as ever, and no checkpoint from which it would only fail again."""
+    with pytest.raises(Failure) as error:
+        go(tmp_path / "out", law="svk", speed=60, dt=0, checkpoint_every=1)
+    assert error.value.code in (11, 12) and error.value.folder == tmp_path / "out"
+    assert len(results.read_history(tmp_path / "out")["t"]) > 2
+    assert not list(tmp_path.glob("out/checkpoint*")) and not list(tmp_path.glob("out.*"))
+
+
+@pytest.mark.few(2)
+@pytest.mark.parametrize("damage", ["empty", "text", "cut", "flipped"])
+def test_unreadable_checkpoint(out, damage):
+    """A checkpoint that cannot be read ends with exit code 14 and a line that names it and says what to do; it stays."""
+    checkpoint = out.with_name("out.part") / "checkpoint"
+    content = checkpoint.read_bytes()
+    middle = len(content) // 2
+    checkpoint.write_bytes({"empty": b"", "text": b"not a checkpoint\n", "cut": content[:middle],
+                            "flipped": content[:middle] + bytes([content[middle] ^ 1]) + content[middle + 1:]}[damage])
+    code, _, err = call(*COMMAND, str(out))
+    assert code == 14 and err.count("\n") == 1 and str(checkpoint) in err and "it is damaged; delete it" in err
+    assert checkpoint.exists() and not out.exists()
+    checkpoint.unlink()
+    assert go(out, end_time=1e-4).summary["resumed_at"] is None
+
+
+def test_checkpoint_of_nobody_knows_what(out):
+    """Where it cannot be read whose checkpoint it is, exit code 14 says so."""
+    (out.with_name("out.part") / "checkpoint.json").write_text("{")
+    with pytest.raises(Unreadable, match="checkpoint.json cannot be read.*delete .*out.part"):
+        go(out)
+
+
+@pytest.mark.parametrize("changed, words", [
+    ({"speed": 7}, "it is of .* speed = [0-9.]+ .not 7.;"),
+    ({"mesh": None}, "it is of another mesh, of other bodies or of another version;"),
+    ({"restart": "nowhere"}, "there is no such file"),
+    ({"out": "elsewhere"}, "does not have the .* rows before it"),
+])
+def test_restart_without_python(out, tmp_path, changed, words):
+    """FreeFem++ itself refuses a checkpoint of another scene or mesh, none at all, or one without its history: exit code 14."""
+    stage = out.with_name("out.part")
+    used = json.loads((stage / "checkpoint.json").read_text())["asked"]
+    flags = {name: used[name] for name in parameters.names() if name in used}
+    flags |= {"mesh": stage / "mesh.msh", "restart": stage / "checkpoint"} | changed
+    flags = {name: value for name, value in flags.items() if value is not None}
+    process = direct(flags, tmp_path / flags.pop("out", "out.part"))
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == 14 and err.count("\n") == 1
+    assert err.startswith("ffimpact: the checkpoint '") and re.search(words, err), err

@@ -1,0 +1,109 @@
+"""The command line: exit codes, one-line errors, interruption, and that `make` lists its targets."""
+
+import os
+import pty
+import re
+import signal
+import sys
+import termios
+
+import pytest
+
+from ffimpact import scene
+from ffimpact.__main__ import main
+from ffimpact.freefem import describe
+from ffimpact.running import run
+from tests.support.cli import call, is_alive, start, wait_for
+
+
+def test_run_reports_beside_the_published_numbers(fake, tmp_path):
+    """The report shows the key figures, the paper's contact time and what it leaves open, and the pictures."""
+    code, out, err = call("run", "disc-normal", "--out", str(tmp_path / "out"))
+    assert code == 0 and err == ""
+    assert re.search(r"contact time +4.67 ms +4.67 ± 0.02 \(NGSolve", out)
+    assert "4.8 (paper, section 3.3; k, nu not stated in the paper)" in out
+    assert "figures/{energies,force,shapes,velocity}.png" in out and "half of the disc" in out
+    assert "finished earlier" in call("run", "disc-normal", "--out", str(tmp_path / "out"))[1]
+
+
+def test_a_run_needs_no_matplotlib(fake, tmp_path, monkeypatch, capsys):
+    """Where nothing can be drawn one line says so, and the run is finished and reported all the same; drawn once it can be."""
+    with monkeypatch.context() as without:
+        without.setitem(sys.modules, "ffimpact.report.drawing", None)
+        without.delattr("ffimpact.report.drawing", raising=False)
+        assert main(["run", "disc-normal", "--out", str(tmp_path / "out")]) == 0
+    said, starts = capsys.readouterr(), fake.starts()
+    assert said.err.startswith("ffimpact: the figures could not be drawn: ") and said.err.count("\n") == 1 and "contact time" in said.out
+    assert main(["run", "disc-normal", "--out", str(tmp_path / "out")]) == 0 and (tmp_path / "out/figures/force.png").exists()
+    assert "finished earlier" in capsys.readouterr().out and fake.starts() == starts
+
+
+def test_published_numbers_are_not_shown_beside_another_scene(fake, tmp_path, capsys):
+    """At another speed the paper has no number, and none is shown."""
+    assert main(["run", "disc-normal", "--set", "speed=4", "--set", "fields=0", "--out", str(tmp_path / "out")]) == 0
+    out = capsys.readouterr().out
+    assert "contact time" in out and "paper" not in out and "NGSolve" not in out
+
+
+def test_quiet_is_quiet(fake, tmp_path):
+    """--quiet prints warnings alone, not even where an earlier run of another scene goes."""
+    for speed in ("4", "5"):
+        words = "run", "disc-normal", "--quiet", "--set", f"speed={speed}", "fields=0", "--out", str(tmp_path / "out")
+        code, out, error = call(*words)
+        assert (code, out) == (0, "") and all(line.startswith("ffimpact: warning: ") for line in error.splitlines())
+    assert (tmp_path / "out.1").exists()
+
+
+def test_scripts_that_do_not_answer_are_one_line(monkeypatch, capsys):
+    """Where FreeFem++ is not done in time with what its scripts are asked: a line and exit code 13."""
+    monkeypatch.setattr(describe, "LIMIT", 1e-3)
+    assert main(["run", "disc-normal", "--set", "nu=0.43210987"]) == 13
+    error = capsys.readouterr().err
+    assert re.match(r"ffimpact: \S+ does not finish edp/describe.edp in 0.001 s", error) and error.count("\n") == 1
+
+
+def test_quiet_leaves_warnings(fake, tmp_path, capsys, monkeypatch):
+    """With --quiet each warning is a line on stderr."""
+    found = run.run(scene.load("disc-normal"), {"fields": 0}, tmp_path / "out")
+    found.summary["warnings"] = ["penalty: too soft"]
+    monkeypatch.setattr(run, "run", lambda *_, **__: found)
+    assert main(["run", "disc-normal", "--quiet"]) == 0
+    assert tuple(capsys.readouterr()) == ("", "ffimpact: warning: penalty: too soft\n")
+
+
+def test_failure_of_the_script_is_passed_on(fake, tmp_path):
+    """The script's own line arrives on stderr as it is, with its exit code; stdout says where the files are."""
+    fake("step")
+    code, out, err = call("run", "disc-normal", "--out", str(tmp_path / "out"))
+    assert code == 11 and err == "ffimpact: step: no convergence at t = 1.2e-3 s, dt = 1e-9 s, residual 3e-4\n"
+    assert str(tmp_path.name) in out
+
+
+@pytest.mark.parametrize("number, code", [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_interrupted_run_leaves_nothing(fake, tmp_path, number, code):
+    """Ctrl-C (or SIGTERM) ends FreeFem++ too and leaves no folder, finished or half-finished."""
+    fake("slow")
+    process = start("run", "disc-normal", "--out", str(tmp_path / "out"))
+    wait_for(fake.starts)
+    process.send_signal(number)
+    _, err = process.communicate(timeout=10)
+    assert process.returncode == code and "Traceback" not in err
+    assert not is_alive(fake.pids()[0])
+    assert not list(tmp_path.glob("out*"))
+
+
+def test_progress_is_shown_on_a_terminal_only(fake, tmp_path):
+    """On a terminal one line shows which run it is, of how many, what it is at and the time left of all, from the mesh on; elsewhere there is none."""
+    master, slave = pty.openpty()
+    termios.tcsetwinsize(slave, (24, 100))
+    process = start("run", "disc-normal", "--set", "fields=0", "--out", str(tmp_path / "out"), stderr=slave)
+    os.close(slave)
+    seen = ""
+    try:
+        while block := os.read(master, 10000):
+            seen += block.decode()
+    except OSError:   # the other end is closed
+        os.close(master)
+    process.communicate(timeout=60)
+    assert re.search(r"disc-normal: main run 1 of 2, t = 3.000 ms, 150 steps +55% .*, \d\d:\d\d left", seen) and process.returncode == 0
+    assert "main run 1 of 2, mesh" in seen and "coarser run 2 of 2" in seen

@@ -1,0 +1,38 @@
+"""The preloaded clock(): the same bytes, half the time; without it nothing changes."""
+
+import json
+import os
+from dataclasses import replace
+
+import pytest
+
+from ffimpact.freefem import freefem
+
+
+def test_histories_are_equal_to_the_byte_with_and_without_it(tmp_path):
+    """The clock decides nothing; the summary says whether it served; the processor time it counts is that of the process."""
+    given, histories = freefem.find().environment, []
+    if "libclock.so" not in given.get("LD_PRELOAD", ""):
+        pytest.skip("no compiler here")
+    for name, environment in (("quick", given), ("plain", {key: value for key, value in given.items() if key != "LD_PRELOAD"})):
+        before = os.times()
+        freefem.find().call("edp/disc-plane.edp", "-accuracy", "0.05", "-out", str(tmp_path / name), env=environment, check=True)
+        after = os.times()
+        summary = json.loads((tmp_path / name / "summary.json").read_text())
+        used = after.children_user + after.children_system - before.children_user - before.children_system
+        assert summary["quick_clock"] == (name == "quick") and summary["cpu_seconds"] == pytest.approx(used, abs=0.1)
+        histories.append((tmp_path / name / "history.csv").read_bytes())
+    assert histories[0] == histories[1]
+
+
+def test_it_serves_on_a_path_that_cannot_be_preloaded_by_its_name(monkeypatch, tmp_path):
+    """LD_PRELOAD ends names at blanks and colons: there the library is an open file, which goes to every process of the program."""
+    program = freefem.find()
+    if "LD_PRELOAD" not in program.environment:
+        pytest.skip("no compiler here")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "a b:c"))
+    environment = {key: value for key, value in program.environment.items() if key != "LD_PRELOAD"}
+    program = replace(program, environment=environment | freefem._quick_clock(environment))
+    assert len(program.preloaded) == 1
+    program.call("edp/disc-plane.edp", "-accuracy", "0.2", "-out", str(tmp_path / "out"), check=True)
+    assert json.loads((tmp_path / "out/summary.json").read_text())["quick_clock"] == 1

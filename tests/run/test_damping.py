@@ -1,0 +1,136 @@
+"""Kelvin-Voigt damping and a Maxwell branch (edp/core/law/damping.idp, relaxation.idp): exact decays, objective, counted exactly, in scripts and kernels."""
+
+import numpy as np
+import pytest
+
+from ffimpact.failure import BadInput
+from ffimpact.freefem.describe import describe
+from ffimpact.places import ROOT
+from ffimpact.scene import read
+from ffimpact.scenes import assembly
+from verification.measure import bodies, disc, measure
+
+IMPACT = {"law": "neohookean", "nu": 0.4, "speed": 4, "angle": 60, "friction_static": 0.3, "accuracy": 0.1}
+NU = 0.3
+ETA = 100.0
+PROPORTIONAL = {"nu": NU, "viscosity": ETA, "bulk_viscosity": ETA * 2 * NU / (1 - 2 * NU)}      # zeta/lambda = eta/mu: eta_E/E, too
+MODES = {"extension": ("damped-mode", {"nu": 0.0, "loss": 0.1}), "with volume": ("damped-mode", {"law": "neohookean"} | PROPORTIONAL),
+         "midpoint": ("damped-mode", {"integrator": "midpoint"} | PROPORTIONAL),
+         "shear": ("damped-mode-3d", {"symmetry": "full", "nu": NU, "loss": 0.1, "mesh_size": 0.03, "contact_mesh_size": 0.03})}
+
+
+@pytest.mark.parametrize("name", MODES)
+def test_a_mode_decays_as_theory_has_it(name):
+    """A free body's first mode decays as exp(-eta omega^2 t/(2 mu)) to 1 %, in shear whatever zeta is; each step takes energy, the balance closes; rotations take
+    nothing, and turn neither stress nor work."""
+    script, flags = MODES[name]
+    found = measure(script, **{"mesh_size": 0.015, "contact_mesh_size": 0.015, "tolerance": 1e-12} | flags)
+    assert found["state"] == 0 and found["decay"] == pytest.approx(1, abs=0.01)
+    assert found["balance"] < 1e-9 and found["least"] > 0
+    assert found["turned"] < 1e-12 and found["objective"] < 1e-12
+
+
+@pytest.mark.few(3)
+@pytest.mark.parametrize("name", ["extension", "shear", "midpoint"])
+@pytest.mark.parametrize("relaxation", [0.3, 1.0, 3.0])
+def test_a_mode_of_the_standard_linear_solid_is_the_exact_one(name, relaxation):
+    """A free body's first mode, nu = 0 or in shear, with G = 0.4 mu that relaxes in `relaxation`/omega: its coordinate is that of s^2 + omega^2 (1 + G/mu s tau/(1 + s tau)) = 0
+    to 1 %, after three periods; each step takes energy, the balance closes; rotations turn nothing."""
+    script = "damped-mode-3d" if name == "shear" else "damped-mode"
+    size, nu = (0.03, NU) if name == "shear" else (0.015, 0.0)
+    flags = {"nu": nu, "mesh_size": size, "contact_mesh_size": size, "tolerance": 1e-12, "law": "neohookean"}
+    flags |= {"symmetry": "full"} if name == "shear" else {"integrator": "midpoint"} if name == "midpoint" else {}
+    mu = 7e6 / (2 * (1 + nu))
+    tau = relaxation / measure(script, **flags | {"viscosity": 1e-9})["omega"]
+    found = measure(script, **flags | {"relaxation_modulus": 0.4 * mu, "relaxation_time": tau})
+    omega, t = found["omega"], found["seconds"]
+    rates = np.roots([tau, 1, 1.4 * omega**2 * tau, omega**2])
+    weights = np.linalg.solve([rates**0, rates, rates**2], [0, 1, 0])      # x = 0, x' = 1, x'' = 0 at the start, the branch at rest
+    assert found["state"] == 0 and omega * found["place"] == pytest.approx((weights @ np.exp(rates * t)).real * omega, abs=0.01)
+    assert found["balance"] < (1e-6 if name == "midpoint" else 1e-9) and found["least"] > 0
+    assert found["turned"] < 1e-12 and found["objective"] < 1e-12
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.45])
+def test_loss_is_that_of_the_first_mode(nu):
+    """`loss` is eta omega/mu at the first mode of the disc, and the scene as used says the viscosity."""
+    found = measure("damped-mode", nu=nu, loss=0.1, mesh_size=0.015, contact_mesh_size=0.015, tolerance=1e-12)
+    assert found["tangent"] == pytest.approx(0.1, rel=0.01)
+    mu, rho, radius = 7e6 / (2 * (1 + nu)), 1722, 0.05
+    assert describe({"nu": nu, "loss": 0.1})["used"]["viscosity"] == pytest.approx(0.1 * radius * np.sqrt(mu * rho) / 2.35)
+
+
+@pytest.mark.few(2)
+@pytest.mark.parametrize("script, flags", [("disc-plane", {}), ("disc-plane", {"law": "svk"}), ("ball-axisymmetric", {"angle": None}),
+                                           ("ball-plane", {"end_time": 5e-4})])
+@pytest.mark.parametrize("damping", [{"viscosity": 20, "bulk_viscosity": 10}, {"relaxation_modulus": 2e6, "relaxation_time": 1e-3}], ids=["viscous", "relaxing"])
+def test_an_impact_with_friction_closes_its_balance(tmp_path, script, flags, damping):
+    """viscous_work never falls, is in the balance to 1e-9, and within the contact what contacts.csv has; with kernels as without."""
+    given = {name: value for name, value in (IMPACT | damping | flags).items() if value is not None}
+    run, scripted = (disc(tmp_path / without, script, **given | {"tolerance": 1e-14}, without=without) for without in ("none", "kernels"))
+    work = run.history["viscous_work"]
+    assert run.summary["energy_drift"] < 1e-9 and np.diff(work).min() >= 0 and work[-1] == run.summary["viscous_work"] > 1e-3 * run.summary["energy_initial"]
+    assert "damping" not in run.summary["skipped"]
+    assert run.summary["momentum_drift"] < 1e-9
+    for column in ("viscous_work", "normal_force", "kinetic", "elastic"):
+        assert run.history[column] == pytest.approx(scripted.history[column], rel=0, abs=1e-9 * max(abs(run.history[column]))), column
+    rows = np.genfromtxt(tmp_path / "none/contacts.csv", delimiter=",", names=True)
+    assert 0 < np.sum(rows["viscous_work"]) <= work[-1] * (1 + 1e-9)
+
+
+def test_restitution_falls_with_viscosity(tmp_path):
+    """The more viscous, the less rebound; without viscosity nothing is said of it but that it was skipped."""
+    runs = [disc(tmp_path / str(eta), **IMPACT | {"angle": 90, "friction_static": 0}, viscosity=eta) for eta in (0, 20, 80, 300)]
+    assert (np.diff([run.summary["restitution"] for run in runs]) < -1e-3).all()
+    assert "viscous_work" not in runs[0].summary and "viscous_work" not in runs[0].history and "damping" in runs[0].summary["skipped"]
+
+
+def test_steps_go_with_a_short_relaxation(tmp_path):
+    """Adaptive steps are no longer than a relaxation_time asks for: what the branch takes is that of steps of a twentieth of it, to the accuracy."""
+    given = {"law": "neohookean", "nu": 0.3, "speed": 6, "accuracy": 0.1, "relaxation_modulus": 2.7e6, "relaxation_time": 1e-4}
+    found, fine = (disc(tmp_path / str(dt), "ball-axisymmetric", **given, dt=dt).summary for dt in (0, 5e-6))
+    assert found["viscous_work"] == pytest.approx(fine["viscous_work"], rel=0.1) and not any(said.startswith("relaxation") for said in found["warnings"])
+    assert found["energy_final"] == pytest.approx(fine["energy_final"], abs=0.02 * fine["energy_initial"])
+
+
+def scene(**more):
+    body = {"shape": "disc", "radius": 0.05, "velocity": [0, -3], "law": "neohookean", "young": 7e6, "nu": 0.4, "density": 1722.0}
+    return {"accuracy": 0.2, "end_time": 6e-3, "body": [body | {"name": "damped", "position": [0, 0.051]} | more, body | {"name": "elastic", "position": [0.2, 0.051], "loss": 0}],
+            "obstacle": [{"kind": "plane", "point": [0, 0], "normal": [0, 1]}]}
+
+
+@pytest.mark.parametrize("damping", [{"viscosity": 20}, {"relaxation_modulus": 2e6, "relaxation_time": 1e-3}], ids=["viscous", "relaxing"])
+def test_each_body_has_its_own(tmp_path, damping):
+    """Of two bodies one is damped: its work is its own, and all of it; the columns are those the scene knows of."""
+    run = bodies(tmp_path, scene(**damping))
+    assert run.summary["viscous_work_1"] == run.summary["viscous_work"] > 0 == run.summary["viscous_work_2"]
+    assert run.summary["energy_drift"] < 1e-9 and list(run.history) == read(scene(**damping), ROOT, "scene").columns
+    assert not read(scene(), ROOT, "scene").damped
+
+
+def test_a_body_has_the_viscosity_of_its_loss():
+    """A loss becomes the viscosity of a disc as thick, told in the scene as used, which is read again as the same; a body's own loss stands before a viscosity
+    at the top."""
+    made = assembly.assemble(read({"viscosity": 3.0} | scene(loss=0.1), ROOT, "scene"))
+    damped, elastic = made.used["body"]
+    assert damped["viscosity"] == pytest.approx(describe({"nu": 0.4, "loss": 0.1})["used"]["viscosity"]) and elastic["viscosity"] == 0
+    assert made.data.endswith(f"damping 1\n0 {damped['viscosity']!r} 0.0 0.0 0.0\n")
+    assert assembly.assemble(read(made.used, ROOT, "scene")).data == made.data
+
+
+@pytest.mark.parametrize("flags, said", [({"viscosity": -1}, "viscosity: -1 is out of range"), ({"bulk_viscosity": "nan"}, "bulk_viscosity: 'nan' is not a number"),
+                                         ({"loss": 11}, "loss: 11 is out of range"), ({"loss": 0.1, "viscosity": 3}, "accepted: one of the two"),
+                                         ({"relaxation_modulus": 1e6}, "relaxation_time: 0 s with relaxation_modulus 1.*accepted: both above 0, or none"),
+                                         ({"relaxation_time": 1e-3}, "accepted: both above 0, or none")])
+def test_bad_values_are_refused(flags, said):
+    """Negative, no number, too large, two that contradict each other: one line with what is accepted, of a disc and of a body."""
+    with pytest.raises(BadInput, match=said):
+        describe(flags)
+    with pytest.raises(BadInput, match=said):
+        assembly.assemble(read(scene(**flags), ROOT, "scene"))
+
+
+def test_integrators_that_would_not_count_it_are_refused(tmp_path):
+    """Damping is of the integrators that take forces in the middle of a step."""
+    with pytest.raises(Exception, match="integrator: newmark takes no viscosity"):
+        disc(tmp_path, viscosity=1, integrator="newmark")

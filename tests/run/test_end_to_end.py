@@ -1,0 +1,235 @@
+"""disc-normal with the real FreeFem++: what the folder holds, and that both ways in say the same."""
+
+import json
+import re
+import resource
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from ffimpact import scene
+from ffimpact.failure import NotInstalled
+from ffimpact.freefem import freefem
+from ffimpact.freefem.describe import describe, describe_results
+from ffimpact.input import parameters
+from ffimpact.output import results, vtu
+from ffimpact.report import literature, report
+from ffimpact.running import run
+from tests.support.end_to_end import COARSE, call, direct
+
+
+@pytest.fixture(scope="module")
+def result(tmp_path_factory):
+    found = run.run(scene.load("disc-normal"), {}, tmp_path_factory.mktemp("real") / "disc-normal")
+    report.draw(found)
+    return found
+
+
+def test_folder_holds_what_the_contract_says(result):
+    """scene.toml has every parameter, figures/ every picture of such a run."""
+    assert set(parameters.names("disc-plane")) <= set(result.scene)
+    assert {p.name for p in (result.folder / "figures").iterdir()} == {
+        "contact.png", "energies.png", "force.png", "shapes.png", "velocity.png"}
+
+
+def test_scripts_describe_what_they_write(result):
+    """The columns and numbers that the scripts say they write are those of the files, in their order."""
+    told, written = describe_results(), json.loads((result.folder / "summary.json").read_text())
+    assert (result.folder / "history.csv").read_text().splitlines()[0].split(",") == told["columns"]
+    assert [key for key in written if key in told["summary"]] == told["summary"]
+    numbers = {key for key, value in written.items() if type(value) in (int, float)}
+    assert numbers - {"estimate_cpu_seconds", "refinements", "total_seconds"} <= set(told["summary"])   # these join it from beside the run
+
+
+def test_history_and_summary_agree(result):
+    """What the summary says can be found in the history again."""
+    h, s = result.history, result.summary
+    assert len(h["t"]) == s["steps"] + (h["dt"][0] == 0)
+    assert (np.diff(h["t"]) > 0).all()
+    assert h["min_jacobian"].min() == pytest.approx(s["min_jacobian"], rel=1e-3)
+    assert abs(h["balance"]).max() / s["energy_initial"] == pytest.approx(s["energy_drift"], rel=1e-2, abs=1e-15)
+    assert h["momentum_y"][-1] - h["momentum_y"][0] == pytest.approx(s["impulse"], rel=1e-3)
+    assert h["vy"][-1] == pytest.approx(s["rebound_vy"], rel=1e-6)
+    assert s["energy_drift"] < 1e-8
+    assert h["min_ellipticity"].min() == s["min_ellipticity"] > 0 and s["ellipticity_lost_time"] is None
+
+
+def test_result_meets_the_independent_programs(result):
+    """Contact time, impulse and rebound agree with NGSolve and GetFEM to the 0.5 % that the scene asks for, beside what those are known to."""
+    for key, numbers in literature.references("disc-plane", result.scene).items():
+        for number in numbers:
+            if "error" in number:
+                assert abs(result.summary[key] - number["value"]) <= 5e-3 * number["value"] + number["error"], key
+
+
+def test_snapshots_can_be_read(result):
+    """As many snapshots as asked for, with the fields that the figures need, on points that fill half the disc."""
+    series = vtu.series(result.folder / "fields.pvd")
+    assert len(series) == result.scene["fields"]
+    snapshot = vtu.read(series[-1][1])
+    assert {"displacement", "velocity", "jacobian", "von_mises", "cauchy_stress"} <= set(snapshot.fields)
+    assert snapshot.points[:, 0].min() >= 0 and np.isfinite(snapshot.fields["von_mises"]).all()
+
+
+@pytest.mark.parametrize("kernels", [True, False])
+def test_von_mises_stress_of_the_snapshots_is_that_of_their_stress(tmp_path, kernels):
+    """At every node von_mises and pressure are those of cauchy_stress there, to the digits of the file, on a coarse mesh, too."""
+    given = {"accuracy": 0.2, "fields": 4} | ({} if kernels else {"without": "kernels"})
+    result = run.run(scene.load("disc-normal"), given, tmp_path / "out", estimate=False)
+    for _, path in vtu.series(result.folder / "fields.pvd"):
+        fields = vtu._parts(path)[3]
+        xx, yy, zz, xy, yz, xz = fields["cauchy_stress"].T
+        mises = np.sqrt(((xx - yy)**2 + (yy - zz)**2 + (zz - xx)**2) / 2 + 3 * (xy**2 + yz**2 + xz**2))
+        np.testing.assert_allclose(fields["von_mises"], mises, atol=1e-7 * np.abs(fields["cauchy_stress"]).max())
+        np.testing.assert_allclose(fields["pressure"], -(xx + yy + zz) / 3, atol=1e-7 * np.abs(fields["cauchy_stress"]).max())
+        assert mises.max() > 0 and not yz.any() and not xz.any()
+
+
+def test_freefem_alone_gives_the_same(result, tmp_path):
+    """FreeFem++ without Python, on the same mesh, writes the same history to the last digit."""
+    used = freefem.words_of({name: value for name, value in result.scene.items() if name in parameters.names()})
+    process = direct(*used, "-mesh", str(result.folder / "mesh.msh"), "-out", str(tmp_path / "alone"))
+    assert process.returncode == 0, process.stdout + process.stderr
+    assert (tmp_path / "alone/history.csv").read_text() == (result.folder / "history.csv").read_text()
+
+
+def said(process: subprocess.CompletedProcess) -> list[str]:
+    """The lines for the user in what a process printed."""
+    return re.findall(r"^ffimpact: (.*)$", process.stdout + process.stderr, re.MULTILINE)
+
+
+def check_failure(process: subprocess.CompletedProcess, code: int, words: str) -> None:
+    """The exit code, and one line without a traceback."""
+    assert process.returncode == code, process.stderr
+    assert len(said(process)) == 1 and re.search(words, said(process)[0]), process.stderr
+    assert "Traceback" not in process.stderr
+
+
+def test_step_that_cannot_converge_is_11(tmp_path):
+    """At 10 km/s no step converges: exit code 11 with the time, the smallest step and the last residual."""
+    check_failure(call("speed=1e4", "law=neohookean", "accuracy=0.4", "end_time=0.01", out=tmp_path / "out"), 11,
+                  r"the step at t = \S+ s did not converge: smallest step tried \S+ s, work of the residual \S+ .*accepted: \S+\)")
+    record = json.loads((tmp_path / "out/failure.json").read_text())
+    assert record["status"] == "no-convergence" and record["exit_code"] == 11
+
+
+def test_material_breakdown_is_12(tmp_path):
+    """St. Venant-Kirchhoff at 14 m/s inverts: exit code 12 with time, place and smallest stretch, and when and where ellipticity was lost."""
+    process = call("speed=14", out=tmp_path / "out")
+    check_failure(process, 12, r"(det F <= 0|a point loses four fifths of its volume in the smallest step, det F \S+) at t = \S+ s near X = \(\S+, \S+\) m; smallest stretch reached \S+, "
+                  r"St. Venant-Kirchhoff had lost ellipticity at t = \S+ s near X = \(\S+, \S+\) m .*breakdown=continue")
+    record = json.loads((tmp_path / "out/failure.json").read_text())
+    assert record["status"] == "material-breakdown" and 0 < record["ellipticity_lost_time"] < record["breakdown_time"] < 5e-3
+    for x, y in re.findall(r"X = \((\S+), (\S+)\)", process.stderr):
+        assert np.hypot(float(x), float(y) - 0.05) <= 0.05 and float(y) < 0.03
+    assert not (tmp_path / "out/summary.json").exists()
+
+
+def test_files_that_may_not_grow_are_14(tmp_path):
+    """Where no file may be larger than 8 kB the run is one line with exit code 14, and leaves nothing."""
+    command = [sys.executable, "-m", "ffimpact", "run", "disc-normal", "--set", "accuracy=0.1", "--out", str(tmp_path / "out")]
+    ended = subprocess.run(command, cwd=run.ROOT, capture_output=True, text=True, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (8192, 8192)))
+    assert (ended.returncode, ended.stderr.count("\n")) == (14, 1) and "ulimit -f" in ended.stderr and not list(tmp_path.iterdir())
+
+
+def test_breakdown_can_be_run_through(tmp_path):
+    """With breakdown=continue the same impact is computed to its end, and its summary tells when the law broke down."""
+    process = call("speed=14", "breakdown=continue", "accuracy=0.1", out=tmp_path / "out")
+    assert process.returncode == 0, process.stderr
+    summary = results.read_summary(tmp_path / "out")
+    assert 0 < summary["breakdown_time"] < 5e-3 and summary["min_jacobian"] <= 0 and summary["rebound_vy"] > 0
+    h = results.read_history(tmp_path / "out")
+    assert h["t"][np.argmax(h["min_jacobian"] <= 0)] == pytest.approx(summary["breakdown_time"])
+    assert h["t"][np.argmax(h["min_ellipticity"] <= 0)] == summary["ellipticity_lost_time"] < summary["breakdown_time"]
+    assert np.hypot(summary["ellipticity_lost_x"], summary["ellipticity_lost_y"] - 0.05) <= 0.05
+
+
+def test_neohookean_does_not_break_down(tmp_path):
+    """The same impact under the neo-Hookean law keeps det F > 0."""
+    process = direct("-speed", "14", "-law", "neohookean", "-accuracy", "0.1", "-end_time", "0.006", "-out", str(tmp_path / "out"))
+    assert process.returncode == 0
+    summary = results.read_summary(tmp_path / "out")
+    assert summary["breakdown_time"] is None and summary["min_jacobian"] > 0.2 and summary["energy_drift"] < 1e-8
+
+
+@pytest.mark.parametrize("environment", [{"FREEFEM": "/no/such/FreeFem++"}, {"PATH": "/no/such/folder"}])
+def test_missing_freefem_is_13(tmp_path, environment):
+    """Without FreeFem++ the exit code is 13 and the line says how to install it."""
+    check_failure(call(out=tmp_path / "out", environment=environment), 13, "not found; run: make setup.*apt-get install freefem")
+
+
+# ---- sizes
+
+@pytest.mark.parametrize("given", [{}, {"friction_static": 0.3}, {"angle": 60, "exponent": 1.5, "spin": 20}, {"accuracy_of": "peak_force", "young": 2.1e11, "density": 7850},
+                                   {"mesh_size": 0.02}, {"speed": 0, "gravity": 9.81, "height": 0.01, "penalty": 1e9}], ids=lambda given: ",".join(given) or "default")
+def test_both_ways_choose_the_same_scene(tmp_path, given):
+    """Every parameter of a direct run, those that were left to the program too, is what the scripts describe to Python; a run of the
+    recorded scene is that scene."""
+    given = given | {"accuracy": 0.1, "end_time": 1e-6}
+    assert direct(*freefem.words_of(given | {"out": tmp_path})).returncode == 0
+    found, told = results.read_scene(tmp_path), describe(given)
+    assert found == {"script": "disc-plane"} | told["used"] and 0 not in (found["mesh_size"], found["contact_mesh_size"])
+    assert "auto" not in found.values() and told["half"] == (found["symmetry"] == "half")
+    assert describe(scene.load(str(tmp_path / "scene.toml")).values)["used"] == told["used"]
+
+
+def test_what_the_scripts_refuse_is_bad_input():
+    """Their own line reaches Python; what they are not told, they do not say."""
+    with pytest.raises(parameters.BadInput) as error:
+        describe({"mesh_size": 0.06})
+    assert str(error.value) == "mesh_size: 0.06 is larger than the radius 0.05" and error.value.code == 10
+    assert describe()["used"]["mesh_size"] == describe({})["used"]["mesh_size"] <= 0.025
+
+
+def test_no_description_without_freefem(tmp_path, monkeypatch):
+    """Exit code 13, whether it is missing or does not run the script."""
+    monkeypatch.setenv("FREEFEM", "/no/such/FreeFem++")
+    with pytest.raises(NotInstalled, match="not found"):
+        describe({"speed": 1.25})
+    program = tmp_path / "FreeFem++"
+    program.write_text(f'#!/bin/sh\ncase "$*" in *describe*1.25*) exit 8;; esac\nexec {shutil.which("FreeFem++")} "$@"\n')
+    program.chmod(0o755)
+    monkeypatch.setenv("FREEFEM", str(program))
+    with pytest.raises(NotInstalled, match=r"does not run edp/describe.edp \(exit code 8\)"):
+        describe({"speed": 1.25})
+
+
+def test_a_step_far_too_large_for_friction_ends_early(tmp_path):
+    """A fixed step that leaves a handful in the contact, whose friction grinds, is exit code 11 in one line that names dt and the largest that is taken for long; the
+    adaptive step of the same impact is below that."""
+    given = ("-law", "neohookean", "-speed", "12", "-angle", "60", "-friction_static", "0.7", "-friction_dynamic", "0.5", "-slip_velocity", "0.1", "-penalty", "1e10")
+    process = direct(*given, "-dt", "4e-4", "-out", str(tmp_path / "out"))
+    assert process.returncode == 11 and re.search(r"dt = 0.0004 s is too long for its friction, .* take dt = 0, or up to 0.00024\d+ s", process.stderr)
+    assert process.stderr.count("\n") == 1 and json.loads((tmp_path / "out/failure.json").read_text())["steps"] < 6
+
+
+@pytest.mark.few(1)
+@pytest.mark.parametrize("how", ["stop", "continue"])
+def test_chatter_is_11_or_a_warning(tmp_path, how):
+    """A single node of a coarse mesh on a far too stiff penalty, at steps that follow it, bounces without end: exit code 11, or with
+    chatter=continue a finished run that warns in its summary and in print, in both ways to start it."""
+    given = COARSE | {"penalty": "8.39e12", "dt": "4e-6", "chatter": how}
+    process = call(*(f"{name}={value}" for name, value in given.items()), out=tmp_path / "out")
+    plain = direct(*freefem.words_of(given | {"fields": 0, "out": tmp_path / "direct"}))
+    told = r"chatter: by t = \S+ s the body left and was back within a wave's transit \d+ times in a row: .*a smaller penalty, or a finer mesh"
+    if how == "stop":
+        check_failure(process, 11, told + r" \(chatter=continue runs on\)")
+        assert json.loads((tmp_path / "out/failure.json").read_text())["status"] == "chatter"
+        assert plain.returncode == 11
+    else:
+        assert process.returncode == plain.returncode == 0, process.stderr
+        summary = results.read_summary(tmp_path / "out")
+        assert summary["status"] == "ok" and summary["message"] == "" and any(re.fullmatch(told, each) for each in summary["warnings"]) and summary["rebound_vy"] > 0
+        assert "warning   chatter: " in process.stdout and "warning           chatter: " in plain.stdout
+
+
+def test_every_number_of_a_run_has_a_unit_and_a_meaning(result):
+    """Each key of the summary and each column of the tables that a run writes is one that the scripts explain (docs/results.md)."""
+    told = {name for table in describe_results()["meanings"].values() for name in table}
+    assert set(result.summary) <= told, set(result.summary) - told
+    for name in ("history.csv", "contacts.csv", "fields/contact.csv"):
+        columns = set((result.folder / name).read_text().partition("\n")[0].split(","))
+        assert columns <= told, columns - told

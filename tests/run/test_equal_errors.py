@@ -1,0 +1,23 @@
+"""Who takes how long at equal errors: what counts as reaching a level, references that must agree, the verdict, the page. No other program is needed."""
+
+import pandas as pd
+import pytest
+
+from benchmarks import equal_errors as equal
+
+
+@pytest.mark.parametrize("installed, code", [(True, 0), (False, 1)])
+def test_page(monkeypatch, tmp_path, capsys, installed, code):
+    """Every program's seconds and errors, its command and commit, and what is not installed; without a peer no agreement is claimed."""
+    def once(case, program, point):
+        if program not in equal.OWN and not (installed and program == equal.TUNED):
+            return None, f"{program} is not installed (pip)"
+        off = 1e-4 * (1 + list(case.settings[program]).index(point)) if point in case.settings[program] else 0.0
+        return {"dofs": 100, "steps": 10, "impulse": 208.2 * (1 + off), "rebound_vy": 7.394, "imports_seconds": 0.2, "setup_seconds": 0.1, "cpu_seconds": 1.0,
+                "process_seconds": 1.3}, ""
+    monkeypatch.setattr(equal, "once", once)
+    assert equal.main(["normal", "--out", str(tmp_path / "out"), "--page", str(tmp_path / "bench.md")]) == code
+    page = (tmp_path / "bench.md").read_text()
+    assert "Written by `python -m benchmarks equal-errors normal" in page and "at commit" in page and "1.00 / 1.30 (accuracy 0.1)" in page
+    assert "- getfem, tuned, h 16 mm, dt 150 us: getfem, tuned is not installed (pip)" in page and ("References" in page) == installed
+    assert f"agree within their bars in {int(installed)} of 1 cases" in page and len(pd.read_csv(tmp_path / "out/equal-errors.csv")) == (21 if installed else 16)

@@ -1,0 +1,349 @@
+"""Bodies from files: where they are sought, how they are read, sized, scaled and kept, and what of
+them may touch."""
+
+import math
+import re
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ffimpact import scene
+from ffimpact.failure import BadInput
+from ffimpact.freefem.describe import describe
+from ffimpact.mesh import mesh, solid_file
+from ffimpact.running import run
+from ffimpact.scenes import approach, assembly
+from ffimpact.scenes.scene import read
+from ffimpact.sweeps import sweep
+from tests.support.files import FLOOR, solid, tables, write_step
+
+BALL = {"name": "ball", "shape": "disc", "radius": 0.02, "position": [0, 0.05], "velocity": [0, -2]}
+BOX = 'SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 100, 60, 40};\n'        # mm
+VOLUME = 0.1 * 0.06 * 0.04                                                     # of the same [m3]
+
+
+def write_plane(path, draw, size: float = 0.01, version: float = 4.1) -> None:
+    """A file of gmsh with the triangles of what draw(gmsh.model) makes."""
+    with mesh.gmsh_session() as gmsh:
+        draw(gmsh.model)
+        gmsh.option.setNumber("Mesh.MeshSizeMax", size)
+        gmsh.option.setNumber("Mesh.MshFileVersion", version)
+        gmsh.model.mesh.generate(gmsh.model.getDimension())
+        gmsh.write(str(path))
+
+
+def block(contact: str = ""):
+    """Draws a block of 0.1 x 0.05 m; where a side is named, that one alone may touch."""
+    def draw(model):
+        model.occ.addRectangle(0, 0, 0, 0.1, 0.05)
+        model.occ.synchronize()
+        if contact:
+            sides = {"lower": 1, "right": 2, "upper": 3}
+            model.addPhysicalGroup(1, [sides[contact]], name="contact")
+            model.addPhysicalGroup(2, [1], name="body")
+    return draw
+
+
+# ---- where they are sought
+
+def test_a_file_is_sought_beside_its_scene(tmp_path, monkeypatch):
+    """From any working folder, also from one that changes after the scene is read: STEP and .geo."""
+    folder = tmp_path / "scenes"
+    folder.mkdir()
+    write_step(folder / "part.step")
+    (folder / "part.geo").write_text(BOX.replace("100, 60, 40", "0.1, 0.06, 0.04"))
+    for name in ("part.step", "part.geo"):
+        (folder / "part.toml").write_text(assembly.to_toml(solid(name)))
+        for working, path in ((tmp_path, "scenes/part.toml"), (folder, "part.toml")):
+            monkeypatch.chdir(working)
+            loaded = scene.load(path)
+            monkeypatch.chdir(tmp_path.parent)
+            volume = assembly.assemble(loaded).mesh.volumes.sum()
+            assert volume == pytest.approx(VOLUME, rel=1e-9), (name, path)
+
+
+def test_gmsh_works_in_the_working_folder(tmp_path, monkeypatch):
+    """Relative paths mean the same to gmsh, which has a process of its own."""
+    write_step(tmp_path / "part.step")
+    monkeypatch.chdir(tmp_path)
+    volume = solid_file.meshed(Path("part.step")).volumes.sum()
+    assert volume == pytest.approx(VOLUME, rel=1e-9)
+
+
+# ---- gmsh 2.2
+
+@pytest.mark.parametrize("side", ["", "contact"])
+def test_elements_in_two_groups_are_read_once_in_the_plane(tmp_path, side):
+    """gmsh 2.2 writes the triangles and lines of two physical groups twice: the mesh and its labels
+    are those of a file that has each once."""
+    def draw(twice: bool):
+        def model_of(model):
+            block("lower" if side else "")(model)
+            for k in range(2 * twice):
+                model.addPhysicalGroup(2, [1], name=f"group {k}")
+                if side:
+                    model.addPhysicalGroup(1, [1, 2, 3, 4], name=f"side {k}")
+        return model_of
+    write_plane(tmp_path / "once.msh", draw(False))
+    write_plane(tmp_path / "twice.msh", draw(True), version=2.2)
+    assert (tmp_path / "twice.msh").read_text().startswith("$MeshFormat\n2.2")
+    both = []
+    for name in ("once", "twice"):
+        body = {"shape": "mesh", "file": f"{name}.msh", "position": [0, 0]}
+        both.append(read(tables(body, BALL | {"position": [0, 1]}), tmp_path, "x").bodies[0].mesh)
+    once, twice = both
+    assert len(once.triangles) == len(twice.triangles) and len(once.edges) == len(twice.edges)
+    for label in np.unique(once.labels):
+        first, second = (each.points[each.edges[each.labels == label]] for each in both)
+        assert len(first) == len(second)
+        assert first.mean(axis=(0, 1)) == pytest.approx(second.mean(axis=(0, 1)), abs=1e-12)
+
+
+@pytest.mark.parametrize("side", ["", "contact"])
+def test_elements_in_two_groups_are_read_once_in_space(tmp_path, side):
+    """Tetrahedra and faces likewise."""
+    def draw(model):
+        model.occ.addBox(0, 0, 0, 0.1, 0.03, 0.04)
+        model.occ.synchronize()
+        for k in range(2):
+            model.addPhysicalGroup(3, [1], name=f"group {k}")
+        if side:
+            model.addPhysicalGroup(2, [3], name=side)
+            model.addPhysicalGroup(2, [3, 4], name="sides")
+    write_plane(tmp_path / "solid.msh", draw, 0.02, 2.2)
+    m = solid_file.read(tmp_path / "solid.msh")
+    assert m.volumes.sum() == pytest.approx(0.1 * 0.03 * 0.04, rel=1e-9)
+    assert len(np.unique(np.sort(m.cells), axis=0)) == len(m.cells)
+    assert set(m.labels) == ({1, 4} if side else {1})
+    lower = (abs(m.points[m.faces][..., 1]) < 1e-9).all(axis=1)
+    assert np.array_equal(m.labels == 1, lower if side else np.ones_like(lower))
+
+
+# ---- element sizes
+
+@pytest.fixture(scope="module")
+def plane(tmp_path_factory):
+    """A folder with all.msh, of which all may touch, and lower.msh, upper.msh: only that side may."""
+    folder = tmp_path_factory.mktemp("plane")
+    write_plane(folder / "all.msh", block())
+    for side in ("lower", "upper"):
+        write_plane(folder / f"{side}.msh", block(side))
+    return folder
+
+
+@pytest.mark.few(1)
+@pytest.mark.parametrize("key, value", [("mesh_size", 0.001), ("contact_mesh_size", 0.0005)])
+def test_element_sizes_of_a_mesh_from_a_file_are_its_own(plane, key, value):
+    """Another size is refused, of the body, at the top where no other body takes it, and set later;
+    beside a shape that takes it the top's is for that one."""
+    body = {"name": "block", "shape": "mesh", "file": "all.msh", "position": [0, 0]}
+    accepted = ("mesh_size, contact_mesh_size where gmsh makes the mesh: of a shape, or of a geometry, "
+                r"\.geo, \.step, \.stp")
+    said = f"^body.1.{key}: '{value}' .*accepted: {accepted}"
+    for make in (lambda: read(tables(body | {key: value}, BALL), plane, "x"),
+                 lambda: read(tables(body, BALL), plane, "x").override({f"body.1.{key}": value})):
+        with pytest.raises(BadInput, match=said) as caught:
+            make()
+        assert caught.value.code == 10
+    low = FLOOR | {"point": [0, -1]}
+    with pytest.raises(BadInput, match=f"^{key}: '{value}' changes nothing"):
+        read(tables(body, obstacles=[low], gravity=9.81, **{key: value}), plane, "x")
+    both = read(tables(body | {key: 0}, BALL, **{key: value}), plane, "x")
+    assert getattr(both.bodies[0], key) == 0 and getattr(both.bodies[1], key) == value
+    used = assembly.assemble(read(tables(body, BALL), plane, "x")).used["body"]
+    assert key not in used[0] and used[1][key] > 0
+
+
+@pytest.mark.parametrize("key", ["mesh_size", "contact_mesh_size"])
+def test_element_sizes_of_a_mesh_file_on_the_plane(tmp_path, key):
+    """--mesh: sizes are those of the mesh, which may be given; another one is refused."""
+    side = 0.05
+    corners = np.array([[0, 0], [side, 0], [side, side], [0, side]])
+    edges = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
+    square = mesh.Mesh(corners, np.array([[0, 1, 2], [0, 2, 3]]), edges, np.ones(4, dtype=int))
+    mesh.write(square, tmp_path / "m.msh")
+    ask = {"mesh": str(tmp_path / "m.msh"), "radius": side / 2}
+    found = describe(ask)["used"][key]
+    assert found == pytest.approx(side / 2)                              # no more than the radius
+    assert describe(ask | {key: found})["used"][key] == found
+    said = f"^{key}: 0.01 for a mesh from a file, .*accepted: 0, or 0.025 as in the file"
+    with pytest.raises(BadInput, match=said):
+        describe(ask | {key: 0.01})
+
+
+# ---- what may touch
+
+def prepared(given: dict, folder, where) -> str:
+    """The text of scene.toml of a run that is ready to start in `where`."""
+    where.mkdir(parents=True, exist_ok=True)
+    return assembly.prepare(read(given, folder, "x"), where)[2]
+
+
+def test_what_may_not_touch_is_refused_where_it_meets_a_plane(plane, tmp_path):
+    """A block of which only the upper side may touch is hit there, also beside a plane that it does not
+    come to. It may not fall on a plane, unless the run ends before, or it is turned over."""
+    upper, lower = ({"name": "block", "shape": "mesh", "file": f"{side}.msh", "position": [0, 0]}
+                    for side in ("upper", "lower"))
+    prepared(tables(upper, BALL), plane, tmp_path / "1")
+    prepared(tables(upper, BALL, obstacles=[FLOOR | {"point": [0, -1]}]), plane, tmp_path / "2")
+    falls = {"obstacles": [FLOOR | {"point": [0, -0.1]}], "gravity": 9.81, "end_time": 1}
+    prepared(tables(lower, **falls), plane, tmp_path / "3")
+    prepared(tables(upper, **falls | {"end_time": 0.01}), plane, tmp_path / "4")
+    prepared(tables(upper | {"angle": 180}, **falls), plane, tmp_path / "5")
+    said = (r"^body.1.file: 'block' comes to 'floor' with \(.*, -0.1\) m, which may not touch "
+            ".*accepted: a file whose label 1, or physical group 'contact'")
+    with pytest.raises(BadInput, match=said) as caught:
+        prepared(tables(upper, **falls), plane, tmp_path / "6")
+    assert caught.value.code == 10
+
+
+def test_what_may_not_touch_is_refused_in_space(tmp_path):
+    """A geometry of which only the upper face may touch: it is refused as it is, not turned over."""
+    (tmp_path / "named.geo").write_text(
+        'SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 0.1, 0.06, 0.04};\n'
+        'Physical Surface("contact") = Surface In BoundingBox {-1, 0.059, -1, 1, 0.061, 1};\n')
+    with pytest.raises(BadInput, match="^body.1.file: 'part' comes to 'floor' with"):
+        prepared(solid("named.geo"), tmp_path, tmp_path / "1")
+    prepared(solid("named.geo", turn=[0, 0, 180]), tmp_path, tmp_path / "2")
+
+
+def test_a_disc_from_a_file_is_not_turned(tmp_path):
+    """What of it may touch stays where the scene has it."""
+    m = mesh.disc(0.05, 0.02, 0.01, False)
+    labels = np.where(m.points[m.edges].mean(axis=1)[:, 1] < 0.05, mesh.FREE, 3)
+    mesh.write(replace(m, labels=labels), tmp_path / "disc.msh")
+    wall = {"kind": "plane", "point": [0.2, 0], "normal": [-1, 0]}
+    body = {"shape": "mesh", "file": "disc.msh", "position": [0, 0], "angle": 90, "velocity": [1, 0]}
+    found = read(tables(body, obstacles=[wall]), tmp_path, "x")
+    assert found.bodies[0].outline.disc
+    assert approach.turned(found).bodies[0].angle == pytest.approx(math.pi / 2)
+    prepared(tables(body, obstacles=[wall]), tmp_path, tmp_path / "1")
+    with pytest.raises(BadInput, match="^body.1.file: .* which may not touch"):
+        prepared(tables(body | {"angle": -90}, obstacles=[wall]), tmp_path, tmp_path / "2")
+
+
+@pytest.mark.robustness
+def test_what_sinks_is_named_and_meshes_of_files_are_not_to_be_resized(plane, tmp_path):
+    """A block of which only the upper side may touch falls through a peg: the warning `sinks` with
+    body, obstacle and place. Where the lower side touches it there is none. No warning advises to change
+    the element sizes of a file."""
+    peg = {"name": "peg", "kind": "circle", "centre": [0, -0.1], "radius": 0.1}
+    body = {"name": "block", "shape": "mesh", "position": [0, 0.0255], "velocity": [0, -1]}
+    top = {"obstacles": [peg], "end_time": 0.06}
+    warned = {}
+    for name in ("upper", "lower"):
+        given = read(tables(body | {"file": f"{name}.msh"}, **top), plane, name)
+        warned[name] = run.run(given, {}, tmp_path / name, estimate=False).summary["warnings"]
+    sunk, = (one for one in warned["upper"] if one.startswith("sinks: "))
+    assert re.match(r"sinks: block is up to 0\.\d+ m inside peg near X = \(.*\) m, at t = ", sunk)
+    assert not any(one.startswith("sinks") for one in warned["lower"])
+    assert any("a finer mesh in the file" in one for one in warned["upper"])
+    assert "contact_mesh_size" not in " ".join(warned["upper"] + warned["lower"])
+
+
+# ---- what a result keeps
+
+@pytest.mark.few(1)
+@pytest.mark.parametrize("name", ["part.step", "all.msh", "merges.geo"])
+def test_a_result_has_the_files_of_its_bodies(plane, tmp_path, name):
+    """scene.toml names no place on this machine; with its folder elsewhere and the file gone it makes
+    the same mesh. A .geo that takes in another file is named by a path that is relative to the result."""
+    folder = tmp_path / "scenes"
+    folder.mkdir()
+    write_step(folder / "part.step")
+    shutil.copy(plane / "all.msh", folder)
+    (folder / "merges.geo").write_text('Merge "part.step";\n')
+    given = solid(name)
+    if name == "all.msh":
+        body = given["body"][0] | {"position": [0, 0.1], "velocity": [0, -1]}
+        given = tables(body, obstacles=[FLOOR])
+    where = tmp_path / "results/run"
+    text = prepared(given, folder, where)
+    first = assembly.assemble(read(given, folder, "x"))
+    (where / "scene.toml").write_text(text)
+    assert str(tmp_path) not in text
+    moved = tmp_path / "elsewhere/run"
+    if name == "merges.geo":
+        assert 'file = "../../scenes/merges.geo"' in text
+        moved.parent.mkdir()
+        shutil.copytree(where, moved)
+    else:
+        assert f'file = "body-files/part{name[name.index("."):]}"' in text
+        shutil.move(folder, tmp_path / "gone")
+        shutil.move(where, moved)
+    again = assembly.assemble(scene.load(moved / "scene.toml"))
+    assert again.mesh.points == pytest.approx(first.mesh.points, abs=1e-12)
+    assert again.data == first.data
+
+
+def test_scene_and_sweep_with_a_byte_order_mark(tmp_path):
+    """As some editors write it."""
+    text = assembly.to_toml(tables(BALL, obstacles=[FLOOR]))
+    (tmp_path / "drop.toml").write_text("\ufeff" + text, "utf-8")
+    assert scene.load(tmp_path / "drop.toml").bodies[0].name == "ball"
+    text = 'scene = "disc-normal"\n[product]\nspeed = [1, 2]\n'
+    (tmp_path / "sweep.toml").write_text("\ufeff" + text, "utf-8")
+    assert len(sweep.load(str(tmp_path / "sweep.toml")).points) == 2
+
+
+# ---- scale
+
+def test_a_file_in_millimetres_has_a_scale(tmp_path):
+    """In the plane, of revolution, in space, of meshes and geometries: the body in m, its circles,
+    centre and element sizes with it."""
+    disc, half = (mesh.disc(50, 20, 10, one) for one in (False, True))
+    mesh.write(disc, tmp_path / "disc.msh")
+    mesh.write(half, tmp_path / "half.msh")
+    (tmp_path / "box.geo").write_text(BOX)
+    with mesh.gmsh_session() as gmsh:
+        gmsh.open(str(tmp_path / "box.geo"))
+        gmsh.option.setNumber("Mesh.MeshSizeMax", 20)
+        gmsh.model.mesh.generate(3)
+        gmsh.write(str(tmp_path / "box.msh"))
+    body = {"shape": "mesh", "file": "disc.msh", "scale": 0.001, "position": [0, 0.06],
+            "velocity": [0, -1]}
+    found = read(tables(body, obstacles=[FLOOR]), tmp_path, "x").bodies[0]
+    assert found.outline.disc[1] == pytest.approx(0.05, rel=1e-9)
+    assert np.ptp(found.mesh.points, axis=0) == pytest.approx([0.1, 0.1], rel=0.05)
+    assert abs(found.outline.disc[0]).max() < 1e-12
+    revolved = body | {"file": "half.msh", "position": 0.06, "velocity": -1}
+    given = tables(revolved, obstacles=[FLOOR], dimension="axisymmetric")
+    built = assembly.assemble(read(given, tmp_path, "x"))
+    assert np.ptp(built.mesh.points, axis=0) == pytest.approx([0.05, 0.1], rel=0.02)
+    volumes = {}
+    for name in ("box.msh", "box.geo"):
+        built = assembly.assemble(read(solid(name, scale=0.001), tmp_path, "x"))
+        volumes[name] = built.mesh.volumes.sum()
+        assert built.mesh.centre == pytest.approx([0, 0, 0], abs=1e-9)
+    assert volumes == {name: pytest.approx(0.1 * 0.06 * 0.04, rel=1e-9) for name in volumes}
+    ends, used = built.mesh.points[built.mesh.faces[:, :2]], built.used["body"][0]
+    longest = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).max()
+    assert used["scale"] == 0.001 and longest < 2 * used["mesh_size"] < 0.1
+
+
+@pytest.mark.parametrize("value, said", [
+    (0, "body.1.scale: 0 is out of range (accepted: 1e-09 to 1e+09)"),
+    (-1, "body.1.scale: -1 is out of range"), ("mm", "body.1.scale: 'mm' is not a number")])
+def test_a_scale_that_is_none_is_named(plane, value, said):
+    body = {"shape": "mesh", "file": "all.msh", "position": [0, 0.1], "scale": value}
+    with pytest.raises(BadInput, match="^" + re.escape(said)):
+        read(tables(body, obstacles=[FLOOR]), plane, "x")
+
+
+def test_a_file_in_millimetres_without_a_scale_is_told_of_it(tmp_path):
+    """Where the body overlaps something, as so large a one does; not where it is small, nor a shape."""
+    mesh.write(mesh.disc(60, 20, 10, False), tmp_path / "disc.msh")
+    body = {"shape": "mesh", "file": "disc.msh", "position": [0, 0.06], "velocity": [0, -1]}
+    for partner in ({"obstacles": [FLOOR]}, {"bodies": [BALL | {"position": [0, -0.05]}]}):
+        given = tables(body, *partner.pop("bodies", []), **partner)
+        said = r"body.1.position: .*overlaps.*120 m wide: other units\? body.1.scale = 0.001"
+        with pytest.raises(BadInput, match=said):
+            read(given, tmp_path, "x")
+    disc = {"shape": "disc", "radius": 60, "position": [0, 0], "velocity": [0, -1]}
+    for small in (body | {"scale": 0.01}, disc):
+        with pytest.raises(BadInput, match="overlaps") as caught:
+            read(tables(small, obstacles=[FLOOR]), tmp_path, "x")
+        assert "scale" not in str(caught.value)

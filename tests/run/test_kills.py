@@ -1,0 +1,205 @@
+"""Runs that are killed: no process is left, nothing looks finished, earlier results stay, and the same command gives the same answer."""
+
+import contextlib
+import functools
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from ffimpact import scene
+from ffimpact.freefem import freefem
+from ffimpact.input import parameters
+from ffimpact.output.results import read_summary
+from ffimpact.running import run
+from ffimpact.sweeps import study
+from tests.support.cli import hear_interrupts
+from tests.support.kills import at_work, place
+
+COARSE = {"law": "neohookean", "nu": "0.4", "accuracy": "0.2", "fields": "5"}
+SWEEP = """collect = ["impulse", "rebound_vy"]
+[set]
+law = "neohookean"
+nu = 0.4
+accuracy = 0.2
+fields = 5
+[product]
+speed = [4, 8, 11]
+"""
+EARLY, LATE = "unfinished/history.csv", "unfinished/fields/0002.vtu"   # appear in the folder on the way, both long before the end
+# route, signal, receiver, what the folder holds by then, whether a finished run of another scene is there already
+KILLS = [
+    ("run", signal.SIGINT, "python", EARLY, False),
+    ("run", signal.SIGKILL, "python", LATE, True),
+    ("checkpoints", signal.SIGTERM, "python", LATE, False),
+    ("checkpoints", signal.SIGKILL, "freefem", LATE, True),
+    ("sweep", signal.SIGTERM, "python", EARLY, False),
+    ("sweep", signal.SIGKILL, "python", LATE, False),
+    ("direct-checkpoints", signal.SIGKILL, "freefem", LATE, True),
+]
+MORE = [(route, number, receiver, point, False) for route in ("run", "checkpoints", "sweep", "direct", "direct-checkpoints")
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL) for receiver, point in (("python", EARLY), ("freefem", LATE))
+        if not (route.startswith("direct") and receiver == "python")]
+
+
+def command(route: str, out: Path, speed: str = "8", **changed: str) -> list[str]:
+    given = COARSE | {"speed": speed} | changed | ({"checkpoint_every": "10"} if "checkpoints" in route else {})
+    if route == "sweep":
+        file = out.parent / "case.toml"
+        file.write_text(SWEEP if speed == "8" else SWEEP.replace("0.4", "0.3"))
+        return [sys.executable, "-m", "ffimpact", "sweep", str(file), "--out", str(out)]
+    if route.startswith("direct"):
+        return freefem.find().words("edp/disc-plane.edp", *freefem.words_of(given | {"out": out}))
+    return [sys.executable, "-m", "ffimpact", "run", "disc-normal", "--quiet", "--set", *(f"{name}={value}" for name, value in given.items()), "--out", str(out)]
+
+
+def start(words: list[str]) -> subprocess.Popen:
+    return subprocess.Popen(words, cwd=parameters.ROOT, env=freefem.find().environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                            stderr=subprocess.PIPE, text=True, start_new_session=True, preexec_fn=hear_interrupts)
+
+
+def finish(words: list[str]) -> str:
+    process = start(words)
+    said, error = process.communicate(timeout=120)
+    assert process.returncode == 0, error
+    return said
+
+
+def freefems(out: Path) -> list[int]:
+    return [pid for pid in at_work(out) if name_of(pid).startswith("FreeFem")]
+
+
+def name_of(pid: int) -> str:
+    try:
+        return Path(f"/proc/{pid}/comm").read_text()
+    except OSError:                     # it has just ended
+        return ""
+
+
+def answers(route: str, out: Path) -> object:
+    """What a route gives, to the last digit."""
+    if route == "sweep":
+        return pd.read_csv(out / "sweep.csv").drop(columns="seconds").to_csv()
+    return (out / "history.csv").read_text(), sorted((path.name, path.read_text()) for path in (out / "fields").iterdir())
+
+
+@functools.cache
+def straight(route: str, folder: Path) -> object:
+    """The answers of a run that is not killed."""
+    finish(command(route, folder / "straight"))
+    return answers(route, folder / "straight")
+
+
+def holds(folder: Path, point: str) -> bool:
+    """Whether `point` is somewhere in a folder in which others come and go while it is looked through."""
+    with contextlib.suppress(FileNotFoundError):
+        return any(folder.rglob(point))
+    return False
+
+
+def stop_at(point: str, process: subprocess.Popen, out: Path) -> list[int]:
+    """Stops the FreeFem++s of a run once `point` is there; they are at work, and so a kill is one."""
+    end = time.monotonic() + 60
+    while not holds(out.parent, point):
+        assert process.poll() is None and time.monotonic() < end, f"no {point}"
+    stopped = set()
+    while found := set(freefems(out)) - stopped:
+        for pid in found:
+            send(pid, signal.SIGSTOP)
+        stopped |= found
+    assert freefems(out), f"it ended behind {point}"
+    return sorted(stopped)          # also a command of FreeFem++ that has another name by now
+
+
+def send(pid: int, number: signal.Signals) -> None:
+    with contextlib.suppress(ProcessLookupError):
+        os.kill(pid, number)
+
+
+@pytest.fixture(scope="module")
+def shelf(tmp_path_factory) -> Path:
+    return tmp_path_factory.mktemp("kills")
+
+
+@functools.cache
+def another(route: str, folder: Path) -> Path:
+    """A finished run of another scene."""
+    (folder / "other").mkdir()
+    finish(command(route, folder / "other/earlier", speed="6"))
+    return folder / "other/earlier"
+
+
+def content(folder: Path) -> dict[str, bytes]:
+    """All files but those of a run without Python that is at work there or was killed."""
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*")
+            if path.is_file() and path.relative_to(folder).parts[0] != "unfinished" and not path.name.startswith("checkpoint")}
+
+
+@pytest.mark.parametrize("route, number, receiver, point, before", [
+    *KILLS, *(pytest.param(*kill, marks=pytest.mark.robustness) for kill in MORE if kill not in KILLS)])
+def test_kill(shelf, tmp_path, route, number, receiver, point, before):
+    """After the signal every process of the run is gone within seconds; a folder that looks finished is; the earlier result is whole,
+    where it was or beside it; and the same command ends well with the same answer, byte for byte."""
+    expected = straight(route, place(route, shelf))
+    out = tmp_path / "out"
+    if before:
+        shutil.copytree(another(route, place(route, shelf)), out)
+    earlier = content(out) if before else {}
+    words = command(route, out)
+    process = start(words)
+    stopped = stop_at(point, process, out)
+    for pid in stopped if receiver == "freefem" else [process.pid]:
+        send(pid, number)
+    for pid in stopped:
+        send(pid, signal.SIGCONT)
+    process.communicate(timeout=60)
+    end = time.monotonic() + 5
+    while at_work(out) and time.monotonic() < end:
+        time.sleep(0.02)
+    assert not at_work(out)
+    for folder in (out, tmp_path / "out.1"):
+        if route != "sweep" and (folder / "summary.json").exists():
+            assert content(folder) == earlier or answers(route, folder) == expected   # it was through, or waited for a shell: SIGINT passes
+    if before:
+        assert earlier in (content(out), content(tmp_path / "out.1"))
+    kept = {path: path.read_bytes() for path in out.glob("runs/*/summary.json") if path.parent.suffix != ".part"}
+    assert all((path.parent / "history.csv").exists() for path in kept)
+    left = (tmp_path / "out.part/checkpoint").exists()
+    finish(words)
+    assert answers(route, out) == expected
+    assert all(path.read_bytes() == text for path, text in kept.items())          # what was finished was not run again
+    if left:                                             # is gone on with
+        assert read_summary(out)["resumed_at"] > 0
+    if before:
+        assert content(tmp_path / "out.1") == earlier
+    assert not list(tmp_path.glob("out.part")) and not list(out.rglob("*.part"))
+
+
+@pytest.mark.few(3)
+@pytest.mark.parametrize("delay", [0.6 * k / 12 for k in range(12)])
+def test_sigterm_at_the_start(tmp_path, delay):
+    """SIGTERM while modules load and FreeFem++ starts ends the program with exit code 143 (of the shell), and leaves nothing."""
+    process = start(command("run", tmp_path / "out", accuracy="1e-3"))          # which takes much longer than any delay
+    time.sleep(delay)
+    process.terminate()
+    process.communicate(timeout=20)
+    assert process.returncode in (143, -signal.SIGTERM)
+    end = time.monotonic() + 5
+    while at_work(tmp_path / "out") and time.monotonic() < end:
+        time.sleep(0.02)
+    assert not at_work(tmp_path / "out") and not list(tmp_path.iterdir())
+
+
+def test_a_library_changes_no_signal_handlers(fake, tmp_path):
+    """Only the command line installs handlers: run() and a study leave those of the program that imports ffimpact as they are."""
+    numbers = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGALRM)
+    before = [signal.getsignal(number) for number in numbers]
+    run.run(scene.load("disc-normal"), {"fields": 0}, tmp_path / "out")
+    study.study([{"speed": 4.0}], tmp_path / "study", {"fields": 0}, 60.0)
+    assert [signal.getsignal(number) for number in numbers] == before

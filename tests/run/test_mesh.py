@@ -1,0 +1,151 @@
+"""The meshes that the scenes run on."""
+
+import numpy as np
+import pytest
+
+from ffimpact.freefem import freefem
+from ffimpact.freefem.describe import describe
+from ffimpact.input import parameters
+from ffimpact.mesh import mesh
+from tests.support.triangles import areas, smallest_angle
+
+CASES = [
+    pytest.param((0.05, 0.05 / 8, 0.05 / 25, True), id="half, default size"),
+    pytest.param((0.05, 0.05 / 8, 0.05 / 25, False), id="full, default size"),
+    pytest.param((0.05, 0.02, 0.01, True), id="half, very coarse"),
+    pytest.param((0.05, 0.004, 0.0002, True), id="half, 0.2 mm at the contact"),
+    pytest.param((0.05, 0.003, 0.003, False), id="full, uniform"),
+    pytest.param((0.5, 0.06, 0.0006, False), id="full, size ratio 100"),
+]
+
+
+@pytest.fixture(scope="module", params=CASES)
+def case(request):
+    return *request.param, mesh.disc(*request.param)
+
+
+def test_triangles_are_sound(case):
+    """Every triangle is counter-clockwise and has no angle below 20 degrees."""
+    *_, m = case
+    assert areas(m).min() > 0
+    assert smallest_angle(m) > 20
+
+
+def test_triangles_fill_the_polygon(case):
+    """The triangles add up to the polygon that the labelled boundary edges enclose, and nothing is used twice."""
+    *_, m = case
+    a, b = m.points[m.edges[:, 0]], m.points[m.edges[:, 1]]
+    enclosed = abs((a[:, 0] * b[:, 1] - b[:, 0] * a[:, 1]).sum())
+    assert areas(m).sum() == pytest.approx(enclosed / 2, rel=1e-12)
+    assert set(m.triangles.flat) == set(range(len(m.points)))
+
+
+def test_every_boundary_edge_has_its_label(case):
+    """The edges that belong to one triangle are exactly the labelled ones: 1 on the circle, 2 on the axis x = 0."""
+    radius, _, _, half, m = case
+    sides = np.sort(np.vstack([m.triangles[:, [0, 1]], m.triangles[:, [1, 2]], m.triangles[:, [2, 0]]]), axis=1)
+    unique, count = np.unique(sides, axis=0, return_counts=True)
+    assert set(map(tuple, unique[count == 1])) == set(map(tuple, np.sort(m.edges, axis=1)))
+    assert count.max() == 2
+    distance = np.hypot(m.points[:, 0], m.points[:, 1] - radius)
+    assert abs(distance[m.edges[m.labels == mesh.FREE]] - radius).max() < 1e-12
+    assert set(m.labels) == ({mesh.FREE, mesh.AXIS} if half else {mesh.FREE})
+    if half:
+        assert (m.points[m.edges[m.labels == mesh.AXIS], 0] == 0).all()
+        assert m.points[:, 0].min() == 0
+
+
+def test_sizes_are_as_asked(case):
+    """Edges near the lowest point have the contact size, edges at the top the bulk size, to 40 per cent."""
+    radius, bulk, contact, _, m = case
+    ends = m.points[m.edges[m.labels == mesh.FREE]]
+    length, height = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1), ends[:, :, 1].mean(1)
+    assert length[height < 0.2 * radius].mean() == pytest.approx(contact, rel=0.4)
+    assert length[height > 1.8 * radius].mean() == pytest.approx(bulk, rel=0.4)
+    assert np.hypot(*m.points.T).min() == 0   # the lowest point is a vertex, on the plane
+
+
+def test_freefem_reads_it(tmp_path):
+    """FreeFEM finds the same area, and the length of each labelled boundary."""
+    m = mesh.disc(0.05, 0.01, 0.004, True)
+    mesh.write(m, tmp_path / "m.msh")
+    (tmp_path / "read.edp").write_text(
+        f'mesh Th = readmesh("{tmp_path}/m.msh"); cout.precision(15);\n'
+        'cout << Th.area << " " << int1d(Th, 1)(1.) << " " << int1d(Th, 2)(1.) << " " << Th.nv << endl;\n')
+    answer = freefem.find().call(tmp_path / "read.edp", check=True).stdout
+    length = np.linalg.norm(m.points[m.edges[:, 1]] - m.points[m.edges[:, 0]], axis=1)
+    expected = [areas(m).sum(), length[m.labels == 1].sum(), length[m.labels == 2].sum(), len(m.points)]
+    assert list(map(float, answer.split())) == pytest.approx(expected, rel=1e-12)
+    assert length[m.labels == 2].sum() == pytest.approx(0.1, rel=1e-12)
+
+
+OWN = [      # radius [m]; mesh_size, contact_mesh_size over it; touchArc; symmetry
+    pytest.param((0.05, 0.32, 2e-3, 0.015, "half"), id="half, slow impact"),
+    pytest.param((0.05, 0.32, 2e-3, 0.015, "full"), id="full, slow impact"),
+    pytest.param((5e-6, 0.5, 6e-5, 1e-3, "half"), id="half, tiny, finest contact"),
+    pytest.param((5e4, 0.5, 6e-5, 1e-3, "full"), id="full, huge, finest contact"),
+    pytest.param((0.05, 1, 1, 0.5, "half"), id="half, coarsest"),
+    pytest.param((0.05, 1, 1, 0.5, "full"), id="full, coarsest"),
+    pytest.param((0.05, 0.2, 0.02, np.pi, "half"), id="half, rolls once around"),
+    pytest.param((0.05, 0.2, 0.02, np.pi, "full"), id="full, rolls once around"),
+]
+
+
+@pytest.fixture(scope="module", params=OWN)
+def own(request, tmp_path_factory):
+    """The mesh that the scripts make without Python, over its radius, and what was asked of it."""
+    radius, bulk, contact, arc, symmetry = request.param
+    folder, core = tmp_path_factory.mktemp("own"), parameters.ROOT / "edp/core"
+    rooms = "".join(f'include "{core}/{room}.idp"\n' for room in ("law/laws", "input/parameters", "input/mesh-file", "input/outline", "input/sizes"))
+    (folder / "own.edp").write_text(
+        f'verbosity = 0;\nload "lapack"\nstring script = "own";\n{rooms}touchArc = {arc!r};\ninclude "{core}/input/meshes.idp"\n'
+        f'ofstream out("{folder}/own.msh");\nout.precision(17);\nout << Th.nv << " " << Th.nt << " " << Th.nbe << endl;\n'
+        'for (int i = 0; i < Th.nv; i++) out << Th(i).x / radius << " " << Th(i).y / radius << " 0" << endl;\n'
+        'for (int t = 0; t < Th.nt; t++) out << Th[t][0] + 1 << " " << Th[t][1] + 1 << " " << Th[t][2] + 1 << " 0" << endl;\n'
+        'for (int e = 0; e < Th.nbe; e++) out << Th.be(e)[0] + 1 << " " << Th.be(e)[1] + 1 << " " << Th.be(e).label << endl;\n')
+    flags = dict(radius=radius, mesh_size=radius * bulk, contact_mesh_size=radius * contact, symmetry=symmetry)
+    done = freefem.find().call(folder / "own.edp", *freefem.words_of(flags))
+    assert done.returncode == 0, done.stdout
+    return mesh.read(folder / "own.msh"), bulk, contact, arc, symmetry == "half"
+
+
+def test_own_mesh_is_sound(own):
+    """The scripts' own mesh: triangles counter-clockwise, no angle below 15 degrees, that fill the polygon of the labelled edges; the
+    circle's vertices on it to rounding, the axis' on x = 0, none below the plane, the lowest point a vertex at (0, 0)."""
+    m, *_, half = own
+    assert areas(m).min() > 0 and smallest_angle(m) > 15
+    a, b = m.points[m.edges[:, 0]], m.points[m.edges[:, 1]]
+    assert areas(m).sum() == pytest.approx(abs((a[:, 0] * b[:, 1] - b[:, 0] * a[:, 1]).sum()) / 2, rel=1e-12)
+    assert set(m.triangles.flat) == set(range(len(m.points)))
+    assert set(m.labels) == ({mesh.FREE, mesh.AXIS} if half else {mesh.FREE})
+    assert abs(np.hypot(m.points[:, 0], m.points[:, 1] - 1)[m.edges[m.labels == mesh.FREE]] - 1).max() < 1e-14
+    assert (m.points[m.edges[m.labels == mesh.AXIS], 0] == 0).all()
+    assert m.points[:, 1].min() == 0 and np.hypot(*m.points.T).min() == 0
+
+
+@pytest.mark.few(3)
+def test_own_mesh_grows_from_the_contact_everywhere(own):
+    """No edge of the scripts' own mesh, on circle, axis or inside, is longer than twice the size that belongs to its middle:
+    contact_mesh_size on the arc that can touch, 0.3 per length of distance more beyond, mesh_size at most. Nor are there more than
+    1.3 times as many triangles as gmsh makes for the half."""
+    m, bulk, contact, arc, half = own
+    sides = np.unique(np.sort(np.vstack([m.triangles[:, [0, 1]], m.triangles[:, [1, 2]], m.triangles[:, [2, 0]]]), axis=1), axis=0)
+    middle, length = m.points[sides].mean(1), np.linalg.norm(m.points[sides[:, 1]] - m.points[sides[:, 0]], axis=1)
+    touching = np.linspace(-arc, arc, 10001)
+    distance = np.array([np.hypot(x - np.sin(touching), y - 1 + np.cos(touching)).min() for x, y in middle])
+    assert (length / np.minimum(bulk, contact + mesh.GROWTH * distance)).max() < 2
+    assert len(m.triangles) <= 1.3 * (1 if half else 2) * len(mesh.disc(1, bulk, contact, True, arc).triangles)
+
+
+def sizes(**values) -> tuple[float, float]:
+    used = describe(values)["used"]
+    return used["mesh_size"], used["contact_mesh_size"]
+
+
+def test_sizes_follow_the_accuracy():
+    """A size of 0 comes from the accuracy, and a given size is kept with the other one fitted to it."""
+    bulk, contact = sizes(accuracy=1e-2)
+    finer_bulk, finer_contact = sizes(accuracy=1e-3)
+    assert finer_bulk < bulk and finer_contact < contact < bulk
+    assert sizes(mesh_size=1e-3) == (1e-3, 1e-3)
+    assert sizes(contact_mesh_size=1e-2)[1] == 1e-2 and sizes(contact_mesh_size=4e-2) == (4e-2, 4e-2)

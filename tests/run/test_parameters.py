@@ -1,0 +1,30 @@
+"""The parameter table and the scenes that are made of it."""
+
+import pytest
+
+from ffimpact.failure import BadInput
+from ffimpact.freefem.describe import describe
+from ffimpact.input import parameters
+from ffimpact.input.table import LAWS, SCRIPTS
+
+
+def test_the_scripts_take_what_the_table_says():
+    """Every script starts with its parameters at their defaults, and names the same laws."""
+    told = describe()
+    assert told["laws"].split("|") == list(LAWS) and told["scripts"].split("|") == list(SCRIPTS)
+    for script in SCRIPTS:
+        assert set(describe(script=script)["used"]) == set(parameters.names(script))
+
+
+def test_each_script_takes_its_own_parameters():
+    """A parameter that a script does not take is bad input that says which one does, on either way in."""
+    assert "block_width" in parameters.names("disc-block") and "block_width" not in parameters.names("disc-plane")
+    assert parameters.check({"block_width": 3}, "disc-block") == {"block_width": 3.0}
+    for script, name, value in (("disc-plane", "block_width", 3), ("bodies", "radius", 1)):
+        with pytest.raises(BadInput) as error:
+            parameters.check({name: value}, script)
+        with pytest.raises(BadInput) as asked:
+            describe({name: value}, script)
+        assert str(error.value) == str(asked.value) == f"{name}: {script} takes no such parameter (accepted: in {'|'.join(parameters.PARAMETERS[name].scripts)})"
+    with pytest.raises(BadInput, match="script: 'ball' is not known .accepted: disc-plane|disc-block|ball-axisymmetric|ball-plane|bodies|bodies-3d"):
+        describe({}, "ball")

@@ -1,0 +1,172 @@
+"""The contact as a whole: its half-width and largest pressure in the history, where and when in the summary, against fields/contact.csv; its points as
+files for ParaView; its figure."""
+
+import xml.etree.ElementTree as xml
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+import pytest
+
+from ffimpact import scene
+from ffimpact.output import vtu
+from ffimpact.output.results import RunResult, body_names
+from ffimpact.report import bodies, contact, figures
+from ffimpact.running import run
+
+SCENES = {"disc": ("disc-normal", {}), "whole disc": ("disc-oblique", {}), "revolution": ("ball-axisymmetric", {"accuracy": 0.1}),
+          "ball": ("ball", {"accuracy": 0.2}), "oblique ball": ("ball-oblique", {}),
+          "block": ("disc-block", {}), "pairs of points": ("disc-block", {"pairing": "pairwise"})}
+
+
+@pytest.fixture(scope="module")
+def ran(tmp_path_factory):
+    """ran(which): a coarse run with snapshots at all steps, once."""
+    results = {}
+
+    def at(which: str) -> RunResult:
+        if which not in results:
+            name, given = SCENES[which]
+            results[which] = run.run(scene.load(name), {"accuracy": 0.4, "fields": 30} | given, tmp_path_factory.mktemp("run") / "out", estimate=False)
+        return results[which]
+    return at
+
+
+def at_the_same_times(result: RunResult) -> list[tuple[pd.DataFrame, pd.Series]]:
+    """The points under load at an instant and the row of the history there."""
+    history = pd.DataFrame(result.history)
+    return [(points, history.iloc[(history.t - t).abs().argmin()]) for t, points in pd.DataFrame(contact.read(result.folder)).groupby("t")]
+
+
+@pytest.mark.few(3)
+@pytest.mark.parametrize("which", SCENES)
+def test_largest_pressure(ran, which):
+    """max_pressure is the largest projected one of contact.csv at its instant, of every body; the summary's is the largest of the history, at that time; it
+    is at that point of the outline where contact.csv has it."""
+    result = ran(which)
+    h, s = result.history, result.summary
+    for points, row in at_the_same_times(result):
+        assert row.max_pressure == pytest.approx(points.projected_pressure.max(), rel=1e-7)
+        for body in range(1, 3 if "max_pressure_2" in row else 1):
+            assert row[f"max_pressure_{body}"] == pytest.approx(points[points.body == body].projected_pressure.max(), rel=1e-7)
+    most = int(np.argmax(h["max_pressure"]))
+    assert s["max_pressure"] == h["max_pressure"][most] > 0 and s["max_pressure_time"] == h["t"][most]
+    there = [points.loc[points.projected_pressure.idxmax()] for points, row in at_the_same_times(result) if row.t == h["t"][most]]
+    assert not there or (there[0].X, there[0].Y) == pytest.approx((s["max_pressure_x"], s["max_pressure_y"]), rel=1e-6)
+    assert (s["max_pressure_z"] is not None) == ("ball" in which)
+
+
+@pytest.mark.parametrize("which", [which for which in SCENES if which != "oblique ball"])
+def test_half_width_is_that_of_the_size(ran, which):
+    """Of one patch without a hole: half the touching length, the radius of the touching area, to the distance of two points; 0 without contact."""
+    h = ran(which).history
+    size, touches = h["contact_size"], h["contact_size"] > 0
+    radius = np.sqrt(size / np.pi) if which in ("revolution", "ball") else size / 2
+    used, large = run.read_scene(ran(which).folder), size > 0.5 * size.max()
+    element = used.get("contact_mesh_size") or max(body["contact_mesh_size"] for body in used["body"])
+    assert large.sum() > 5 and np.abs(h["contact_half_width"] - radius)[large].max() < 0.39 * element     # Gauss' points of an edge
+    assert (h["contact_half_width"][~touches] == 0).all() and (h["contact_half_width"][touches] > 0).all()
+
+
+def test_no_contact_has_no_pressure(tmp_path):
+    """A disc that flies: zeros, and no time or place."""
+    result = run.run(scene.load("disc-normal"), {"accuracy": 0.4, "height": 0.1, "end_time": 1e-3, "fields": 0}, tmp_path / "out", estimate=False)
+    assert not result.history["max_pressure"].any() and not result.history["contact_half_width"].any()
+    assert result.summary["max_pressure"] == 0 and result.summary["max_pressure_time"] is None and result.summary["max_pressure_x"] is None
+
+
+@pytest.mark.parametrize("which, bodies", [("disc", 1), ("block", 2)])
+def test_cells_have_the_number_of_their_body(ran, which, bodies):
+    """The cells of a snapshot have the body's number from 1 as integers: those of body 2, the block, are below the disc's."""
+    _, path = vtu.series(ran(which).folder / "fields.pvd")[0]
+    piece = xml.parse(path).getroot().find("UnstructuredGrid/Piece")
+    array = piece.find("CellData/DataArray[@Name='body']")
+    numbers, points = np.array(array.text.split()), vtu._parts(path)[0]
+    cells = vtu._parts(path)[2]
+    assert array.get("type") == "Int32" and len(numbers) == len(cells) and set(numbers) == {str(k + 1) for k in range(bodies)}
+    heights = [points[cells[numbers == str(k + 1)], 1] for k in range(bodies)]
+    assert bodies == 1 or heights[1].max() < heights[0].min() + 1e-6
+
+
+@pytest.mark.parametrize("which", SCENES)
+def test_every_row_bears_load(ran, which):
+    """contact.csv has a row for every point under load, and no other."""
+    table = pd.read_csv(ran(which).folder / "fields/contact.csv")
+    assert len(table) > 10 and (table.pressure > 0).all()
+
+
+@pytest.mark.parametrize("which", ["disc", "whole disc", "revolution", "ball", "oblique ball", "block"])
+def test_panels_show_the_same_pressure(ran, which):
+    """The largest pressure of an instant is the same in the profiles, in the picture over time, and in the last panel."""
+    result = ran(which)
+    half = figures.is_half(result.scene)
+    ball = result.scene if half and result.scene["script"] in figures.BODY else None
+    figure = contact.draw(contact.read(result.folder), body_names(result.scene) if bodies.are_several(result.scene) else ["body"],
+                          half, np.array([]), ball, result.scene.get("symmetry", "full"), result.history)
+    profiles = next(axes for axes in figure.axes if axes.get_ylabel() == contact.PRESSURE)
+    picture = next(axes for axes in figure.axes if axes.collections and "time" in axes.get_xlabel()).collections[0]
+    edges = picture.get_coordinates()[0, :, 0]
+    largest = next(axes for axes in figure.axes if "largest pressure" in axes.get_ylabel()).lines[0]
+    assert len(profiles.lines) > 4
+    for line in profiles.lines:
+        t = float(line.get_label().removesuffix(" ms"))
+        row = int(np.argmin(np.abs(largest.get_xdata() - t)))
+        assert edges[row] < largest.get_xdata()[row] < edges[row + 1]
+        shown = np.nanmax(line.get_ydata()), np.ma.max(picture.get_array()[:, row]), largest.get_ydata()[row]
+        assert shown == pytest.approx([shown[0]] * 3, rel=1e-9), (t, shown)
+    plt.close(figure)
+
+
+@pytest.mark.parametrize("which", ["disc", "whole disc", "ball", "block"])
+def test_points_for_paraview(ran, which):
+    """fields/contact.pvd lists a file for every snapshot of fields.pvd at the same time; it has the points and numbers of contact.csv there, displaced to
+    their places; none without contact."""
+    folder = ran(which).folder
+    table = pd.DataFrame(contact.read(folder))
+    files = vtu.series(folder / "fields/contact.pvd")
+    assert [t for t, _ in files] == [t for t, _ in vtu.series(folder / "fields.pvd")] and {path.name for _, path in files} == {path.name for path in folder.glob("fields/*.vtp")}
+    for t, path in files:
+        piece = xml.parse(path).getroot().find("PolyData/Piece")
+        found = {array.get("Name"): np.array((array.text or "").split(), float) for array in piece.iter("DataArray")}
+        points, moved = found.pop(None).reshape(-1, 3), found.pop("displacement").reshape(-1, 3)
+        wanted = table[np.isclose(table.t, t, rtol=1e-8, atol=0)]
+        assert int(piece.get("NumberOfPoints")) == len(points) == len(wanted) == len(found["connectivity"])
+        axes = [axis for axis in "XYZ" if axis in wanted]
+        np.testing.assert_array_equal(points[:, :len(axes)], wanted[axes])
+        np.testing.assert_allclose((points + moved)[:, :len(axes)], wanted[[axis.lower() for axis in axes]], atol=1e-9)
+        names = [name for name in table if name not in "t s X Y Z x y z".split()]
+        assert set(names) == set(found) - {"connectivity", "offsets"}
+        for name in names:
+            np.testing.assert_array_equal(found[name], wanted[name], err_msg=name)
+
+
+@pytest.mark.parametrize("which, panels, maps", [("disc", 3, 0), ("whole disc", 4, 0), ("revolution", 3, 0), ("ball", 3, 0), ("oblique ball", 4, 10), ("block", 3, 0)])
+def test_panels_of_the_figure(ran, which, panels, maps):
+    """A row a body, one of two that touch nothing else: profiles, pressure over time, with friction stick and slip, half-width and largest pressure; of a ball
+    that comes obliquely maps of the patch at five instants, of pressure and of stick and slip."""
+    result = ran(which)
+    several = bodies.are_several(result.scene)
+    half = figures.is_half(result.scene)
+    figure = contact.draw(contact.read(result.folder), body_names(result.scene) if several else ["body"], half, np.array([]),
+                          result.scene if half and result.scene["script"] in figures.BODY else None, result.scene.get("symmetry", "full"), result.history)
+    titles = [axes.get_xlabel() for axes in figure.axes]
+    assert sum("mm" in title or "ms" in title for title in titles) - maps // 2 == panels, titles
+    assert sum(bool(axes.collections) and axes.get_aspect() == 1 for axes in figure.axes) == maps
+    assert ("distance from the axis [mm]" in titles) == (which in ("ball", "revolution"))
+    plt.close(figure)
+
+
+def test_a_uniform_pressure_on_a_face_stays_uniform(tmp_path):
+    """Two blocks of nu = 0 that rest flat press the floor by rho g h everywhere. Their projected pressure is that, up to the
+    corners, where the outline turns: it does not swing there, nor reach round them."""
+    block = {"shape": "rectangle", "width": 0.1, "height": 0.05, "mesh_size": 0.025, "contact_mesh_size": 0.0125}
+    tables = {"law": "neohookean", "young": 1e5, "nu": 0.0, "density": 1000.0, "loss": 2.0, "gravity": 9.81, "until": "rest",
+              "accuracy": 0.1, "fields": 1,
+              "body": [block | {"name": name, "position": [x, 0.025]} for name, x in (("left", 0.0), ("right", 0.3))],
+              "obstacle": [{"kind": "plane", "point": [0.0, 0.0], "normal": [0.0, 1.0]}]}
+    result = run.run(scene.read(tables, tmp_path, "block"), {}, tmp_path / "out", estimate=False)
+    table = pd.DataFrame(contact.read(result.folder))
+    last = table[table.t == table.t.max()]
+    face = last[last.pressure > 0]
+    assert len(face) > 30 and face.projected_pressure.to_numpy() == pytest.approx(face.pressure.to_numpy(), rel=0.01)
+    assert result.history["max_pressure"][-1] == pytest.approx(1000 * 9.81 * 0.05, rel=0.1)

@@ -1,0 +1,91 @@
+"""What is shown while the program works: one line, nested parts in it, a sentence about a run that will take long."""
+
+import re
+import subprocess
+import sys
+import types
+
+import pytest
+
+from examples.paper import paper as paper_making
+from ffimpact import progress
+from ffimpact.failure import BadInput
+from ffimpact.input.parameters import ROOT
+from ffimpact.sweeps import study
+
+
+class Bar:
+    """Stands in for tqdm's: keeps what it was told."""
+
+    def __init__(self, desc: str, **_):
+        self.n, self.seen = 0.0, [(0.0, desc)]
+        bars.append(self)
+
+    def set_description_str(self, words: str):
+        self.seen.append((self.n, words))
+
+    def close(self):
+        self.seen.append((self.n, "closed"))
+
+
+bars: list[Bar] = []
+
+
+@pytest.fixture
+def shown(monkeypatch) -> list[Bar]:
+    """The bars that a notebook shows, one an output of a cell."""
+    monkeypatch.setitem(sys.modules, "ipykernel", types.ModuleType("ipykernel"))
+    monkeypatch.setitem(sys.modules, "tqdm.auto", types.SimpleNamespace(tqdm=Bar))
+    bars.clear()
+    return bars
+
+
+def test_parts_in_parts_have_one_line(shown):
+    """Work in parts has one line: which of how many, what the part says of itself, and shares by what the parts cost."""
+    with progress.Line("paper", {"a": 1.0, "b": 3.0}) as line:
+        with line.part("a", "1 of 2"):
+            for k in progress.in_turn("compare", ["x", "y"]):
+                with progress.Line(k, {"main run": 1.0}) as inner:
+                    inner.at("main run", 0.5, "t = 1 ms")
+        with line.part("b", "2 of 2"):
+            pass
+    bar, = shown
+    assert (0.0625, "paper: 1 of 2, compare: 1 of 2, x: t = 1 ms") in bar.seen and (0.1875, "paper: 1 of 2, compare: 2 of 2, y: t = 1 ms") in bar.seen
+    assert (0.25, "paper: 2 of 2") in bar.seen and bar.seen[-2:] == [(1.0, "paper: 2 of 2"), (1.0, "closed")]
+
+
+def test_nobody_looks(shown, capsys):
+    """Where it is asked not to, nothing is shown or said; elsewhere than on a terminal or in a notebook there is no line."""
+    with progress.Line("run", {1: 1.0}, watched=False) as line:
+        line.at(1, 0.5)
+        line.say("long")
+    del sys.modules["ipykernel"]
+    with progress.Line("run", {1: 1.0}) as line:
+        line.at(1, float("nan"))
+    assert not shown and capsys.readouterr() == ("", "")
+
+
+@pytest.mark.robustness
+def test_a_study_says_which_of_how_many(fake, shown, tmp_path):
+    """Runs beside each other tell how far they are before the first of them is done; what was there already counts, but takes no time."""
+    fake("brief")
+    study.study([{"speed": 4.0}], tmp_path / "sweeps/mine", {"fields": 0}, 60.0)
+    study.study([{"speed": 4.0}, {"speed": 5.0}, {"speed": 6.0}], tmp_path / "sweeps/mine", {"fields": 0}, 60.0)
+    one, bar = shown
+    assert bar.seen[0] == (0.0, "sweeps/mine: 1 of 3 done") and bar.seen[-2:] == [(1.0, "sweeps/mine: 3 of 3 done"), (1.0, "closed")]
+    assert any(0 < share < 0.5 and words.endswith("1 of 3 done") for share, words in bar.seen)
+
+
+def test_paper_counts_its_parts(shown, monkeypatch, capsys):
+    """make paper runs what make's targets run, in their order, in one line with the time left; the first that fails ends it."""
+    ran = []
+    monkeypatch.setattr(paper_making, "called", lambda module, words: ran.append([module, *words]) or (1 if "oblique" in words else 0))
+    recipe = subprocess.run(["make", "-n", "paper"], cwd=ROOT, capture_output=True, text=True).stdout   # a make within a make adds lines of its own
+    targets = re.search(r"--make (.*)$", recipe, re.MULTILINE)[1].split()
+    assert targets[:2] == ["disc-normal", "disc-oblique"] and {"stick-slip", "verify", "contact-time-svk"} < set(targets)
+    assert paper_making.make(targets) == 1 and ran[:3] == [
+        ["ffimpact", "run", "disc-normal"], ["ffimpact", "compare", "disc-oblique-svk", "disc-oblique"], ["ffimpact", "run", "disc-rolling"]]
+    assert ran[-1] == ["ffimpact", "sweep", "oblique"] and any(words == f"paper: 2 of {len(targets)}" for _, words in shown[0].seen)
+    assert [words[0] for _, words in paper_making.commands("ball-comparison")] == ["run", "compare", "compare"]     # every line of a recipe
+    with pytest.raises(BadInput, match="--make: 'clean' is no target"):
+        paper_making.make(["clean"])

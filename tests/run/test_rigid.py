@@ -1,0 +1,156 @@
+"""Rigid bodies: the motions of rigid bodies exactly, and the limit of stiff ones."""
+
+import json
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from ffimpact.__main__ import main
+from ffimpact.output import vtu
+from tests.support.rigid import DISC, FLOOR, ROLLER, run
+
+BLOCK = """
+[[body]]
+shape = "rectangle"
+width = 0.3
+height = 0.15
+position = [0, -0.075]
+law = "svk"
+young = 1e6
+nu = 0.3
+"""
+
+
+def test_a_disc_slides_until_it_rolls(tmp_path):
+    """Coulomb's friction takes v0/3 of a homogeneous disc; energy and momenta are kept."""
+    text = DISC + "position = [0, 0.05]\nvelocity = [1, 0]\n" + FLOOR + "friction_static = 0.3\n"
+    summary, history = run(tmp_path, "gravity = 9.81\nend_time = 0.16\n" + text)
+    assert summary["dofs"] == 6
+    assert history.vx.iloc[-1] == pytest.approx(2 / 3, rel=0.01)      # the penalty lets it in by 2 % of R
+    assert history.spin.iloc[-1] == pytest.approx(-2 / 3 / 0.05, rel=0.02)
+    assert summary["energy_drift"] < 1e-9 and summary["momentum_drift"] < 1e-11
+
+
+def test_mass_and_inertia_are_those_given(tmp_path):
+    """A disc with I = m R^2, as a hoop, keeps half of its speed."""
+    given = "mass = 3\ninertia = 0.0075\n"
+    text = DISC.replace("density = 1000\n", "") + given + "position = [0, 0.05]\nvelocity = [1, 0]\n" + FLOOR + "friction_static = 0.3\n"
+    summary, history = run(tmp_path, "gravity = 9.81\nend_time = 0.2\n" + text)
+    assert summary["mass"] == pytest.approx(3, rel=1e-12)
+    assert history.vx.iloc[-1] == pytest.approx(1 / 2, rel=0.015)
+    assert summary["angular_momentum_drift"] < 1e-11
+
+
+def test_it_is_the_limit_of_a_stiff_disc(tmp_path):
+    """The same disc a thousand times stiffer than the block."""
+    text = DISC + "position = [0, 0.0501]\nvelocity = [0.3, -1]\n" + BLOCK + "[contact]\nfriction_static = 0.3\n"
+    rigid, _ = run(tmp_path, text, "rigid")
+    stiff, _ = run(tmp_path, text.replace("rigid = true", 'law = "svk"\nyoung = 1e9\nnu = 0.3'), "stiff", body__1__density=1000)
+    for name in ("impulse", "rebound_vy_1", "rebound_vy_2"):
+        apart = 0.005 * abs(stiff[name]) + max(one["estimated_error"]["rebound"] for one in (rigid, stiff)) * abs(stiff[name])
+        assert abs(rigid[name] - stiff[name]) < apart, name
+    assert rigid["energy_drift"] < 1e-9 and rigid["momentum_drift"] < 1e-10
+
+
+PUSHED = """
+end_time = 0.02
+[[body]]
+shape = "rectangle"
+width = 0.1
+height = 0.1
+rigid = true
+mass = 10
+position = [0, 0.5]
+[[body.load]]
+where = "top"
+traction = [1000, 500]
+""" + FLOOR
+
+
+def test_a_load_moves_a_rigid_body_from_rest(tmp_path):
+    """v = F t/m, though there is no energy at the start to hold a residual against."""
+    summary, _ = run(tmp_path, "young = 1e6\nnu = 0.3\ndensity = 1000\naccuracy = 0.2\n" + PUSHED)
+    assert summary["rebound_vx"] == pytest.approx(0.2, rel=1e-9)
+    assert summary["rebound_vy"] == pytest.approx(0.1, rel=1e-9)
+    assert summary["energy_drift"] < 1e-9
+
+
+def test_a_rigid_ring_bears_a_gas(tmp_path):
+    """It falls as without the gas, whatever its pressure."""
+    ring = PUSHED.replace('"rectangle"\nwidth = 0.1\nheight = 0.1', '"ring"\nradius = 0.05\ninner_radius = 0.04\nvelocity = [0, -1]')
+    gas = ring.replace('where = "top"\ntraction = [1000, 500]', 'where = "inner"\ngas = {gauge_pressure = 1e5}')
+    summary, _ = run(tmp_path, "accuracy = 0.2\n" + gas)
+    assert summary["rebound_vy"] == pytest.approx(-1, rel=1e-9) and summary["energy_drift"] < 1e-9
+
+
+def test_a_rigid_body_is_asked_for_no_material(tmp_path):
+    """The stiffness that stands for rigidity is no material of the user's."""
+    steel = BLOCK.replace("young = 1e6", "young = 2e11")
+    summary, _ = run(tmp_path, DISC + "position = [0, 0.0501]\nvelocity = [0, -50]\n" + steel, accuracy=0.3)
+    assert not [one for one in summary["warnings"] if one.startswith("density")]
+
+
+def test_fields_show_where_a_rigid_body_is(tmp_path):
+    """Without stress, of volume 1, as far from its reference as its centre: a translation of all nodes."""
+    text = DISC + "position = [0, 0.0501]\nvelocity = [0, -1]\n" + BLOCK
+    run(tmp_path, "fields = 3\n" + text)
+    found = vtu.read(sorted((tmp_path / "scene" / "fields").glob("0*.vtu"))[-1])
+    disc = np.linalg.norm(found.points, axis=1) < 0.05 + 1e-6      # in the mesh it is about the origin
+    moved = found.fields["displacement"][disc]
+    assert disc.sum() > 20 and all(np.isfinite(field).all() for field in found.fields.values())
+    assert np.ptp(moved[:, 1]) < 1e-6 and found.fields["von_mises"][disc].max() == 0 < found.fields["von_mises"].max()
+    assert found.fields["jacobian"][disc] == pytest.approx(1, abs=1e-4)
+
+
+def test_two_rigid_discs_on_a_soft_one(tmp_path):
+    """Momentum of all bodies stays."""
+    soft = '[[body]]\nshape = "disc"\nradius = 0.05\nposition = [0, 0]\nlaw = "neohookean"\nyoung = 1e6\nnu = 0.3\n'
+    one = '[[body]]\nshape = "disc"\nradius = 0.03\nrigid = true\nposition = [{}, 0]\nvelocity = [{}, 0]\n'
+    summary, history = run(tmp_path, "density = 1000\naccuracy = 0.1\n" + soft + one.format(0.0801, -1) + one.format(-0.0801, 1))
+    assert summary["momentum_drift"] < 1e-11 and summary["energy_drift"] < 1e-9
+    assert history.momentum_x.abs().max() < 1e-9 * history.momentum_x_2.abs().max()
+    assert summary["rebound_vx_2"] == pytest.approx(-summary["rebound_vx_3"], rel=0.02)
+
+
+def test_a_rigid_ball_of_revolution_falls(tmp_path):
+    """On a plane of stiffness k it only moves along the axis and comes back with its speed."""
+    text = ('dimension = "axisymmetric"\ndensity = 1000\naccuracy = 0.05\n[[body]]\nshape = "ball"\nradius = 0.05\nrigid = true\n'
+            "position = [0, 0.0501]\nvelocity = [0, -1]\n" + FLOOR)
+    summary, _ = run(tmp_path, text)
+    assert summary["restitution"] == pytest.approx(1, abs=1e-6)
+    assert summary["mass"] == pytest.approx(1000 * 4 / 3 * math.pi * 0.05**3, rel=1e-3)
+
+
+def test_a_box_spins_freely_in_space(tmp_path):
+    """With moments of inertia of its own: angular momentum and energy stay, the spin precesses."""
+    text = ('dimension = "3d"\naccuracy = 0.1\nend_time = 0.12\nmesh_size = 0.02\n[[body]]\nshape = "box"\nwidth = 0.1\nheight = 0.06\n'
+            "depth = 0.08\nrigid = true\nmass = 2\ninertia = [0.003, 0.004, 0.0035]\nposition = [0, 1, 0]\nspin = [5, 20, -4]\n"
+            '[[obstacle]]\nkind = "plane"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\n[contact]\npenalty = 1e8\n')
+    summary, history = run(tmp_path, text, without="flight")
+    spin = history[["spin_x", "spin_y", "spin"]].to_numpy()
+    assert summary["energy_drift"] < 1e-9 and summary["angular_momentum_drift"] < 1e-9
+    energy = 0.5 * np.array([0.003, 0.004, 0.0035]) @ np.array([5.0, 20, -4])**2
+    assert summary["rotation_energy"] == pytest.approx(energy, rel=1e-4)
+    assert np.abs(spin - spin[0]).max() > 1
+
+
+def test_an_obstacle_works_exactly_what_the_body_gains(tmp_path):
+    """A cornered roller that comes down and turns: its work is the energy, its impulse the momentum."""
+    corners = "kind = 'polyline'\nvertices = [[0.03, 0.06], [-0.03, 0.06], [-0.03, 0.12], [0.03, 0.12]]\nclosed = true\nrounding = 0.004"
+    moved = 'motion = [0, "-0.01*sin(pi*t/0.01)"]\nrotation = "-1500*t"\npivot = [0, 0.09]'
+    text = ROLLER.replace('kind = "circle"\ncentre = [0, 0.0905]\nradius = 0.04', corners).format(moved)
+    summary, history = run(tmp_path, text)
+    assert history.friction_work.iloc[-1] > 0.1 and history.external_work.iloc[-1] > 1
+    assert summary["energy_drift"] < 1e-9 and summary["momentum_drift"] < 1e-8 and summary["angular_momentum_drift"] < 1e-8
+
+
+@pytest.mark.parametrize("law, nu", [("svk", 0.47), ("neohookean", 0.49)])
+def test_a_rigid_body_has_no_part_in_the_projected_volume_of_others(tmp_path, law, nu):
+    """It has next to no strain, and the volume ratio of its elements is 1."""
+    short = [f"law={law}", f"nu={nu}", "accuracy=0.1", "end_time=0.002"]
+    assert main(["run", "drop-weight", "--out", str(tmp_path / "run"), *(word for one in short for word in ("--set", one))]) == 0
+    history = pd.read_csv(tmp_path / "run/history.csv")
+    assert abs(history["elastic_1"]).max() < 1e-4 * history["elastic_2"].max()
+    assert 0 < json.loads((tmp_path / "run/summary.json").read_text())["volume_change"] < 0.1

@@ -1,0 +1,431 @@
+"""Scenes of several bodies through every way in: disc-block, a TOML file of one's own, direct runs, sweeps, figures."""
+
+import json
+import math
+import subprocess
+
+import numpy as np
+import pytest
+
+from ffimpact import scene
+from ffimpact.__main__ import main
+from ffimpact.failure import BadInput, Failure
+from ffimpact.freefem import freefem
+from ffimpact.freefem.describe import describe
+from ffimpact.input import parameters
+from ffimpact.input.toml_text import to_toml
+from ffimpact.mesh import mesh
+from ffimpact.output import estimate, vtu
+from ffimpact.report import bodies, drawing, figures, impacts, report
+from ffimpact.running import run
+from ffimpact.scene import read as read_scene
+from ffimpact.scenes import assembly, finer
+from ffimpact.sweeps import sweep
+
+MINE = {"title": "A disc meets a soft one and a moving post", "law": "neohookean", "young": 7e6, "nu": 0.4, "density": 1722, "accuracy": 0.4, "fields": 3,
+        "body": [{"name": "striker", "shape": "disc", "radius": 0.05, "position": [-0.052, 0], "velocity": [4, 0]},
+                 {"name": "target", "shape": "disc", "radius": 0.04, "position": [0.04, 0], "young": 4e6}],
+        "obstacle": [{"name": "post", "kind": "circle", "centre": [0.11, 0], "radius": 0.02, "velocity": [-1, 0]}],
+        "contact": {"friction_static": 0.2, "pair": [{"bodies": ["target", "post"], "friction_static": 0}]}}
+
+
+@pytest.fixture(scope="module")
+def block(tmp_path_factory):
+    """disc-block, coarse, half of it."""
+    found = run.run(scene.load("disc-block"), {"accuracy": 0.4, "fields": 3}, tmp_path_factory.mktemp("block") / "run")
+    report.draw(found)
+    return found
+
+
+@pytest.fixture(scope="module")
+def mine(tmp_path_factory):
+    """The file above, run, with the file's path."""
+    folder = tmp_path_factory.mktemp("mine")
+    (folder / "mine.toml").write_text(to_toml(MINE))
+    found = run.run(scene.load(str(folder / "mine.toml")), {}, folder / "run")
+    report.draw(found)
+    return found, folder / "mine.toml"
+
+
+# ---- disc-block
+
+def test_each_body_has_its_columns_and_numbers(block):
+    """history.csv and summary.json hold what the scripts say they write of two bodies; the totals are the sums over the bodies."""
+    wanted, h, s = scene.load("disc-block"), block.history, block.summary
+    assert list(h) == wanted.columns and {"vy_1", "vy_2", "kinetic_1"} <= set(h) and "block_width" in block.scene
+    assert set(wanted.numbers) <= set(s) and s["provenance"]["script"] == "disc-block" and s["estimated_error"] is not None
+    for name in ("kinetic", "elastic", "momentum_y"):
+        assert h[name] == pytest.approx(h[f"{name}_1"] + h[f"{name}_2"], rel=1e-9, abs=1e-9 * abs(h[name]).max())
+    assert s["mass_1"] == pytest.approx(1722 * np.pi * 0.25, rel=1e-2) and s["mass_2"] == pytest.approx(1722 * 20, rel=1e-9)
+
+
+def test_what_one_body_loses_the_other_gains(block):
+    """No force from outside: the momentum of all stays what the disc brought, each body's changes by its impulse, energy is kept."""
+    h, s = block.history, block.summary
+    assert np.ptp(h["momentum_y"]) < 1e-9 * abs(h["momentum_y"]).max()
+    assert s["impulse_y_1"] == pytest.approx(-s["impulse_y_2"], rel=1e-9) and s["impulse_y_1"] == pytest.approx(s["impulse"], rel=1e-6)   # the resultant
+    assert s["mass_1"] * (s["rebound_vy_1"] + 10) == pytest.approx(s["impulse_y_1"], rel=1e-6)
+    assert s["rebound_vy_1"] > 0 > s["rebound_vy_2"] and s["energy_drift"] < 1e-8
+    assert h["force_y_1"] == pytest.approx(-h["force_y_2"], abs=1e-6 * h["normal_force"].max())
+
+
+def test_lost_ellipticity_is_a_warning(block):
+    """St. Venant-Kirchhoff beyond its range says so for two bodies as it does for one; the law that keeps it does not."""
+    hard = run.run(scene.load("disc-block"), {"accuracy": 0.4, "speed": 25, "fields": 0, "breakdown": "continue"}, block.folder.parent / "hard", estimate=False)
+    assert hard.summary["ellipticity_lost_time"] > 0 and any(each.startswith("ellipticity: lost from") for each in hard.summary["warnings"])
+    assert block.summary["ellipticity_lost_time"] is None and not any(each.startswith("ellipticity") for each in block.summary["warnings"])
+
+
+# ---- a file of one's own
+
+def test_the_folder_of_a_scene_of_ones_own(mine, tmp_path):
+    """Mesh, data file, scene as used, with the mesh's checksum: read again they are the same scene, which is not run again; FreeFEM found each body where and of what
+    it is."""
+    found, path = mine
+    s, h = found.summary, found.history
+    assert (s["mass_1"], s["mass_2"]) == pytest.approx((1722 * math.pi * 0.05**2, 1722 * math.pi * 0.04**2), rel=1e-4)
+    assert (h["x_1"][0], h["y_1"][0], h["x_2"][0], h["y_2"][0], h["vx_1"][0], h["vx_2"][0]) == pytest.approx((-0.052, 0, 0.04, 0, 4, 0), abs=1e-5)
+    assert {"mesh.msh", "scene.dat", "scene.toml", "history.csv", "summary.json", "fields.pvd"} <= {each.name for each in found.folder.iterdir()}
+    assert s["provenance"]["mesh"] == run._sha256(found.folder / "mesh.msh") and s["provenance"]["gmsh"]
+    assembly.prepare(scene.load(str(found.folder / "scene.toml")), tmp_path)
+    assert (tmp_path / "scene.dat").read_text() == (found.folder / "scene.dat").read_text()
+    assert run.run(scene.load(str(path)), {}, found.folder).reused
+    assert not run.reusable(scene.load(str(path)).override({"body.2.young": 5e6}), found.folder)
+    assert s["rebound_vx_2"] != 0 and s["energy_drift"] < 1e-8 and s["estimated_error"] is not None
+
+
+@pytest.mark.robustness
+def test_entries_are_set_on_the_command_line(mine, capsys):
+    """--set body.2.young=... arrives in the scene as used, and a direct run on the folder's files gives the same answer."""
+    found, path = mine
+    out = path.parent / "set"
+    assert main(["run", str(path), "--set", "body.2.young=8e6", "fields=0", "--out", str(out), "--quiet"]) == 0, capsys.readouterr().err
+    other = json.loads((out / "summary.json").read_text())
+    assert other["impulse"] > found.summary["impulse"] and run.read_scene(out)["body"][1]["young"] == 8e6
+    direct = freefem_run("-mesh", str(out / "mesh.msh"), "-bodies", str(out / "scene.dat"), *freefem.words_of(values(out)), "-out", str(path.parent / "direct"))
+    assert direct.returncode == 0, direct.stderr
+    assert json.loads((path.parent / "direct/summary.json").read_text())["impulse"] == pytest.approx(other["impulse"], rel=1e-9)
+
+
+@pytest.mark.robustness
+def test_a_killed_run_goes_on(mine, monkeypatch):
+    """A run of bodies that ends at a checkpoint goes on from there when asked again, to the same answer."""
+    found, path = mine
+    wanted, real = scene.load(str(path)).override({"checkpoint_every": 5}), freefem.Process.end
+
+    def killed(process, progress=None):
+        while not (out.with_name("killed.part") / "checkpoint").exists() and process.child.poll() is None:
+            pass
+        process.child.kill()
+        return real(process, progress)
+    monkeypatch.setattr(freefem.Process, "end", killed)
+    out = path.parent / "killed"
+    with pytest.raises(Failure, match="goes on from the last checkpoint"):
+        run.run(wanted, {}, out, estimate=False)
+    monkeypatch.setattr(freefem.Process, "end", real)
+    result = run.run(wanted, {}, out, estimate=False)
+    assert result.summary["resumed_at"] > 0
+    assert result.summary["impulse"] == pytest.approx(found.summary["impulse"], rel=1e-9)
+
+
+@pytest.mark.robustness
+def test_a_sweep_reaches_every_entry(mine):
+    """Axes named by dotted names, in quotes or not; the table has the numbers of each body."""
+    path = mine[1].with_name("sweep.toml")
+    path.write_text('scene = "mine.toml"\ncollect = ["rebound_vx_1", "rebound_vx_2"]\n[set]\nfields = 0\n[product]\nbody.2.young = [2e6, 8e6]\n'
+                    '"contact.penalty" = [5e9]\n[figure]\nx = "body.2.young"\ny = "rebound_vx_2"\n')
+    wanted = sweep.load(str(path))
+    assert wanted.points == [{"body.2.young": 2e6, "contact.penalty": 5e9}, {"body.2.young": 8e6, "contact.penalty": 5e9}]
+    rows = sweep.collect(wanted, path.parent / "sweep")
+    assert (rows.exit == 0).all() and rows.rebound_vx_2.nunique() == 2 and (path.parent / "sweep/sweep.png").exists()
+    for text, words in (("body.3.young = [1e6]", "body.3.young: there is no body.3 in the scene"), ("body.2.yung = [1e6]", "body.2.yung: no such entry, set to "),
+                        ("body.1.velocity = [[1, 0], [2, 0]]", "single numbers and words"), ("radius = [1]", "radius: no such entry, set to ")):
+        path.write_text(f'scene = "mine.toml"\n[product]\n{text}\n')
+        with pytest.raises(BadInput, match=words):
+            sweep.load(str(path))
+
+
+def test_coarser_and_finer_elements(mine):
+    """The scene for another mesh has that much larger elements on every body that is meshed, and the same contact."""
+    wanted = scene.load(str(mine[1]))
+    used = run.read_scene(mine[0].folder)
+    built = assembly.assemble(wanted.override(finer.scaled(wanted, wanted.values, used, 0.5)))
+    assert [body["mesh_size"] for body in built.used["body"]] == [0.5 * body["mesh_size"] for body in used["body"]]
+    assert built.used["contact"] == used["contact"] and built.values["accuracy"] == 0.25 * used["accuracy"]
+    assert len(built.mesh.triangles) > 2 * len(assembly.assemble(wanted).mesh.triangles)
+
+
+@pytest.mark.parametrize("factor, kept", [(estimate.COARSER, False), (1 / estimate.COARSER, True)])
+def test_a_finer_run_keeps_what_a_scene_asks_for(mine, factor, kept):
+    """Of a scene of bodies as of the paper's: only the coarser run, which is compared, writes no output."""
+    asked = {"fields": 5, "modes": 4, "checkpoint_every": 7}
+    wanted = scene.load(str(mine[1])).override(asked)
+    other = wanted.override(finer.scaled(wanted, wanted.values, run.read_scene(mine[0].folder), factor))
+    assert {name: other.values[name] for name in asked} == asked | ({} if kept else parameters.OUTPUT)
+
+
+# ---- figures
+
+@pytest.mark.parametrize("which", ["block", "mine"])
+def test_figures_of_several_bodies(which, request):
+    """Energies, velocities, forces, shapes and pressure are drawn, restitution where there are several impacts; the title names the bodies' materials."""
+    found = request.getfixturevalue(which)
+    found = found[0] if which == "mine" else found
+    drawn = {path.name for path in (found.folder / "figures").iterdir()}
+    assert drawn - {"bounces.png"} == {"contact.png", "energies.png", "force.png", "shapes.png", "velocity.png"}
+    assert ("bounces.png" in drawn) == (len(impacts.several(impacts.read(found.folder))) > 0)
+    assert all(path.stat().st_size > 5000 for path in (found.folder / "figures").iterdir())
+    assert ("target: neo-Hookean, E = 4 MPa" if which == "mine" else "disc on block: St. Venant") in drawing.title(found.scene)
+    assert "rebound velocity, " + ("x, target" if which == "mine" else "y, block") in report.report(found)
+
+
+def test_bodies_are_drawn_where_they_are(mine):
+    """The displacement moves the bodies from their reference places, side by side, to those of the scene; the post moves on."""
+    found = mine[0]
+    t, path = vtu.series(found.folder / "fields.pvd")[-1]
+    points = figures.deformed(vtu.read(path), False).points
+    left, right, *_ = bodies.limits([figures.deformed(vtu.read(path), False)])
+    xs = [np.interp(t, found.history["t"], found.history[f"x_{b}"]) for b in (1, 2)]
+    assert points[:, 0].min() == pytest.approx(xs[0] - 0.05, abs=0.004) and left < points[:, 0].min() < points[:, 0].max() < right
+    assert bodies.obstacles_of(found.scene)[0].velocity.tolist() == [-1, 0]
+
+
+# ---- what is refused
+
+def freefem_run(*flags: str, script: str = "bodies") -> subprocess.CompletedProcess:
+    return freefem.find().call(f"edp/{script}.edp", *flags)
+
+
+def values(folder) -> dict:
+    """The parameters of a scene of bodies as flags."""
+    used = run.read_scene(folder)
+    return {name: value for name, value in (used | used["contact"]).items() if name in parameters.names("bodies")}
+
+
+@pytest.mark.parametrize("words, said", [
+    (("disc-normal", "--set", "block_width=3"), "block_width: disc-plane takes no such parameter (accepted: in disc-block)"),
+    (("disc-block", "--mesh", "MESH"), "mesh: disc-block takes no such parameter (accepted: in disc-plane|ball-axisymmetric|bodies|bodies-axisymmetric|bodies-3d)"),
+    (("two-discs", "--mesh", "MESH"), "mesh: is of one body"),
+    (("two-discs", "--set", "body.3.young=1e6"), "body.3.young: there is no body.3 in the scene (accepted: body.1 to body.2)"),
+    (("two-discs", "--set", "radius=1"), "radius: no such entry, set to '1'"),
+    (("two-discs", "--set", "body.1.position=[0,0]"), "body.1.position: 'left' overlaps 'right' (body.2)"),
+    (("two-discs", "--set", "contact.friction_dynamic=0.5"), "contact.friction_dynamic: 0.5 is larger than friction_static 0.3"),
+])
+def test_what_python_refuses(words, said, tmp_path, capsys):
+    """Exit code 10, one line, nothing left behind."""
+    (tmp_path / "m.msh").write_text("4 2 4\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n1 2 3 0\n1 3 4 0\n1 2 1\n2 3 1\n3 4 1\n4 1 1\n")
+    code = main(["run", *(str(tmp_path / "m.msh") if word == "MESH" else word for word in words), "--out", str(tmp_path / "out"), "--quiet"])
+    error = capsys.readouterr().err
+    assert code == 10 and error.count("\n") == 1 and said in error, error
+    assert [path.name for path in tmp_path.iterdir()] == ["m.msh"]
+
+
+def test_one_body_and_nothing_else(inputs, tmp_path):
+    """A body with nothing to touch is refused: by Python before a run, by the script where a data file has no more."""
+    alone = dict(law="svk", young=7e6, nu=0.4, density=1000, body=[dict(shape="disc", radius=0.1, position=[0, 0], velocity=[0, -1])])
+    with pytest.raises(BadInput, match="^obstacle: is missing, and a second body too"):
+        assembly.prepare(read_scene(alone, tmp_path, "alone"), tmp_path)
+    lines = (inputs / "scene.dat").read_text().split("\n")
+    kept = [*lines[:2], "bodies 1", lines[3], "circles 0", "files 0", "obstacles 0", "pairs 0", ""]
+    (tmp_path / "scene.dat").write_text("\n".join(kept))
+    done = freefem_run("-mesh", str(inputs / "mesh.msh"), "-bodies", str(tmp_path / "scene.dat"), "-out", str(tmp_path / "out"))
+    assert done.returncode == 10 and "nothing could ever touch" in done.stderr and done.stderr.count("\n") == 1, done.stderr
+
+
+FALLING = {"law": "neohookean", "young": 7e6, "nu": 0.3, "density": 1722, "accuracy": 0.1, "obstacle": [{"kind": "plane", "point": [0, 0], "normal": [0, 1]}]}
+
+
+def test_a_shaft_of_a_file_has_its_flats(tmp_path):
+    """A coarse mesh of a shaft with two flats, all corners on one circle, has the mass of arcs and flats, which the log counts; falling on an end of a flat
+    it turns as it rebounds, which a disc would not. What the mesh leaves out no estimate says."""
+    radius, flat = 0.01, math.acos(0.6)
+    angles = np.concatenate([np.linspace(side + flat, side + math.pi - flat, 8) for side in (0, math.pi)])
+    spokes = np.column_stack([np.full(16, 16), np.arange(16), np.roll(np.arange(16), -1)])
+    points = np.vstack([radius * np.column_stack([np.cos(angles), np.sin(angles)]), [0, 0]])
+    mesh.write(mesh.Mesh(points, spokes, spokes[:, 1:], np.ones(16, dtype=int)), tmp_path / "shaft.msh")
+    body = {"name": "shaft", "shape": "mesh", "file": "shaft.msh", "position": [0, 0.0101], "velocity": [0, -2], "angle": 60}
+    found = run.run(read_scene(FALLING | {"body": [body], "end_time": 3e-3}, tmp_path, "shaft"), {}, tmp_path / "run")
+    assert found.summary["estimated_error_excludes"][-1] == "mesh" and any("those of the step" in one or "not estimated" in one for one in found.summary["warnings"] + found.summary["notes"])
+    area = radius**2 * (math.pi - 2 * flat + math.sin(2 * flat))
+    assert found.summary["energy_initial"] == pytest.approx(area * 1722 * 2, rel=1e-4) and abs(found.summary["rebound_spin"]) > 50
+    assert "outline: shaft: 14 edges on circles, 2 straight edges; 16 may touch\n" in (found.folder / "log.txt").read_text()
+    assert not any(one.startswith("mass") for one in found.summary["warnings"])         # 0.3 % more than the file
+
+
+def test_bodies_turn_about_their_stated_centre(tmp_path):
+    """A coarse ellipse turned by 90 degrees and one with its semi-axes exchanged are the same body, though the mesh's centre of mass is 0.06 mm off: they
+    touch at one time and are nowhere farther apart than round-off."""
+    found = []
+    for axes, angle in (([0.06, 0.03], 0), ([0.03, 0.06], 90)):
+        body = {"shape": "ellipse", "semi_axes": axes, "angle": angle, "position": [0, 0.031], "velocity": [0, -1], "mesh_size": 0.015}
+        found.append(run.run(read_scene(FALLING | {"body": [body], "end_time": 1.1e-3}, tmp_path, "ellipse"), {}, tmp_path / str(angle), estimate=False))
+    first, second = found
+    assert first.summary["contact_start"] == pytest.approx(second.summary["contact_start"], rel=1e-9)
+    assert second.history["y"] == pytest.approx(first.history["y"], abs=1e-12) and abs(second.history["x"]).max() < 1e-12
+
+
+def test_a_body_that_passes_through_itself_is_warned_about(tmp_path):
+    """Without self-contact the free arm of a hairpin closes its slot of 10 mm at 6 m/s and goes on into the other one: the warning says when, which is not before 10 mm / 12 m/s,
+    and where, on a wall of the slot; as long as the slot is open there is none."""
+    pin = {"shape": "polygon", "vertices": [[0, 0], [0.1, 0], [0.1, 0.01], [0.01, 0.01], [0.01, 0.02], [0.1, 0.02], [0.1, 0.03], [0, 0.03]],
+           "position": [0, 0.0151], "velocity": [0, -6], "mesh_size": 0.009, "contact_mesh_size": 0.009}
+    for end, words in ((4e-3, "overlap: the body passes through itself from t = "), (8e-4, "")):
+        found = run.run(read_scene(FALLING | {"body": [pin], "end_time": end, "contact": {"self_contact": "off"}}, tmp_path, "pin"), {}, tmp_path / "pin", estimate=False)
+        warned = [one for one in found.summary["warnings"] if "overlap" in one]
+        assert len(warned) == (words != "")
+        for sentence in warned:
+            assert sentence.startswith(words) and 8e-4 < float(sentence.split("t = ")[1].split()[0]) < 4e-3
+            x, y = map(float, sentence.split("X = (")[1].split(")")[0].split(", "))
+            assert abs(y) == pytest.approx(0.005, abs=1e-3)
+
+
+@pytest.mark.parametrize("dimension, shape, zeros", [("plane-strain", "disc", 0), ("axisymmetric", "ball", 0), ("3d", "ball", 1)])
+def test_bodies_that_never_meet(tmp_path, dimension, shape, zeros):
+    """Refused before anything is meshed: bodies at rest; bodies that fly apart while the end is left open, and only then."""
+    def prepare(up: float, **more) -> None:
+        def body(name: str, y: float, v: float) -> dict:
+            return dict(name=name, shape=shape, radius=0.02, position=[0, y] + zeros * [0], velocity=[0, v] + zeros * [0])
+        given = dict(dimension=dimension, law="neohookean", young=1e6, nu=0.3, density=1000, accuracy=0.4, body=[body("above", 0.05, up), body("below", 0, 0)])
+        assembly.prepare(read_scene(given | more, tmp_path, "two"), tmp_path)
+
+    with pytest.raises(BadInput, match="^velocity: 0 of every body"):
+        prepare(0)
+    for more in ({}, {"gravity": 9.81}):                  # both fall alike
+        with pytest.raises(BadInput, match="^end_time: 0 is the end of the contact, but nothing ever touches"):
+            prepare(1, **more)
+    assert not list(tmp_path.iterdir())
+    prepare(1, end_time=0.01)
+    prepare(-1)
+
+
+@pytest.fixture(scope="module")
+def inputs(tmp_path_factory):
+    """mesh.msh and scene.dat of two discs that touch."""
+    folder = tmp_path_factory.mktemp("inputs")
+    assembly.assemble(scene.load("two-discs").override({"accuracy": 0.4})).write(folder)
+    return folder
+
+
+@pytest.mark.few(10)
+@pytest.mark.parametrize("file, old, new, said", [
+    ("scene.dat", "ffimpact-bodies 1", "ffimpact-bodies 2", "does not begin with 'ffimpact-bodies 1'"),
+    ("scene.dat", "neohookean 7000000.0", "neohookean seven", "has a word where a number belongs"),
+    ("scene.dat", "pairs 0", "pairs 1", "ends too early"),
+    ("scene.dat", "left neohookean", "left rubber", "the law 'rubber' of left is not known"),
+    ("scene.dat", "neohookean 7000000.0", "neohookean -7000000.0", "left has young -7e+06"),
+    ("scene.dat", " -0.06 0.0 ", " 0.0 0.0 ", "overlap by 0.0"),
+    ("scene.dat", "circles 2\n0", "circles 2\n9", "circle 1 of body 9, of 0 to 1"),
+    ("scene.dat", "obstacles 0", "obstacles 1\nfloor plane 3 0 0 1 0 0", "an obstacle 'plane' of 3 numbers (a plane has 4"),
+    *(("scene.dat", "obstacles 0", f"obstacles 1\nfloor implicit {program} 0 0", "obstacle 1, 'implicit', is not of two lengths above 0 and a program")
+      for program in ("2 1 1", "3 1 0 2", "3 1 1 17", "3 1 1 2.5", "3 1 1 3", "3 1 1 0", "4 1 1 2 1", "4 1 1 2 4")),
+    ("scene.dat", "obstacles 0", "obstacles 1\nfloor plane 4 0 0 0 0 0 0", "an obstacle 'plane' whose normal is 0"),
+    ("scene.dat", "obstacles 0", "obstacles 1\nwall polyline 6 0 0 1 1 1 1 0 0", "with two vertices at one place"),
+    ("scene.dat", "pairs 0", "pairs 1\n0 -2 1e9 0 0", "pair 1 is of 0 and -2, not of a body, 0 to 1"),
+    ("scene.dat", "pairs 0", "pairs 1\n0 1 -5 0 0", "pair 1 has penalty -5"),
+    ("scene.dat", "disc 0.05", "disc 0", "the disc has radius 0"),
+    ("mesh.msh", "region", lambda region, last: 7 if last else region, " is of region 7 (accepted: the bodies, 0 to 1)"),
+    ("mesh.msh", "region", lambda region, last: 1 - region, "mesh.msh: region 0, left, has its centre at x = "),
+    ("mesh.msh", "region", lambda region, last: 1, "mesh.msh: region 0, left, is in 0 pieces"),
+    ("mesh.msh", "region", lambda region, last: 0 if last else region, "has neighbours of another (accepted: a region a body)"),
+    ("mesh.msh", "corner", lambda corner, last: 99999 if last else corner, "names a vertex that is not there"),
+    ("mesh.msh", "cut", None, "mesh.msh: the file ends at triangle "),
+    ("scene.dat", None, None, "bodies: the file"),
+    ("mesh.msh", None, None, "mesh: the file"),
+])
+def test_what_a_direct_run_refuses(file, old, new, said, inputs, tmp_path):
+    """bodies.edp on a bad data file or mesh: exit code 10, one line, nothing left behind."""
+    for name in ("scene.dat", "mesh.msh"):
+        text = (inputs / name).read_text()
+        if name == file == "scene.dat" and old:
+            assert old in text
+            text = text.replace(old, new, 1)
+        if name == file == "mesh.msh" and old:
+            text = _other_triangles(text, old, new)
+        if name != file or old:
+            (tmp_path / name).write_text(text)
+    done = freefem_run("-mesh", str(tmp_path / "mesh.msh"), "-bodies", str(tmp_path / "scene.dat"), "-accuracy", "0.4", "-out", str(tmp_path / "out"))
+    assert done.returncode == 10 and said in done.stderr and done.stderr.count("\n") == 1, done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def _other_triangles(text: str, what: str, new) -> str:
+    """The mesh with the region, or first corner, of its triangles as `new` says of them, or cut among them."""
+    lines = text.splitlines()
+    n, t, _ = map(int, lines[0].split())
+    if what == "cut":
+        return "\n".join(lines[:n + 2]) + "\n"
+    for k in range(n + 1, n + t + 1):
+        words = lines[k].split()
+        column = {"corner": 0, "region": 3}[what]
+        words[column] = str(new(int(words[column]), k == n + t))
+        lines[k] = " ".join(words)
+    return "\n".join(lines) + "\n"
+
+
+@pytest.mark.few(2)
+@pytest.mark.parametrize("script, flags, said", [
+    ("bodies", ("-accuracy", "0.4"), "bodies: -bodies FILE is missing"),
+    ("bodies", ("-radius", "1"), "radius: bodies takes no such parameter (accepted: in disc-plane|disc-block|ball-plane|ball-axisymmetric)"),
+    ("disc-block", ("-bodies", "x"), "bodies: disc-block takes no such parameter (accepted: in bodies|bodies-axisymmetric|bodies-3d)"),
+    ("disc-plane", ("-block_height", "1"), "block_height: disc-plane takes no such parameter (accepted: in disc-block)"),
+])
+def test_flags_of_another_script_are_refused(script, flags, said):
+    """A direct run refuses, with exit code 10, what its script would not look at."""
+    done = freefem_run(*flags, script=script)
+    assert done.returncode == 10 and said in done.stderr and done.stderr.count("\n") == 1
+
+
+def test_scripts_describe_themselves():
+    """The scripts that there are, and of two bodies the columns of each."""
+    assert describe()["scripts"] == "disc-plane|disc-block|ball-axisymmetric|ball-plane|bodies|bodies-axisymmetric|bodies-3d" and describe(script="disc-block")["bodies"] == 2
+    assert {name for name in scene.built_in() if scene.load(name).bodies} == {"two-discs", "three-in-a-row", "disc-bowl", "disc-corner", "block-corner", "disc-step", "two-balls", "ball-cylinder", "ball-block", "balls-3d", "disc-beam", "ball-beam", "hollow-ball", "drop-weight", "roller"} < set(scene.built_in())
+
+
+# ---- what is set is what runs
+
+@pytest.mark.parametrize("name, given, opened, kept", [
+    ("disc-oblique", {"friction_static": "0.3"}, {"friction_dynamic": 0.3}, {"penalty": 1e10, "slip_velocity": 0.1}),
+    ("disc-oblique", {"friction_static": 0.8}, {"friction_dynamic": 0.8}, {"penalty": 1e10}),
+    ("disc-oblique", {"friction_static": 0.8, "friction_dynamic": 0.6}, {"friction_dynamic": 0.6}, {}),
+    ("disc-oblique", {"speed": 4, "nu": 0.3, "law": "svk", "accuracy": 0.1}, {}, {"penalty": 1e10, "friction_dynamic": 0.5, "slip_velocity": 0.1}),
+    ("disc-normal", {"young": 5e6, "density": 1100}, {"penalty": "auto"}, {}), ("disc-normal", {"exponent": 1.5}, {"penalty": "auto"}, {}),
+    ("disc-normal", {"young": 5e6, "penalty": 3e9}, {"penalty": 3e9}, {}), ("ball", {"young": 5e6}, {"penalty": "auto"}, {}),
+    ("disc-rolling", {"radius": 0.5}, {"mesh_size": "open", "contact_mesh_size": "open", "penalty": "auto"}, {"end_time": 0.2}),
+    ("disc-normal", {"height": 0.01}, {}, {"penalty": 1e10}),                       # of the fall, not of a body
+    ("disc-block", {"radius": 0.1}, {"block_width": 2.0, "block_height": 0.4}, {})])
+def test_what_a_scene_fixed_for_its_own_follows(name, given, opened, kept):
+    """What a built-in scene fixes for its material, size or static friction is open again where that is set alone, and a sentence says so; all else stays."""
+    before = scene.load(name)
+    after = before.override(given)
+    used, alone = after.description()["used"], before.override(dict.fromkeys(set(opened) - set(given), "auto") | given
+                                                               if "open" not in opened.values() else {"mesh_size": 0, "contact_mesh_size": 0, "penalty": "auto"} | given)
+    assert all(used[entry] == alone.description()["used"][entry] for entry in opened)
+    assert all(used[entry] == value for entry, value in opened.items() if not isinstance(value, str))
+    assert all(used[entry] == value == before.description()["used"][entry] for entry, value in kept.items())
+    freed = set(opened) - set(given)
+    assert len(after.released) == len(freed) and all(any(said.startswith(f"{entry} is open again") for said in after.released) for entry in freed)
+
+
+def test_what_a_scene_of_bodies_fixed_follows():
+    """The same of dotted names: coefficients in their table, sizes in their body, the penalty of any material; a pair's friction_static alone sets both, too."""
+    bowl = scene.load("disc-bowl")
+    after = bowl.override({"contact.friction_static": "0.3"})
+    assert after.contact["friction_dynamic"] == "auto" and after.released == ("contact.friction_dynamic is open again: the scene's 0.4 was for its own contact.friction_static",)
+    stiff = bowl.override({"contact.penalty": 1e9, "dt": 1e-4})
+    assert not stiff.released and stiff.override({"body.1.velocity": [0, -1], "gravity": 1}).contact["penalty"] == 1e9
+    for name, value in (("body.1.young", 1e6), ("young", 1e6), ("contact.exponent", 1.5)):
+        assert stiff.override({name: value}).contact["penalty"] == "auto"
+    assert (stiff.override({"young": 1e6}).values["dt"], stiff.override({"contact.exponent": 2}).values["dt"]) == (0, 1e-4)
+    larger = bowl.override({"body.1.radius": 0.04})
+    assert larger.bodies[0].mesh_size == larger.bodies[0].contact_mesh_size == 0 and len(larger.released) == 2
+    assert bowl.override({"body.1.radius": 0.04, "body.1.mesh_size": 0.01, "body.1.contact_mesh_size": 0.01}).released == ()
+    own = read_scene(bowl.given | {"obstacle": [bowl.given["obstacle"][0] | {"friction_static": 0.2}]}, bowl.folder, "bowl")
+    assert assembly.assemble(own).used["contact"]["pair"][0]["friction_dynamic"] == 0.2
+
+
+def test_a_sweep_over_friction_sets_both(tmp_path):
+    """Every point of an axis friction_static is of one coefficient where the dynamic one is not set; with it set, of two."""
+    for more, wanted in (("", [0.7, 0.3]), ("[set]\nfriction_dynamic = 0.2\n", [0.2, 0.2])):
+        (tmp_path / "friction.toml").write_text(f'scene = "disc-oblique"\n{more}[product]\nfriction_static = [0.7, 0.3]\n')
+        found = sweep.load(str(tmp_path / "friction.toml"))
+        assert [scene.load(found.scene).override(found.base | point).description()["used"]["friction_dynamic"] for point in found.points] == wanted

@@ -1,0 +1,88 @@
+"""The runs of a scene: the one that estimates the error beside the main one where a core is free, and what is left where one of them is lost."""
+
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+
+import pytest
+
+from ffimpact import scene
+from ffimpact.failure import Failure
+from ffimpact.freefem import freefem
+from ffimpact.output import estimate
+from ffimpact.running import run, solver
+from tests.support.checkpoint import EFFORT
+from tests.support.kills import at_work
+from tests.support.solver import ANSWERS, SCENES, go
+
+
+@pytest.fixture
+def order(monkeypatch):
+    """What starts and what ends, in its order, by the names of the folders; the main one is "out.part"."""
+    seen, start = [], freefem.start
+
+    @contextmanager
+    def recorded(program, script, flags, log, lock=None):
+        seen.append(f"{log.parent.name} starts")
+        with start(program, script, flags, log, lock) as process:
+            yield process
+        seen.append(f"{log.parent.name} ends")
+    monkeypatch.setattr(freefem, "start", recorded)
+    return seen
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_two_at_a_time_give_the_same_to_the_last_digit(order, monkeypatch, tmp_path, name):
+    """Where there are two cores the coarser run starts before the main one has ended, and is run once; answers, estimates and files are those of one after the other."""
+    found = {}
+    for cores in (2, 1):
+        monkeypatch.setattr(freefem, "CORES", cores)
+        found[cores] = go(name, tmp_path / str(cores) / "out")
+        both = [event for event in order if "finer" not in event]
+        assert sorted(both) == ["coarser ends", "coarser starts", "out.part ends", "out.part starts"]
+        assert (both.index("coarser starts") < both.index("out.part ends")) == (cores == 2)
+        order.clear()
+    both = [{key: value for key, value in of.summary.items() if key not in EFFORT} for of in found.values()]
+    assert both[0] == both[1] and both[0]["estimated_error"]
+    assert all((found[1].folder / file).read_bytes() == (found[2].folder / file).read_bytes() for file in ANSWERS)
+    assert {path.name for path in found[1].folder.iterdir()} == {path.name for path in found[2].folder.iterdir()}
+
+
+@pytest.mark.parametrize("why", ["a thread of a study", "no estimate", "one core"])
+def test_one_at_a_time(order, monkeypatch, tmp_path, why):
+    """A study has a run on every core already: its runs start no second process; nor do those without an estimate, or on one core."""
+    monkeypatch.setattr(freefem, "CORES", 1 if why == "one core" else 2)
+    with ThreadPoolExecutor(1) as pool:
+        call = (lambda act: pool.submit(act).result()) if why == "a thread of a study" else lambda act: act()
+        call(lambda: run.run(scene.load("disc-normal"), SCENES["disc-normal"], tmp_path / "out", progress=False, estimate=why != "no estimate"))
+    assert order[:2] == ["out.part starts", "out.part ends"]
+
+
+def test_sizes_that_are_used_otherwise_are_run_again(order, monkeypatch, tmp_path):
+    """A coarser run beside that is not the one that the finished main run asks for ends and is made anew."""
+    monkeypatch.setattr(freefem, "CORES", 2)
+    wanted, guesses = scene.load("disc-normal"), []
+
+    def other(values, used, factor, own_mesh=True):
+        guesses.append(estimate.other(values, used, factor, own_mesh))
+        return guesses[-1] | ({"mesh_size": 0.02} if len(guesses) == 1 else {})
+    monkeypatch.setattr(solver, "scaled", lambda scene, *given: other(*given))
+    found = run.run(wanted, SCENES["disc-normal"], tmp_path / "out", progress=False)
+    assert order.count("coarser starts") == 2 and found.summary["estimated_error"] and not list(tmp_path.glob("out.*"))
+
+
+def test_a_main_run_that_fails_takes_the_other_with_it(order, monkeypatch, tmp_path):
+    """The failure is that of the main run; its files stay, and nothing of the run beside it, process or folder or checkpoint."""
+    monkeypatch.setattr(freefem, "CORES", 2)
+    with pytest.raises(Failure) as error:
+        go("disc-normal", tmp_path / "out", law="svk", speed="60", checkpoint_every="1")
+    assert error.value.code in (11, 12) and error.value.folder == tmp_path / "out" and "coarser starts" in order
+    assert not at_work(tmp_path) and not list(tmp_path.rglob("coarser")) and not list(tmp_path.rglob("checkpoint*"))
+
+
+def test_a_run_beside_that_fails_is_said_where_it_was(monkeypatch, tmp_path):
+    """A coarser run without an answer leaves the main one as it is, with a sentence why its error is not known."""
+    monkeypatch.setattr(freefem, "CORES", 2)
+    wanted = scene.load("disc-normal")
+    monkeypatch.setattr(solver, "scaled", lambda scene, *given: estimate.other(*given) | {"speed": 60, "law": "svk"})
+    found = run.run(wanted, SCENES["disc-normal"] | {"law": "neohookean"}, tmp_path / "out", progress=False)
+    assert found.summary["estimated_error"] is None and "the error is not estimated: the run with 1.4 times larger" in " ".join(found.summary["warnings"])

@@ -1,0 +1,275 @@
+"""Sweeps: the file and its errors, the table, kills and two drivers at once, Snakemake, trends, maps and histories."""
+
+import errno
+import os
+import re
+import shutil
+import subprocess
+import sys
+
+import pandas as pd
+import pytest
+
+from ffimpact.__main__ import main
+from ffimpact.failure import BadInput
+from ffimpact.freefem.describe import describe_results
+from ffimpact.input import parameters
+from ffimpact.output import results
+from ffimpact.report.figures import plt
+from ffimpact.running import run
+from ffimpact.sweeps import study, sweep, sweep_figures
+from tests.support.cli import call, is_alive, start, wait_for
+from tests.support.sweep import COARSE, DRAWN, SIX, orphans, table, write
+
+# ---- the file
+
+def test_points_are_products_of_axes_and_zips(tmp_path):
+    """Every combination of lists, ranges and zips, the first axis slowest; each point again with what refines it."""
+    wanted = sweep.load(str(write(tmp_path, 'scene = "disc-oblique"\n[product]\nspeed = { from = 1, to = 100, points = 3, spacing = "log" }\n'
+                                  '[[zip]]\nnu = [0.3, 0.4]\nlaw = ["svk", "neohookean"]\n[refine]\naccuracy = 0.001\n')))
+    assert [tuple(point.values()) for point in wanted.points] == [
+        (v, n, law) for v in (1.0, 10.0, 100.0) for n, law in ((0.3, "svk"), (0.4, "neohookean"))]
+    assert wanted.axes == ["speed", "nu", "law"] and wanted.scene == "disc-oblique" and wanted.base == {"fields": 0}
+    assert wanted.runs == wanted.points + [point | {"accuracy": 0.001} for point in wanted.points]
+    assert wanted.collect == describe_results()["summary"] and "contact_time" in wanted.collect
+
+
+@pytest.mark.parametrize("text, words", [
+    ("[product]\nspede = [1]", "spede: no such parameter; did you mean speed"),
+    ("[product]\nspeed = [1, -2]", "speed: -2 is out of range"),
+    ("[product]\nspeed = []", "speed: [] (accepted: at least one value, none twice)"),
+    ("[product]\nspeed = [1, 1.0]", "none twice"),
+    ("[product]\nspeed = 3", "speed: '3' is not accepted (accepted: a list of values, or a range)"),
+    ("[product]\nspeed = { from = 1, to = 3 }", "is no range (accepted: from, to, points and perhaps spacing)"),
+    ("[product]\nspeed = { from = 1, to = 3, points = 1 }", "points = 1 (accepted: 2 to"),
+    ("[product]\nspeed = { from = 0, to = 3, points = 3, spacing = 'log' }", "from 0.0 to 3.0 (accepted for log: above 0)"),
+    ("[product]\nspeed = { from = 1, to = 3, points = 3, spacing = 'odd' }", "'odd' is not known (accepted: linear|log)"),
+    ("[product]\nspeed = { from = 1, to = 3, points = 30000 }", "points = 30000"),
+    ("[product]\nspeed = { from = 1, to = 3, points = 2000 }\nnu = { from = 0.1, to = 0.4, points = 20 }", "40000 runs (accepted: up to 20000)"),
+    ("", "nothing varies"),
+    ("[product]\nspeed = [1]\n[set]\nspeed = 2", "set: speed is given twice"),
+    ("[product]\nspeed = [1]\n[refine]\nspeed = 2", "refine: speed is given twice"),
+    ("[product]\nspeed = [1]\n[[zip]]\nspeed = [2]", "product: speed is given twice"),
+    ("[[zip]]\nspeed = [2]\nnu = [0.1, 0.2]", "zip: speed has 1 values, nu has 2 values (accepted: lists of one length)"),
+    ("[zip]\nspeed = [2]", "zip: "),
+    ("points = 3\n[product]\nspeed = [1]", "points: no such entry (accepted: title"),
+    ("scene = 'nothing'\n[product]\nspeed = [1]", "nothing: no such scene"),
+    ("scene = 3\n[product]\nspeed = [1]", "scene: '3' is not accepted"),
+    ("collect = ['contact_tim']\n[product]\nspeed = [1]", "collect: 'contact_tim' is not known; did you mean contact_time? (accepted: contact_time"),
+    ("limit = 0\n[product]\nspeed = [1]", "limit: 0 (accepted: 1 to 1e6 seconds)"),
+    ("[product]\nspeed = [1]\n[figure]\nx = 'nu'\ny = 'impulse'", "figure: x = 'nu' (accepted: speed)"),
+    ("[product]\nspeed = [1]\n[figure]\nx = 'speed'\ny = 'inpulse'", "figure: y = 'inpulse' (accepted: contact_time"),
+    ("[product]\nspeed = [1]\n[figure]\nx = 'speed'\ny = 'impulse'\nby = 'nu'", "figure: by = 'nu' (accepted: speed)"),
+    ("[product]\nspeed = [1]\n[figure]\nkind = 'pie'", "figure: kind 'pie' is not known (accepted: lines|map|histories)"),
+    ("[product]\nspeed = [1]\n[figure]\nkind = 'histories'", "figure: y is missing"),
+    ("[product]\nspeed = [1]\n[figure]\nx = 'speed'\ny = 'impulse'\ncolour = 'impulse'", "figure: colour: no such entry for lines"),
+    ("[product", "cannot be read"),
+    ("[product]\nspeed = [1" + "0" * 400 + "]", "is out of range"),
+    ("[product]\nspeed = { from = 1, to = inf, points = 3 }", "speed: inf is out of range"),
+    ("[product]\nlaw = { from = 1, to = 2, points = 3 }", "a range needs a parameter that is a number"),
+    ("collect = ['impulse', 'impulse']\n[product]\nspeed = [1]", "'impulse' is given twice"),
+    ("[[zip]]\nspeed = [1, 1]\nnu = [0.1, 0.1]", "two points are the same"),
+    ("[set]\naccuracy = 0.1\n[product]\nspeed = [1]\n[refine]\naccuracy = 0.1", "refine: accuracy as in the runs themselves"),
+    ("[product]\nspeed = [1]\n[refine]\naccuracy = 5e-3", "refine: accuracy as in the runs themselves"),
+    ("[product]\nspeed = [1]\n[refine]\naccuracy = 0.01", "refine: accuracy = 0.01 is not finer (accepted: above 0, below 0.005)"),
+    ("scene = '" + "x" * 300 + "'\n[product]\nspeed = [1]", "cannot be read: File name too long"),
+    ("[product]\nspeed = [1, 2]\nnu = [0.1, 0.2]\n[figure]\nx = 'speed'\ny = 'impulse'", "speed does not tell the points apart"),
+    ("[product]\nspeed = [1]\n[figure]\nx = 'speed'\ny = 'impulse'\nby = 'speed'", "does not tell the points apart"),
+    ("[product]\nspeed = [1]\n[figure]\nx = ['speed']\ny = 'impulse'", "x = ['speed'] (accepted: speed)"),
+    ("[product]\nspeed = [1]\n[figure]\ny = 'impulse'", "x is missing (accepted: speed)"),
+    ("[product]\nspeed = [1]\n[figure]\nx = 'speed'", "y is missing (accepted: one or several of contact_time"),
+    ("[product]\nspeed = [1]\n[figure]\nkind = ['lines']", "is not known; did you mean lines? (accepted: lines|map|histories)"),
+    ("[product]\nspeed = [1]\n[figure]\nkind = 'histories'\ny = 'foo'\nby = 'speed'", "y = 'foo' (accepted: t, dt, normal_force"),
+    ("[product]\nspeed = [1]\nnu = [0.1, 0.2]\n[figure]\nkind = 'map'\nx = 'speed'\ny = 'nu'\ncolour = 'impulse'", "x = 'speed' (accepted for a map"),
+    ("[product]\nlaw = ['svk', 'neohookean']\nnu = [0.1, 0.2]\n[figure]\nkind = 'map'\nx = 'law'\ny = 'nu'\ncolour = 'impulse'", "x = 'law' (accepted for a map"),
+    ("[product]\nspeed = [1, 2]\nnu = [0, 0.2]\n[figure]\nkind = 'map'\nx = 'speed'\ny = 'nu'\ncolour = 'impulse'\nlevel = 1", "y = 'nu' has values up to 0"),
+    ("[product]\nspeed = [1, 2]\nnu = [0.1, 0.2]\n[figure]\nkind = 'map'\nx = 'speed'\ny = 'nu'\ncolour = 'impulse'\nlevel = nan", "level = nan (accepted: a number"),
+    ("[product]\nspeed = [1, 2]\nnu = [0.1, 0.2]\n[figure]\nkind = 'map'\nx = 'speed'\ny = 'nu'\ncolour = 'impulse'\nlevel = 1\nband = -1", "band = -1"),
+])
+def test_bad_files_are_one_line(tmp_path, text, words):
+    """The line names the file, the entry, the value and what is accepted; nothing has run."""
+    path = write(tmp_path, text)
+    with pytest.raises(BadInput) as error:
+        sweep.load(str(path))
+    assert str(path) in str(error.value) and words in str(error.value) and "\n" not in str(error.value)
+    assert error.value.code == 10
+
+
+@pytest.mark.parametrize("name", sweep.built_in())
+def test_built_in_sweeps_are_sound(name):
+    """Each loads, has a title and a figure, says nu in its title or as what varies, and has its target in the Makefile. No point leaves open what its scene fixes: an axis
+    over the static coefficient has the dynamic one beside it."""
+    wanted = sweep.load(name)
+    given = sweep.scene.load(wanted.scene)
+    assert not {said for point in wanted.points for said in given.override(wanted.base | point).released}
+    assert "nu" in wanted.axes or "ν = " in sweep_figures._constants(wanted)
+    assert wanted.title != name and wanted.figure and f" {name}" in (parameters.ROOT / "Makefile").read_text()
+
+
+# ---- the table
+
+def test_table_and_figure(fake, tmp_path, capsys):
+    """A row a point in the order of the file, every collected number, a figure, the file itself, and no half-written files."""
+    out = tmp_path / "out"
+    assert sweep.main([str(write(tmp_path, DRAWN)), "--out", str(out)]) == 0
+    rows = table(out)
+    assert rows[["speed", "nu"]].values.tolist() == [[v, n] for v in (4, 6, 8) for n in (0.3, 0.4)]
+    assert (rows.exit == 0).all() and (rows.impulse == 208.2).all() and fake.starts() == 6
+    assert {path.name for path in out.iterdir()} == {"runs", "sweep.csv", "sweep.png", "sweep.toml"}
+    assert (out / "sweep.toml").read_text() == DRAWN and plt.imread(out / "sweep.png").std() > 0
+    said = capsys.readouterr().out
+    assert "6 of 6 points finished" in said and "ν = 0.3: contact time over speed" in said and "no error bars" in said
+    assert "\nunits: speed m/s, contact_time s" in said
+    assert all(results.read_scene(folder)["mesh_size"] == 0.02 for folder in (out / "runs").iterdir())
+
+
+@pytest.mark.few(2)
+@pytest.mark.parametrize("mode, code, returned", [("material", 12, 0), ("step", 11, 0), ("crash", 1, 1)])
+def test_failed_points_are_kept_with_their_reason(fake, tmp_path, capsys, mode, code, returned):
+    """They do not stop the rest; what would fail again is not run again, what was killed is, and that is said on stderr."""
+    fake(mode)
+    path, out = write(tmp_path, DRAWN), tmp_path / "out"
+    assert main(["sweep", str(path), "--out", str(out)]) == returned
+    rows, said = table(out), capsys.readouterr()
+    assert (rows.exit == code).all() and rows.message.notna().all() and "0 of 6 points finished" in said.out
+    assert rows.impulse.isna().all(), "what a failed run came to is no result"
+    assert f"failed, exit {code}: speed=4.0,nu=0.3" in said.out
+    assert said.err.count("\n") == returned and ("6 of 6 points have no answer" in said.err and "runs again" in said.err) == (returned == 1)
+    assert main(["sweep", str(path), "--out", str(out)]) == returned and fake.starts() == (12 if returned else 6)
+
+
+def test_bad_input_of_a_point_is_said_with_its_code(fake, tmp_path, capsys):
+    """A point that cannot be run is a row like any other, and the sweep ends with its exit code and one line."""
+    assert main(["sweep", str(write(tmp_path, "[product]\nmesh_size = [0.02, 1.0]\n")), "--out", str(tmp_path / "out")]) == 10
+    said = capsys.readouterr()
+    assert said.err.count("\n") == 1 and "1 of 2 points have no answer, first: mesh_size=1.0: mesh_size: 1 is larger than the radius 0.05" in said.err
+    assert table(tmp_path / "out").exit.tolist() == [0, 10] and "again" not in said.err
+
+
+def test_a_parameter_with_the_name_of_a_result_keeps_its_values(fake, tmp_path):
+    """No number of the summary has the name of a parameter."""
+    out = tmp_path / "out"
+    assert sweep.main([str(write(tmp_path, COARSE + "[product]\nspin = [-100, 0, 100]\n")), "--out", str(out)]) == 0
+    rows = table(out)
+    assert rows.spin.tolist() == [-100, 0, 100] and rows.rebound_spin.tolist() == [0, 0, 0]
+
+
+@pytest.mark.parametrize("text", ["[]", '{"exit_code": 11}', '{"exit_code": 11, "provenance": {}}', '{"exit_code": 12, "provenance": null}'])
+def test_damaged_folders_are_run_again(fake, tmp_path, text):
+    """A failure.json that is none stops nothing."""
+    path, out = write(tmp_path, COARSE + "[product]\nspeed = [4]\n"), tmp_path / "out"
+    wanted = sweep.load(str(path))
+    place = study.place(out, wanted.points[0])
+    place.mkdir(parents=True)
+    (place / "failure.json").write_text(text)
+    assert sweep.main([str(path), "--out", str(out)]) == 0 and (table(out).exit == 0).all()
+
+
+def test_a_full_disk_is_a_row(fake, tmp_path, monkeypatch):
+    """Where a run cannot be written its row says so with exit code 14."""
+    def full(*_, **__):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "file")
+    monkeypatch.setattr(run, "run", full)
+    rows = sweep.table(sweep.load(str(write(tmp_path, SIX))), tmp_path / "out")
+    assert (rows.exit == 14).all() and rows.message.str.contains("No space left on device").all()
+
+
+def test_error_bars_are_what_refining_changes(tmp_path):
+    """With [refine] the number is that of the refined run, its error the difference to the plain one."""
+    text = "collect = ['impulse', 'dofs']\n[set]\ndegree = 1\nend_time = 1e-3\naccuracy = 0.02\n[product]\nspeed = [4, 8]\n[refine]\naccuracy = 0.005\n"
+    wanted = sweep.load(str(write(tmp_path, text)))
+    rows = sweep.collect(wanted, tmp_path / "out")
+    plain, fine = (study.study([point | extra for point in wanted.points], tmp_path / "out", wanted.base, 60.0) for extra in ({}, wanted.refine))
+    assert plain.reused.all() and fine.reused.all() and (plain.dofs != fine.dofs).all()
+    assert rows.impulse.tolist() == fine.impulse.tolist() and (rows.impulse_error > 0).all()
+    assert rows.impulse_error.tolist() == (fine.impulse - plain.impulse).abs().tolist()
+    assert (rows.impulse_error < 0.05 * rows.impulse).all()
+
+
+@pytest.mark.parametrize("after", [pytest.param(0.0, marks=pytest.mark.robustness), 0.3, pytest.param(0.8, marks=pytest.mark.robustness)])
+def test_killed_driver_leaves_nothing_running_and_is_taken_up(fake, tmp_path, monkeypatch, after):
+    """kill -9 of the driver ends its FreeFem++; the same command runs only what is not finished; the table is the same."""
+    path, out, calm = write(tmp_path, DRAWN), tmp_path / "out", tmp_path / "calm"
+    assert main(["sweep", str(path), "--out", str(calm)]) == 0
+    first = fake.starts()
+    monkeypatch.setenv("FAKE", "brief")
+    process = start("sweep", str(path), "--out", str(out))
+    wait_for(lambda: fake.starts() >= first + study.CORES)
+    try:
+        process.wait(after)
+    except subprocess.TimeoutExpired:
+        pass
+    process.kill()
+    process.wait()
+    wait_for(lambda: not any(map(is_alive, fake.pids())))
+    done, before = len([path for path in (out / "runs").glob("*/summary.json") if path.parent.suffix != ".part"]), fake.starts()
+    monkeypatch.setenv("FAKE", "ok")
+    assert main(["sweep", str(path), "--out", str(out)]) == 0 and fake.starts() - before == 6 - done
+    pd.testing.assert_frame_equal(table(out), table(calm))
+    assert not orphans(out)
+
+
+def test_snakemake_gives_the_same_table(fake, tmp_path):
+    """One job a run, the same results as the driver, which finds nothing left to do."""
+    pytest.importorskip("snakemake", reason="the optional snakemake is not installed")
+    path, out, calm = write(tmp_path, DRAWN), tmp_path / "out", tmp_path / "calm"
+    assert call("sweep", str(path), "--out", str(calm))[0] == 0
+    done = subprocess.run([sys.executable, "-m", "snakemake", "-s", str(parameters.ROOT / "orchestrate/ffimpact/Snakefile"), "--cores", "2",
+                           "--config", f"sweep={path}", f"out={out}"], cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    assert fake.starts() == 12 and "7 of 7 steps (100%) done" in done.stderr
+    pd.testing.assert_frame_equal(table(out), table(calm))
+    assert call("sweep", str(path), "--out", str(out))[0] == 0 and fake.starts() == 12
+    shutil.rmtree(study.place(out, {"speed": 4.0, "nu": 0.3}))       # what is missing, and only that, is made again
+    (out / "sweep.csv").unlink()
+    again = subprocess.run(done.args, cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    assert again.returncode == 0 and fake.starts() == 13, again.stderr
+    pd.testing.assert_frame_equal(table(out), table(calm))
+
+
+@pytest.mark.parametrize("given, stars", [
+    ("law = 'svk'\n[product]\nspeed = [4, 8]", 1), ("law = 'neohookean'\n[product]\nspeed = [4, 8]", 0),
+    ("law = 'svk'\n[product]\nspeed = [4, 8]\nlaw = ['neohookean', 'svk']", 1), ("young = 5e6\n[product]\nspeed = [4, 8]", 0),
+    ("viscosity = 10\n[product]\nspeed = [4, 8]", 0)])
+def test_the_papers_star_stands_in_studies_of_its_scene(fake, tmp_path, given, stars):
+    """The paper's number is drawn where one of the curves is of its law and scene, and nowhere else."""
+    by = "by = 'law'\n" if "'neohookean', 'svk'" in given else ""
+    given = given.replace("law = 'svk'\n", "") if by else given
+    text = f"[set]\n{given}\n[figure]\nx = 'speed'\ny = 'contact_time'\n{by}"
+    wanted = sweep.load(str(write(tmp_path, text)))
+    rows = pd.DataFrame(wanted.points).assign(exit=0, contact_time=4.7e-3)
+    figure = sweep_figures._lines(wanted, rows, tmp_path)
+    assert sum(line.get_marker() == "*" for line in figure.axes[0].lines) == stars
+    plt.close(figure)
+
+
+def test_words_as_axes(fake, tmp_path, capsys):
+    """A parameter with words may vary, be an axis of a figure and stand in the table."""
+    text = COARSE + '[product]\nlaw = ["svk", "neohookean"]\nspeed = [4, 8]\n[figure]\nx = "law"\ny = "contact_time"\nby = "speed"\n'
+    assert sweep.main([str(write(tmp_path, text)), "--out", str(tmp_path / "out")]) == 0
+    assert "| neohookean |" in capsys.readouterr().out and (tmp_path / "out/sweep.png").exists()
+
+
+def test_the_sweep_of_the_docs_is_sound(tmp_path):
+    """What docs/sweeps.md shows is accepted as it stands."""
+    text = (parameters.ROOT / "docs/sweeps.md").read_text()
+    example = re.search(r"```\n(scene = \"disc-normal\".*?)```", text, re.S)[1]
+    wanted = sweep.load(str(write(tmp_path, example)))
+    assert len(wanted.points) == 32 and wanted.refine and wanted.figure
+
+
+def test_a_refused_point_keeps_no_other(fake, tmp_path, capsys):
+    """A point that the scene refuses, the first one too, is a row with exit code 10 that is named; the others run, and --open lists it no more."""
+    shutil.copy(parameters.ROOT / "orchestrate/ffimpact/scenes/two-discs.toml", tmp_path / "two.toml")
+    path = write(tmp_path, 'scene = "two.toml"\ncollect = ["impulse"]\n[product]\n"body.1.position.1" = [0.05, -0.06]\n')
+    wanted = sweep.load(str(path))
+    place = study.place(tmp_path / "out", wanted.points[0])
+    found = study.outcomes(wanted.points, tmp_path / "out", wanted.base, sweep.scene.load(wanted.scene))
+    assert list(found) == [place] and found[place]["exit"] == 10 and "overlaps 'right'" in found[place]["message"]
+    path.write_text('scene = "disc-normal"\ncollect = ["contact_time"]\n' + COARSE + '[[zip]]\nangle = [60, 90]\nsymmetry = ["half", "half"]\n')
+    capsys.readouterr()
+    assert main(["sweep", str(path), "--out", str(tmp_path / "plane")]) == 10
+    said, rows = capsys.readouterr(), table(tmp_path / "plane")
+    assert list(rows.exit) == [10, 0] and rows.contact_time.notna().tolist() == [False, True]
+    assert "first: angle=60.0,symmetry=half: symmetry: half" in said.err and said.err.count("\n") == 1 and "failed, exit 10: angle=60.0,symmetry=half" in said.out
+    assert main(["sweep", str(write(tmp_path, 'scene = "two.toml"\n[product]\n"body.1.position.1" = [0.05, 0.06]\n')), "--list"]) == 10   # none is left

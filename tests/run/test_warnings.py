@@ -1,0 +1,208 @@
+"""Warnings and notes: each appears where its condition holds, with its number, and not where it does not; tables and reports show them."""
+
+import json
+import re
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from ffimpact import scene
+from ffimpact.freefem import freefem
+from ffimpact.output import notes, results
+from ffimpact.report import drawing, report
+from ffimpact.running import run
+from ffimpact.sweeps import sweep
+from verification import measure
+
+COARSE = dict(accuracy=0.1, mesh_size=0.02, contact_mesh_size=0.006, dt=5e-5)
+OBLIQUE = COARSE | dict(angle=60, law="neohookean", friction_static=0.7)
+LONG = dict(mesh_size=0.008, contact_mesh_size=0.006, dt=2e-5, penalty=1e10)   # its last touch is a grazing one
+RELAXING = COARSE | dict(relaxation_modulus=1e6)
+DAMPED = COARSE | dict(integrator="backward-euler", accuracy=0.02)
+SPINS = COARSE | dict(speed=1, spin=60, angle=90, height=0.01, law="neohookean", accuracy=0.002, dt=1e-4, without="flight")
+STEEL = dict(young=2.1e11, nu=0.3, density=7850, speed=1)
+HELD = dict(accuracy=0.1, law="incompressible", nu=0.5)
+CASES = [   # name, flags with which it appears, flags with which it does not, a number it tells and what that is about
+    ("density", COARSE | dict(density=1.7), COARSE | dict(density=30, young=1e7), r"density: (\S+) kg/m3 beside young = 7e\+06 Pa, is it in g/cm3", (1.7, 1.7)),
+    ("density", COARSE | STEEL | dict(density=7.85), COARSE | STEEL, r"sqrt\(E/rho\) is (\S+) m/s", (1.6e5, 1.7e5)),
+    ("density", COARSE | dict(density=9, young=2e5), COARSE | dict(density=9, young=5e4, speed=1), r"density: (\S+) kg/m3", (9, 9)),
+    ("penalty", COARSE | dict(penalty=1e9), COARSE, r"(\S+) % of the elastic energy", (2, 50)),
+    ("penetration", COARSE | dict(penalty=1e8), COARSE | dict(penalty=1e9), r"(\S+) % of the radius", (10, 40)),
+    ("creep", OBLIQUE | dict(slip_velocity=2), OBLIQUE | dict(slip_velocity=0.05), r"at (\S+) % of the centre's speed", (10, 40)),
+    ("creep", OBLIQUE | dict(slip_velocity=2), OBLIQUE | dict(slip_velocity=2, angle=90, symmetry="full"), r"at (\S+) %", (10, 40)),
+    ("contact points", dict(speed=0.25, penalty=1e11, mesh_size=0.012, contact_mesh_size=0.012, accuracy=0.05), COARSE | dict(speed=0.25, contact_mesh_size=0.002),
+     r"(\d+) of the body touch", (2, 8)),
+    ("energy", DAMPED, COARSE | dict(accuracy=0.02), r"backward-euler integrator lost (\S+) %", (3, 30)),
+    ("energy", COARSE | dict(integrator="bdf2", accuracy=0.02, dt=2e-4), COARSE | dict(integrator="bdf2", accuracy=0.02, dt=1e-5), r"bdf2 integrator lost (\S+) %", (2, 30)),
+    ("momentum", COARSE | dict(integrator="bdf2", accuracy=0.01, dt=3e-4), COARSE | dict(integrator="backward-euler", accuracy=0.01, dt=3e-4), r"off by (\S+) %", (2, 8)),
+    ("angular momentum", SPINS | dict(integrator="backward-euler"), SPINS, r"off by (\S+) %", (0.3, 2)),
+    ("newmark", OBLIQUE | dict(integrator="newmark"), COARSE | dict(integrator="newmark"), r"and (\S+) % of the energy", (1, 30)),
+    ("locking", COARSE | dict(nu=0.495, speed=2, volume="plain"), COARSE | dict(nu=0.495, speed=2), r"quadratic elements stiffen at nu = ([0-9.]+)", (0.495, 0.495)),
+    ("locking", COARSE | dict(degree=1, speed=2), COARSE | dict(degree=1, nu=0.4, speed=2), r"linear elements are too stiff at nu = ([0-9.]+)", (0.45, 0.45)),
+    ("relaxation", RELAXING | dict(relaxation_time=2e-5), RELAXING | dict(relaxation_time=1e-2), r"more viscous by (\S+) %", (47, 48)),
+    ("volume", HELD | dict(speed=25), HELD | dict(speed=8), r"det F at a point differs by (\S+) %", (10, 60)),
+    ("ellipticity", COARSE | dict(speed=9), COARSE | dict(speed=9, law="neohookean"), r"eigenvalue of the acoustic tensor (\S+) mu", (-1, 0)),
+    ("breakdown", COARSE | dict(speed=14, breakdown="continue"), COARSE | dict(speed=9, breakdown="continue"), r"from t = (\S+) s", (1e-4, 3e-3)),
+    ("friction", OBLIQUE | dict(friction_dynamic=0.5, slip_velocity=1, regularization="linear-printed"),
+     OBLIQUE | dict(friction_dynamic=0.5, slip_velocity=1), r"no solution in (\S+) % of the points and steps", (1, 20)),
+]
+
+
+@pytest.fixture(scope="module")
+def disc(tmp_path_factory):
+    """The outcome of a run with these flags, each set once."""
+    known = {}
+
+    def go(flags: dict) -> measure.Outcome:
+        key = json.dumps(flags, sort_keys=True)
+        if key not in known:
+            known[key] = measure.disc(tmp_path_factory.mktemp("disc"), **flags)
+        return known[key]
+    return go
+
+
+def found(outcome: measure.Outcome, name: str, kind: str = "warnings") -> list[str]:
+    return [sentence for sentence in outcome.summary[kind] if sentence.startswith(name + ": ")]
+
+
+@pytest.mark.few(10)
+@pytest.mark.parametrize("name, bad, good, number, limits", CASES)
+def test_each_warning_appears_where_it_should_and_only_there(disc, name, bad, good, number, limits):
+    """One sentence that says what, how much, and what to do; none of that name where the condition does not hold. `message` is for failures."""
+    sentences = found(disc(bad), name)
+    assert len(sentences) == 1 and ": take " in sentences[0] and not set(sentences[0]) & set('";'), sentences
+    assert limits[0] <= float(re.search(number, sentences[0])[1]) <= limits[1], sentences[0]
+    assert disc(bad).summary["message"] == "" and found(disc(good), name) == []
+
+
+NOTES = [("contact time", LONG, LONG | dict(accuracy=0.05), r"for the last (\S+) % of it", (0.5, 5)),
+         ("thresholded contact time", LONG, LONG | dict(accuracy=0.05), r"known to (\S+) %", (0.4, 5)),
+         ("peak force", COARSE, COARSE | dict(speed=1), r"at (\S+) % of the wave speed", (12, 13))]
+
+
+@pytest.mark.parametrize("name, bad, good, number, limits", NOTES)
+def test_what_is_always_so_of_a_number_is_a_note(disc, name, bad, good, number, limits):
+    """It has the number, is no warning, and names the number of the summary that it is a footnote of."""
+    sentence, = found(disc(bad), name, "notes")
+    assert limits[0] <= float(re.search(number, sentence)[1]) <= limits[1], sentence
+    assert found(disc(bad), name) == [] == found(disc(good), name, "notes") and disc(bad).summary[notes.number(sentence)] > 0
+
+
+# metal foam, expanded polystyrene, aerogel, metallic microlattice, diamond, beryllium, a soft gel in units of its own, tungsten
+REAL = [(300, 1e9), (11, 3e6), (3, 1e4), (5, 5e4), (3500, 1.1e12), (1850, 2.9e11), (1, 1), (19300, 4.1e11)]
+
+
+@pytest.mark.few(3)
+@pytest.mark.parametrize("density, young", REAL)
+def test_real_materials_are_not_asked_about(disc, density, young):
+    speed = 0.05 * (young / density)**0.5
+    assert found(disc(COARSE | dict(density=density, young=young, speed=speed, nu=0.3)), "density") == []
+
+
+@pytest.mark.parametrize("name, names", [("disc-normal", []), ("disc-oblique-svk", ["ellipticity"]), ("ball-axisymmetric-svk", ["breakdown"])])
+def test_scenes_of_the_paper_have_no_warning_or_the_one_that_a_reader_must_know(tmp_path, name, names):
+    """Each as it is called first, with its estimate. The screen has a line of each sentence, with its mark at the number, and where the whole text is."""
+    result = run.run(scene.load(name), {"fields": 0}, tmp_path / "out")
+    assert [notes.name(each) for each in result.summary["warnings"]] == names
+    lines = report.report(result).splitlines()
+    assert [line.split()[1] for line in lines if line.startswith("  warning ")] == [f"{each}:" for each in names]
+    footnotes = [line for line in lines if line.startswith("  [")]
+    assert len(footnotes) == len(result.summary["notes"]) and "  in full   warnings and notes of summary.json" in lines
+    assert all(len(line) <= 100 and not line.endswith("...") for line in footnotes + [line for line in lines if line.startswith("  warning")])
+    assert any(re.match(r"  peak force +\S+ kN(/m)? \[1\]( |$)", line) for line in lines) and footnotes[0].startswith("  [1]       peak force: ")
+    for note in result.summary["notes"]:
+        assert any(notes.line("", note) in line for line in footnotes)
+
+
+def test_numbers_of_the_warnings_are_those_of_the_history(disc):
+    """Penetration, energy and ellipticity of the warnings are found again in history and summary."""
+    deep = disc(COARSE | dict(penalty=1e8))
+    told = float(re.search(r"(\S+) % of the radius", found(deep, "penetration")[0])[1])
+    assert told == pytest.approx(100 * deep.history["max_penetration"].max() / 0.05, rel=0.05)
+    spins = disc(SPINS | dict(integrator="backward-euler"))
+    told, h = float(re.search(r"off by (\S+) %", found(spins, "angular momentum")[0])[1]), spins.history
+    flies = h["normal_force"].cumsum() == 0
+    assert told == pytest.approx(100 * spins.summary["angular_momentum_drift"], rel=0.05)
+    assert told / 100 >= 1 - h["angular_momentum"][flies][-1] / h["angular_momentum"][0] > 1e-3   # about its centre nothing turns a disc without friction
+    damped = disc(DAMPED)
+    told = float(re.search(r"lost (\S+) %", found(damped, "energy")[0])[1])
+    assert told == pytest.approx(-100 * damped.history["balance"].min() / damped.summary["energy_initial"], rel=0.05)
+    lost = disc(COARSE | dict(speed=9))
+    told = float(re.search(r"from t = (\S+) s", found(lost, "ellipticity")[0])[1])
+    assert told == pytest.approx(lost.summary["ellipticity_lost_time"], rel=1e-5)
+    soft = disc(COARSE | dict(penalty=1e9))
+    h = soft.history
+    peak = np.argmax(np.where(h["max_penetration"] > 0, h["elastic"], 0))
+    told = float(re.search(r"(\S+) % of the elastic", found(soft, "penalty")[0])[1])
+    assert told == pytest.approx(100 * h["contact"][peak] / h["elastic"][peak], rel=0.05)
+
+
+@pytest.mark.parametrize("flags", [LONG, COARSE, COARSE | dict(height=1e-3), COARSE | dict(dt=3e-4), OBLIQUE | dict(slip_velocity=2)])
+def test_thresholded_contact_time(disc, flags):
+    """From the first to the last crossing of 1 % of the largest step mean of the normal force, linear between the middles of the
+    steps, or of the part of a step between touch and end; zero at the first and the last touch, so that it is inside the contact."""
+    outcome = disc(flags)
+    h, start = outcome.history, outcome.summary["contact_start"]
+    end = start + outcome.summary["contact_time"]
+    touching = h["normal_force"] > 0
+    low, high = np.maximum((h["t"] - h["dt"])[touching], start), np.minimum(h["t"][touching], end)
+    force = (h["normal_force"] * h["dt"])[touching] / (high - low)
+    t, force = np.concatenate([[start], (low + high) / 2, [end]]), np.concatenate([[0], force, [0]])
+    level = 0.01 * h["normal_force"].max()
+    above = np.flatnonzero(force >= level)
+    a, b = above[0], above[-1]
+    first = np.interp(level, force[a - 1:a + 1], t[a - 1:a + 1])
+    last = np.interp(-level, -force[b:b + 2], t[b:b + 2])
+    assert outcome.summary["thresholded_contact_time"] == pytest.approx(last - first, rel=1e-9)
+    assert 0.9 < outcome.summary["thresholded_contact_time"] / outcome.summary["contact_time"] < 1
+
+
+def test_contact_that_is_not_over_is_measured_to_the_end(disc):
+    """At an end_time in the middle of the contact, both contact times end there; nothing is said of the last touch."""
+    outcome = disc(COARSE | dict(end_time=2e-3))
+    assert outcome.summary["contact_time"] == pytest.approx(2e-3 - outcome.summary["contact_start"], rel=1e-9)
+    assert 0.95 * 2e-3 < outcome.summary["thresholded_contact_time"] <= 2e-3 and found(outcome, "contact time") == []
+
+
+@pytest.mark.parametrize("speed, gravity", [(8, 0), (8, 9.81), (0, 9.81)])
+def test_an_impact_that_is_not_over_is_named_under_gravity_too(disc, speed, gravity):
+    """At the end_time it is in contact, and the force far above the weight; what lies on the plane is as it should be."""
+    assert bool(found(disc(COARSE | dict(speed=speed, gravity=gravity, end_time=2e-3)), "not over")) == (speed > 0)
+
+
+def test_no_contact_no_contact_time(disc):
+    """A flight has neither contact time, and no warning; nor has one whose energy is less than the round-off of its balance."""
+    assert [each.split(":")[0] for each in disc(COARSE | dict(speed=0, spin=1e-13, height=1, end_time=1e-3)).summary["warnings"]] == ["no contact"]
+    outcome = disc(COARSE | dict(height=1, end_time=1e-3))
+    assert outcome.summary["contact_time"] is outcome.summary["thresholded_contact_time"] is None and [each.split(":")[0] for each in outcome.summary["warnings"]] == ["no contact"]
+
+
+def test_direct_run_prints_its_warnings(tmp_path):
+    """Lines `warning` and `note` at the end of what FreeFem++ prints: what is so, of the sentences of summary.json."""
+    process = freefem.find().call("edp/disc-plane.edp", "-accuracy", "0.1", "-penalty", "1e8", "-out", str(tmp_path / "out"), timeout=120)
+    for kind, least in (("warning", 2), ("note", 1)):
+        said, told = re.findall(rf"^{kind} +(.*)$", process.stdout, re.MULTILINE), results.read_summary(tmp_path / "out")[f"{kind}s"]
+        assert len(said) >= least and said == [notes.line("", sentence) for sentence in told]
+    assert all(len(line) <= 100 for line in process.stdout.splitlines() if re.match("warning|note", line))
+
+
+def test_the_report_shows_them_and_figures_do_not(tmp_path):
+    """A line each in the report; pictures are the same, whatever the warnings are."""
+    result = run.run(scene.load("disc-normal"), dict(penalty=1e8, accuracy=0.1, fields=0), tmp_path / "out", estimate=False)
+    told, lines = result.summary["warnings"], report.report(result).splitlines()
+    assert len(told) > 1 and [line for line in lines if line.startswith("  warning ")] == [notes.line("  warning   ", each) for each in told]
+    drawn = {path: path.read_bytes() for path in drawing.draw(result.folder)}
+    path = result.folder / "summary.json"
+    path.write_text(json.dumps(json.loads(path.read_text()) | {"warnings": [], "notes": []}))
+    assert {path: path.read_bytes() for path in drawing.draw(result.folder)} == drawn and len(drawn) > 2
+
+
+def test_tables_have_a_column_of_them(tmp_path, capsys):
+    """Sweeps: the column `warnings` of sweep.csv joins the sentences with "; "; the printed report counts them by name."""
+    (tmp_path / "soft.toml").write_text('scene = "disc-normal"\n[set]\naccuracy = 0.1\nfields = 0\n[product]\npenalty = [1e8, 1e10]\n')
+    assert sweep.main([str(tmp_path / "soft.toml"), "--out", str(tmp_path / "out")]) == 0
+    rows = pd.read_csv(tmp_path / "out/sweep.csv", keep_default_na=False)
+    for where, joined in zip(("penalty=100000000.0", "penalty=10000000000.0"), rows.warnings):
+        assert joined == "; ".join(results.read_summary(tmp_path / "out/runs" / where)["warnings"])
+    assert "penalty: " in rows.warnings[0] and "penalty in 1" in capsys.readouterr().out

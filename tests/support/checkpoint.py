@@ -1,0 +1,66 @@
+"""Shared by the tests of checkpoint."""
+
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from ffimpact.freefem import freefem
+from ffimpact.input import parameters
+from ffimpact.output import results
+
+EFFORT = ("start_seconds", "wall_seconds", "total_seconds", "cpu_seconds", "estimate_cpu_seconds", "peak_memory", "phase_seconds", "resumed_at", "provenance")
+
+
+def direct(flags: dict, out: Path, script: str = "disc-plane") -> subprocess.Popen:
+    """FreeFem++ without Python."""
+    program = freefem.find()
+    return subprocess.Popen(program.words(f"edp/{script}.edp", *freefem.words_of(flags | {"out": out})), cwd=parameters.ROOT, text=True,
+                            env=program.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+
+
+def rows_known(checkpoint: Path) -> int:
+    """Rows of the history that the checkpoint knows; 0 where there is none yet."""
+    try:
+        return int(checkpoint.read_bytes().split(b"\n", 2)[1])
+    except FileNotFoundError:
+        return 0
+
+
+def kill_at(process: subprocess.Popen, checkpoint: Path, rows: int) -> None:
+    """kill -9 once the checkpoint knows so many rows."""
+    end = time.monotonic() + 60
+    while rows_known(checkpoint) < rows:
+        assert process.poll() is None, "it ended before it could be killed"
+        assert time.monotonic() < end, "waited too long"
+        time.sleep(1e-3)
+    process.kill()
+    process.communicate()
+    assert process.returncode == -signal.SIGKILL
+
+
+def assert_same(folder: Path, straight: Path) -> None:
+    """Histories and summaries agree to round-off, 1e-12 of the largest value of a column (the balance is itself round-off:
+    of the energy); snapshots to their 9 digits."""
+    there, expected = results.read_history(folder), results.read_history(straight)
+    assert list(there) == list(expected)
+    for name, column in expected.items():
+        scale = np.abs(expected["kinetic" if name == "balance" else name]).max()
+        np.testing.assert_allclose(there[name], column, rtol=0, atol=1e-12 * scale, err_msg=name)
+    there, expected = results.read_summary(folder), results.read_summary(straight)
+    assert list(there) == list(expected)
+    for name in set(expected) - set(EFFORT):
+        exact = not isinstance(expected[name], float)
+        assert there[name] == (expected[name] if exact else pytest.approx(expected[name], rel=1e-9, abs=1e-11)), name
+    there, expected = (pd.read_csv(each / "contacts.csv") for each in (folder, straight))
+    pd.testing.assert_frame_equal(there, expected, rtol=1e-9)
+    fields = sorted(path.name for path in (straight / "fields").glob("*"))
+    assert fields == sorted(path.name for path in (folder / "fields").glob("*"))
+    for name in fields:
+        numbers = [np.array([float(word) for word in (place / "fields" / name).read_text().replace("<", " <").replace(",", " ").split()
+                             if word[0] in "-0123456789"]) for place in (folder, straight)]
+        np.testing.assert_allclose(*numbers, rtol=1e-7, atol=1e-7 * np.abs(numbers[1]).max(initial=0))

@@ -1,0 +1,26 @@
+"""Shared by the tests of end_to_end."""
+
+import os
+import subprocess
+import sys
+
+from ffimpact.freefem import freefem
+from ffimpact.input import parameters
+
+
+def direct(*flags: str) -> subprocess.CompletedProcess:
+    return freefem.find().call("edp/disc-plane.edp", *flags, timeout=120)
+
+
+# ---- failures of real runs, through the command line
+
+def call(*settings: str, out, environment: dict | None = None) -> subprocess.CompletedProcess:
+    arguments = [word for setting in settings for word in ("--set", setting)]
+    return subprocess.run([sys.executable, "-m", "ffimpact", "run", "disc-normal", "--out", str(out), "--set", "fields=0", *arguments],
+                          cwd=parameters.ROOT, env=os.environ | (environment or {}), capture_output=True, text=True,
+                          stdin=subprocess.DEVNULL, timeout=120)
+
+
+# ---- chatter
+
+COARSE = {"speed": "1.84", "accuracy": "0.01", "degree": "1", "mesh_size": "0.025", "contact_mesh_size": "0.0079"}

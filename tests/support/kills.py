@@ -1,0 +1,21 @@
+"""Shared by the tests of kills."""
+
+from pathlib import Path
+
+
+def at_work(out: Path) -> list[int]:
+    """The processes that have this folder among their words."""
+    found = []
+    for place in Path("/proc").glob("[0-9]*"):
+        try:
+            words, state = (place / "cmdline").read_bytes(), (place / "stat").read_text().rpartition(")")[2].split()[0]
+        except OSError:
+            continue
+        if str(out).encode() in words and state != "Z":
+            found.append(int(place.name))
+    return found
+
+
+def place(route: str, shelf: Path) -> Path:
+    (shelf / route).mkdir(exist_ok=True)
+    return shelf / route

@@ -1,0 +1,106 @@
+"""Shared by the tests of malformed."""
+
+import os
+import re
+from pathlib import Path
+
+from ffimpact.__main__ import main
+from ffimpact.freefem import freefem
+from ffimpact.input import parameters
+
+LONG = "x" * 300                        # longer than a name may be
+NO_NUMBERS = ["x", "8x", "--8", "+-8", "1e", "e5", "1e+", ".", "-", "8.", "0x10", "nan", "inf", "-inf", "1,5", "1 2", "1_000", "８", "٣.٥", "½",
+              "8\n9", "true", "[8]", "$(touch pwned)", "`touch pwned`", "'; touch pwned; '", '"', "\\", "8" * 5000]
+RANGES = [("young", "0"), ("young", "1e30"), ("nu", "0.5"), ("nu", "0.51"), ("nu", "-0.1"), ("density", "0"), ("density", "-1722"), ("radius", "0"), ("radius", "1e30"),
+          ("speed", "-1"), ("speed", "1e10"), ("speed", "1e400"), ("speed", "-1e-300"), ("angle", "90.001"), ("angle", "-1"), ("spin", "1e30"), ("height", "-1e-9"),
+          ("gravity", "-9.81"), ("body_force_x", "1e30"), ("penalty", "0"), ("exponent", "0.5"), ("exponent", "5"), ("friction_static", "-0.1"),
+          ("friction_dynamic", "11"), ("slip_velocity", "0"), ("mesh_size", "-1"), ("degree", "3"), ("degree", "1.5"), ("dt", "-1e-5"), ("accuracy", "0"),
+          ("accuracy", "1"), ("tolerance", "0"), ("end_time", "-1"), ("fields", "-1"), ("fields", "2.5"), ("fields", "1e9"), ("checkpoint_every", "-1")]
+WORDS = [("law", "hooke"), ("law", "SVK"), ("law", "svk|neohookean"), ("law", " "), ("law", "svk\n"), ("law", "'; touch pwned; '"), ("symmetry", "third"),
+         ("integrator", "euler"), ("breakdown", "ignore"), ("regularization", "Linear"), ("without", "everything")]
+NAMES = ["sped", "SPEED", "spéed", "out2", "velocity", "speed ", "young's"]
+SENSELESS = {   # what is accepted by itself, but not together: these reach the scripts
+    "speed: 0 without spin, gravity or body force": {"speed": "0"}, "symmetry: half": {"angle": "60", "symmetry": "half"},
+    "symmetry: half needs": {"spin": "1", "symmetry": "half"}, "mesh_size: 0.06 is larger than the radius 0.05": {"mesh_size": "0.06"},
+    r"mesh_size: 0\.06 is larger than the radius": {"contact_mesh_size": "0.06"}, "contact_mesh_size: 0.02 is larger than mesh_size 0.01": {"mesh_size": "0.01", "contact_mesh_size": "0.02"},
+    "contact_mesh_size: 1e-07 is too small .*accepted: from": {"contact_mesh_size": "1e-7"},
+    "(?<!contact_)mesh_size: 1e-09 is too small": {"mesh_size": "1e-9"}, "end_time: a body that is set down on the plane": {"angle": "0"}, "dt: ": {"dt": "1e-300"}, "end_time: ": {"end_time": "1e6"},
+    "friction_static: ": {"friction_static": "0.1", "friction_dynamic": "0.2"}}
+
+
+def toml(text: str) -> str:
+    return '"' + "".join(f"\\u{ord(c):04x}" if ord(c) < 32 or c in '"\\' else c for c in text) + '"'
+
+
+def tree(folder: Path) -> set[str]:
+    return {str(path.relative_to(folder)) for path in folder.rglob("*")}
+
+
+def check(code: int, error: str, words: str, wanted: int, before: set[str]) -> None:
+    assert code == wanted, error
+    assert re.match(rf"ffimpact: .*(?:{words})", error) and error.endswith("\n"), error
+    lines = error.splitlines()
+    assert len(lines) < 25 and all(line.startswith("ffimpact: ") for line in lines), error
+    assert "8" * 201 not in error and max(map(len, lines)) < 2500  # of a value
+    assert tree(Path.cwd()) == before
+
+
+def by_python(capsys, words: str, *arguments: str, code: int = 10) -> None:
+    """The command line, in this process."""
+    before = tree(Path.cwd())
+    check(main(list(arguments)), capsys.readouterr().err, words, code, before)
+
+
+def directly(words: str, *flags: str, code: int = 10) -> str:
+    """FreeFem++ without Python; what it says."""
+    before = tree(Path.cwd())
+    process = freefem.find().call(parameters.ROOT / "edp/disc-plane.edp", *flags, cwd=None, timeout=20)
+    check(process.returncode, process.stderr, words, code, before)
+    return process.stderr[len("ffimpact: "):-1]
+
+
+def in_a_scene(capsys, words: str, text: str | bytes, code: int = 10) -> None:
+    """A scene file."""
+    Path("scene.toml").write_bytes(text if isinstance(text, bytes) else text.encode())
+    by_python(capsys, words, "run", "scene.toml", "--out", "a/out", code=code)
+
+
+# ---- values, over all three routes
+
+VALUES = [("speed", text) for text in NO_NUMBERS] + RANGES + WORDS
+
+
+def special(kind: str) -> str:
+    """A path on which reading or writing would hang, loop or fail."""
+    if kind == "pipe":
+        os.mkfifo("pipe")
+    if kind == "loop":
+        os.symlink("back", "loop")
+        os.symlink("loop", "back")
+    if kind == "dangling":
+        os.symlink("nowhere/at/all", "dangling")
+    if kind == "folder":
+        Path("folder").mkdir()
+    if kind in ("file", "below a file", "empty"):
+        Path("file").write_text("" if kind == "empty" else "hello")
+    return {"device": "/dev/zero", "long": LONG, "below a file": "file/x", "empty": "file", "root": "/", "proc": "/proc/nowhere"}.get(kind, kind)
+
+
+INPUTS = ("pipe", "loop", "dangling", "folder", "device", "long", "below a file", "nowhere")
+# ---- words of the command line
+
+FLAGS = {   # what FreeFem++ gets, what the line names
+    ("speed=8",): "'speed=8'", ("8",): "'8'", ("-",): "'-'", ("",): "''", ("--", "-speed", "8"): "'8'", ("-speed", "8", "9"): "'9'", ("-8",): "'-8'", ("=",): "'='",
+    ("-speed",): "speed: a value is missing", ("-law",): "law: a value is missing", ("-speed", ""): "speed: the value is empty", ("-out", ""): "out: the value is empty",
+    ("-speed", "8", "-speed", "8"): "speed: given twice", ("-out", "a", "-out", "b"): "out: given twice", ("-speed", "-nu", "0.4"): "'0.4'",
+    ("-out", "-speed"): "out: a value is missing", ("--speed", "8"): "--speed: no such", ("-Speed", "8"): "-Speed: no such", ("-speed=8",): "'-speed=8'", ("-speed=8", "-nu", "0.4"): "'-speed=8'",
+    ("-", "speed", "8"): "'-'", ("-speed", "8", "\n"): "' '", ("'; touch pwned; '",): "touch pwned", ("-$(touch pwned)", "8"): "touch pwned",
+    ("-speed", "8", "-\x07", "8"): "no such"}
+COMMANDS = {
+    (): "COMMAND", ("swep",): "COMMAND: 'swep' is not known; did you mean sweep. .accepted: run, list, parameters, schema, kernels, figures, sweep, ", ("run",): "SCENE", ("run", ""): "no such scene", ("run", "disc-normal", "more"): "more", ("run", "disc-normal", "--set"): "--set",
+    ("run", "disc-normal", "--set", "speed"): "--set: 'speed' is not of the form name=value", ("run", "disc-normal", "--set", "=8"): "--set: '=8'", ("run", "disc-normal", "--set", "speed="): "--set: 'speed='",
+    ("run", "disc-normal", "--set", ""): "--set: ''", ("run", "disc-normal", "--speed", "8"): "--speed", ("run", "disc-normal", "--checkpoint-every", "often"): "checkpoint_every: 'often'",
+    ("run", "disc-normal", "--checkpoint-every", "-1"): "checkpoint_every: -1", ("run", "disc-normal", "--out"): "--out", ("sweep",): "SWEEP",
+    ("sweep", "nothing"): "nothing: no such sweep", ("sweep", "oblique", "--run", "x"): "--run: 'x'", ("movie", "disc-oblique", "--frames", "٣"): "--frames",
+    ("compare", "disc-normal"): "two or more different scenes", ("compare", "disc-oblique", "disc-oblique"): "two or more different scenes",
+    ("run", "disc-normal\n"): "no such scene"}

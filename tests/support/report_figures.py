@@ -1,0 +1,20 @@
+"""Shared by the tests of report_figures."""
+
+import numpy as np
+
+SCENE = dict(script="disc-plane", law="svk", young=7e6, nu=0.45, density=1722, radius=0.05, speed=8, angle=90, spin=0, gravity=0, body_force_x=0,
+             body_force_y=0, friction_static=0, penalty=1e10, touched=(0.0, 3.93e-3))
+
+
+def history(**given) -> dict[str, np.ndarray]:
+    """A contact of 4 ms, 1 ms of flight after it, in steps of 0.05 ms, the first row just before the touch."""
+    t = np.linspace(5e-5, 5e-3, 100)
+    none = np.zeros_like(t)
+    force = np.where(t < 4e-3, 1e4 * np.sin(np.pi * t / 4e-3), 0)
+    return dict(t=t, dt=np.full_like(t, 5e-5), normal_force=force, friction_force=none, kinetic=400 - 100 * np.sin(np.pi * t / 5e-3), elastic=100 * np.sin(np.pi * t / 5e-3),
+                contact=none + 1e-3, friction_work=none, external_work=none, balance=none + 1e-9, vx=none, vy=np.linspace(-8, 8, 100), spin=none,
+                sliding_fraction=none + 1, reverse_fraction=none) | given
+
+
+def labels(axes) -> list[str]:
+    return [text.get_text() for text in axes.get_legend().get_texts()]

@@ -1,0 +1,18 @@
+"""Shared by the tests of rest."""
+
+import pytest
+
+RADIUS, YOUNG, NU, DENSITY, GRAVITY, ACCURACY = 0.05, 7e6, 0.4, 1722, 9.81, 0.1
+REST = {"law": "neohookean", "nu": NU, "loss": 1, "gravity": GRAVITY, "until": "rest", "accuracy": ACCURACY}
+FALL = REST | {"speed": 0, "height": 0.5, "mesh_size": 0.015, "contact_mesh_size": 0.0005, "penalty": 2e11}
+
+
+def weight(volume: float) -> float:
+    return volume * DENSITY * GRAVITY
+
+
+def rests(found, force: float) -> None:
+    """It ended at rest: the contact bears the weight to the accuracy, momentum is exact and the balance of all energies closed."""
+    assert found.summary["ended"] == "rest" and found.summary["status"] == "ok"
+    assert found.history["normal_force"][-1] == pytest.approx(force, rel=ACCURACY)
+    assert found.summary["energy_drift"] < 1e-9 and found.summary["momentum_drift"] < 1e-7

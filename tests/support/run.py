@@ -1,0 +1,11 @@
+"""Shared by the tests of run."""
+
+from pathlib import Path
+
+from ffimpact import scene
+from ffimpact.output import results
+from ffimpact.running import run
+
+
+def go(out: Path, overrides: dict | None = None, **options) -> results.RunResult:
+    return run.run(scene.load("disc-normal"), {"fields": 0} | (overrides or {}), out, **{"estimate": False} | options)

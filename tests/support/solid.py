@@ -1,0 +1,5 @@
+"""Shared by the tests of solid."""
+
+
+
+RADIUS = 0.05

@@ -1,0 +1,12 @@
+"""Shared by the tests of solver."""
+
+from ffimpact import scene
+from ffimpact.output import results
+from ffimpact.running import run
+
+SCENES = {"disc-normal": {"accuracy": "0.1", "fields": "0"}, "two-discs": {"accuracy": "0.2", "fields": "0"}}
+ANSWERS = ("history.csv", "contacts.csv", "scene.toml")
+
+
+def go(name: str, out, **given) -> results.RunResult:
+    return run.run(scene.load(name), SCENES[name] | given, out, progress=False)

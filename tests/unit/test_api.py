@@ -1,0 +1,132 @@
+"""The Python interface: scenes as models, runs, sweeps, comparisons, figures."""
+
+import json
+
+import numpy as np
+import pytest
+
+import ffimpact as ff
+from ffimpact import schema
+from ffimpact.__main__ import main
+from ffimpact.failure import of_code
+from tests.support.api import RUBBER, drop
+
+
+def test_numpy_and_plain_numbers_are_the_same():
+    disc = ff.Disc(
+        radius=np.float64(0.05),
+        material=RUBBER,
+        position=np.array([0, 0.051]),
+        velocity=np.array([0.0, -8]),
+    )
+    assert (
+        ff.Scene(bodies=[disc], obstacles=[ff.Plane()], contact=ff.Contact(friction_static=0.3))
+        == drop()
+    )
+
+
+def test_entries_are_set_by_dotted_names():
+    changed = drop().set(
+        **{"body.1.velocity.2": -4, "contact.friction_static": 0.1, "accuracy": 0.02}
+    )
+    assert (
+        changed.bodies[0].velocity == [0.0, -4.0]
+        and changed.contact.friction_static == 0.1
+        and changed.accuracy == 0.02
+    )
+    assert changed != drop()
+
+
+def test_a_body_may_be_given_as_the_table_of_a_file():
+    table = drop().table()
+    made = ff.Scene(bodies=table["body"], obstacles=table["obstacle"], contact=drop().contact)
+    assert made == drop() and isinstance(made.bodies[0], ff.Disc)
+
+
+def test_all_that_is_wrong_with_a_scene_is_told_at_once():
+    """A line each, whatever table it is in."""
+    given = drop().table()
+    given["body"][0] |= {"radius": -1, "velocty": [0, 1], "position": [0, "x"]}
+    given["obstacle"][0] |= {"exponent": 2}
+    given["contact"] |= {"pair": [{"penalti": 3}]}
+    given |= {"accuracy": 3, "foo": 1}
+    with pytest.raises(ff.BadInput) as caught:
+        ff.Scene.of(given)
+    wrong = ("accuracy", "foo", "body.1.radius", "body.1.velocty", "body.1.position.2")
+    wrong += ("obstacle.1.exponent", "contact.pair.1.penalti")
+    assert {line.partition(": ")[0] for line in caught.value.messages} == set(wrong)
+
+
+@pytest.mark.parametrize(
+    "make, words",
+    [
+        (lambda: ff.NeoHookean(yong=1, young=1, nu=0.3, density=1), ("yong", "young")),
+        (lambda: ff.NeoHookean(nu=0.3, density=1), ("young", "missing")),
+        (lambda: ff.Disc(radius="wide", position=(0, 0)), ("radius", "wide")),
+        (
+            lambda: ff.Scene(bodies=[ff.Disc(radius=-1, material=RUBBER, position=(0, 0))]),
+            ("radius", "-1", "1e-09"),
+        ),
+        (lambda: drop(accuracy=3), ("accuracy", "3", "0.4")),
+        (lambda: drop(accurcy=0.1), ("accurcy", "accuracy")),
+        (lambda: drop().set(**{"body.1.yong": 3}), ("body.1.yong", "young")),
+        (lambda: ff.Scene.load("disc-norml"), ("disc-norml", "disc-normal")),
+        (lambda: ff.NeoHookean(youngs=2e6, nu=0.4, density=1), ("youngs", "young")),
+        (lambda: ff.Disc(radius=True, position=(0, 0)), ("radius", "true")),
+        (lambda: ff.Disc(radius="5 cm", position=(0, 0)), ("radius", "5 cm", "unit")),
+        (
+            lambda: ff.Scene(
+                bodies=[ff.Disc(radius=0.05, position=(0, 1))], obstacles=[ff.Plane()]
+            ),
+            ("body.1.young", "missing"),
+        ),
+        (
+            lambda: ff.Scene(
+                bodies=[ff.Disc(radius=0.05, material=RUBBER, position=(0, 1, 0))],
+                obstacles=[ff.Plane()],
+            ),
+            ("body.1.shape", "disc", "dimension", "3d"),
+        ),
+        (lambda: ff.Scene(bodies=[3]), ("bodies.1", "3")),
+        (lambda: ff.Scene(), ("bodies", "missing")),
+        (lambda: ff.Scene(bodies=[{"shap": "disc"}]), ("body.1.shape", "missing", "disc")),
+        (lambda: ff.Disc(radius=1, position=(0, 1), material="soft"), ("material", "soft")),
+        (lambda: ff.Disc(radius=1, position=(0, 1), support=3), ("support", "3")),
+        (lambda: ff.run(drop(), entries=["a"]), ("entries", "a")),
+        (lambda: ff.sweep(drop(), {"accuracy": [0.1]}, workers=0), ("workers", "0")),
+        (lambda: ff.run(3), ("scene", "3")),
+        (lambda: ff.sweep(drop(), {}), ("sweep",)),
+        (lambda: ff.sweep(drop(), {"body.1.velocity.2": -4}), ("body.1.velocity.2", "-4")),
+        (lambda: ff.sweep(drop(), {"body.1.velocity.7": [-4]}), ("body.1.velocity.7",)),
+    ],
+)
+def test_what_is_wrong_is_a_line_with_entry_and_value(tmp_path, monkeypatch, make, words):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(ff.BadInput) as caught:
+        make()
+    assert (
+        caught.value.code == 10
+        and all(": " in line for line in str(caught.value).splitlines())
+        and all(word in str(caught.value) for word in words)
+    )
+    assert not list(tmp_path.iterdir())
+
+
+def test_each_exit_code_has_its_exception():
+    kinds = {
+        1: ff.Failure,
+        10: ff.BadInput,
+        11: ff.StepFailed,
+        12: ff.MaterialFailed,
+        13: ff.NotInstalled,
+        14: ff.Unreadable,
+        124: ff.TooLong,
+    }
+    for code, kind in kinds.items():
+        failure = of_code(code, "why")
+        assert type(failure) is kind and failure.code == code and str(failure) == "why"
+
+
+def test_the_command_prints_the_schema(capsys):
+    assert main(["schema"]) == 0
+    assert json.loads(capsys.readouterr().out) == schema.schema()

@@ -1,0 +1,182 @@
+"""Scenes of one's own: what a file says becomes bodies, one mesh and a data file; whatever is wrong in it is named in one line."""
+
+import math
+import os
+import tomllib
+
+import numpy as np
+import pytest
+
+from ffimpact.failure import BadInput
+from ffimpact.geometry.outlines import ellipse_loop, polygon_loop, self_crossing
+from ffimpact.input.toml_text import to_toml
+from ffimpact.mesh import mesh
+from ffimpact.scene import load
+from ffimpact.scene import read as read_scene
+from ffimpact.scenes import assembly
+from ffimpact.scenes.entries import set_entry
+from tests.support.bodies import FLOOR, SCENE, SQUARE, changed, read, with_body
+
+
+def test_bodies_lie_where_the_file_says():
+    """position is the centre of area, angle turns about it counter-clockwise."""
+    body = read(with_body(shape="polygon", vertices=[[5, 5], [7, 5], [7, 6], [5, 6]], position=[1, 2], angle=90)).bodies[0]
+    assert sorted(map(tuple, body.placed.loops[0].corners.round(12))) == [(0.5, 1.0), (0.5, 3.0), (1.5, 1.0), (1.5, 3.0)]
+    assert body.placed.area_centre == pytest.approx([1, 2])
+
+
+@pytest.mark.parametrize("entries, velocity", [({"velocity": [1, -2]}, [1, -2]), ({"speed": 3, "direction": -90}, [0, -3]),
+                                               ({"speed": 2, "direction": 30}, [math.sqrt(3), 1]), ({}, [0, 0])])
+def test_velocity_or_speed_and_direction(entries, velocity):
+    """direction is measured counter-clockwise from x; right angles are exact."""
+    assert read(with_body(shape="disc", radius=1, **entries)).bodies[0].velocity == pytest.approx(velocity, rel=1e-15, abs=0)
+
+
+def test_material_comes_from_the_body_or_from_the_top():
+    """What a body does not say of its material the top of the file says."""
+    first, second = read(changed(("body.2.young", 1e9), ("body.2.law", "neohookean"))).bodies
+    assert (first.law, first.young, first.nu, first.density) == ("svk", 7e6, 0.45, 1722)
+    assert (second.law, second.young, second.nu, second.density) == ("neohookean", 1e9, 0.45, 1722)
+
+
+def test_the_radius_of_a_body_is_half_its_thickness():
+    """The size rule's radius: that of a disc, half the height of a block, no more than the wall of a ring."""
+    def thickness(**entries):
+        return read(with_body(**entries)).bodies[0].outline.half_thickness
+    assert thickness(shape="disc", radius=0.5) == pytest.approx(0.5, rel=1e-5)
+    assert thickness(shape="rectangle", width=10, height=2) == pytest.approx(1)
+    assert thickness(shape="ring", radius=1, inner_radius=0.9) == pytest.approx(0.1, rel=1e-5)
+
+
+def test_a_segment_of_a_circle_has_its_area_and_centre():
+    """A half disc as a loop of arcs and a straight side, either way round: area and centre of the closed forms."""
+    angles = np.linspace(0, math.pi, 8)
+    corners = np.column_stack([np.cos(angles), np.sin(angles)]) + [3, 4]
+    hubs = np.where(np.arange(8)[:, None] < 7, [3.0, 4.0], math.nan)
+    for loop in (polygon_loop(corners, hubs), polygon_loop(corners[::-1], np.roll(hubs[::-1], -1, axis=0))):
+        assert loop.area == pytest.approx(math.pi / 2, rel=1e-12) and loop.area_centre == pytest.approx([3, 4 + 4 / (3 * math.pi)], rel=1e-12)
+        assert abs(np.linalg.norm(loop.polygon[loop.polygon[:, 1] > 4 + 1e-9] - [3, 4], axis=1) - 1).max() < 1e-12
+
+
+def test_mesh_files_that_cannot_be_used_are_named(tmp_path):
+    """Half a body, a file that is no mesh and one that is not there: the entry, the file and what is accepted."""
+    mesh.write(mesh.disc(0.05, 0.02, 0.01, True), tmp_path / "half.msh")
+    (tmp_path / "text.msh").write_text("no mesh")
+    (tmp_path / "empty.msh").write_text("0 0 0\n")
+    (tmp_path / "nan.msh").write_text("3 1 3\n0 0 1\n1 nan 1\n0 1 1\n1 2 3 0\n1 2 1\n2 3 1\n3 1 1\n")
+    (tmp_path / "index.msh").write_text("3 1 3\n0 0 1\n1 0 1\n0 1 1\n1 2 4 0\n1 2 1\n2 3 1\n3 1 1\n")
+    for name, words in [("half.msh", r"body.1.file: 'half.msh' has edges with the label 2 of a symmetry axis \(accepted: whole bodies"),
+                        ("text.msh", "body.1.file: text.msh is no mesh"), ("none.msh", "body.1.file: .*none.msh cannot be read: No such file")]:
+        with pytest.raises(BadInput, match=words):
+            read(with_body(shape="mesh", file=name), tmp_path)
+
+
+def test_open_values_follow_the_scripts_rule():
+    """auto penalty: that of a disc of the softest body's material and the smallest radius at the largest closing speed; friction_dynamic
+    follows friction_static; what is given stays."""
+    asked = []
+
+    def rule(values):
+        asked.append(values)
+        return {"used": {"penalty": 123.0, "slip_velocity": 0.5, "mesh_size": 0.3, "contact_mesh_size": 0.2}, "touch_arc": 0.5}
+    given = changed(("body.1.young", 1e9), ("contact.friction_static", 0.4), ("body.2.position", [0, 0]))
+    values = assembly.assemble(read(given), rule).values
+    assert (values["penalty"], values["slip_velocity"], values["friction_dynamic"]) == (123.0, 0.5, 0.4)
+    assert asked[0]["young"] == 7e6 and asked[0]["radius"] == pytest.approx(0.5, rel=1e-5) and asked[0]["speed"] == pytest.approx(10, rel=1e-4)
+    assert assembly.assemble(read(set_entry(given, "contact.penalty", 5e8)), rule).values["penalty"] == 5e8
+
+
+def test_a_file_is_named_with_what_is_wrong_in_it(tmp_path):
+    (tmp_path / "mine.toml").write_text('[[body]]\nshape = "disk"\n')
+    with pytest.raises(BadInput, match=r"mine.toml: body.1.shape: 'disk' is not known"):
+        load(str(tmp_path / "mine.toml"))
+    with pytest.raises(BadInput, match=r"^none: no such scene \(built in: ball, .*disc-block, "):
+        load("none")
+
+
+# ---- entries by dotted names
+
+def test_entries_are_set_by_name():
+    """Dotted names, counted from 1, reach every entry, also one that is not there yet; the scene itself stays as it was."""
+    scene = read(SCENE | {"obstacle": [FLOOR]})
+    other = scene.override({"body.2.young": "2e6", "body.1.velocity.2": -5, "contact.penalty": 1e8, "gravity": 9.81, "obstacle.1.point": "[0, -2]"})
+    assert other.bodies[1].young == 2e6 and list(other.bodies[0].velocity) == [0, -5]
+    assert other.contact["penalty"] == 1e8 and other.values["gravity"] == 9.81
+    assert scene.bodies[1].young == 7e6 and list(scene.bodies[0].velocity) == [0, -10] and scene.given == SCENE | {"obstacle": [FLOOR]}
+
+
+@pytest.mark.parametrize("name, words", [
+    ("body.3.young", "body.3.young: there is no body.3 in the scene (accepted: body.1 to body.2)"),
+    ("body.0.young", "body.0.young: there is no body.0 in the scene (accepted: body.1 to body.2)"),
+    ("body.two.young", "body.two.young: there is no body.two in the scene"),
+    ("obstacle.2.point", "obstacle.2.point: there is no obstacle.2 in the scene (accepted: obstacle.1)"),
+    ("wall.1.point", "wall.1.point: there is no wall in the scene (accepted: young, nu, density, law, body, obstacle)"),
+    ("body.1.velocity.3", "body.1.velocity.3: there is no body.1.velocity.3 in the scene (accepted: body.1.velocity.1 to body.1.velocity.2)"),
+    ("body.1.radius.2", "body.1.radius.2: body.1.radius is '0.5' and has no entry 2"),
+    ("body..young", "body..young: has an empty part"),
+    ("", ": has an empty part"),
+    ("contact.pair.1.penalty", "contact.pair.1.penalty: there is no contact.pair in the scene"),
+])
+def test_names_that_reach_nothing_are_named(name, words):
+    with pytest.raises(BadInput) as caught:
+        set_entry(SCENE | {"obstacle": [FLOOR]}, name, 1)
+    assert words in str(caught.value)
+
+
+# ---- polygons
+
+def test_plane_geometry():
+    """Distances are signed and exact for a circle and a polygon; a polygon that crosses itself is found."""
+    disc = ellipse_loop(2, 2)
+    assert disc.gap(np.array([[0, 0], [3, 4], [0, 2]])) == pytest.approx([-2, 3, 0])
+    square = np.array(SQUARE, dtype=float)
+    outline = read(with_body(shape="polygon", vertices=SQUARE)).bodies[0].outline
+    assert outline.gap(np.array([[0, 0], [1, 0], [1.5, 1.5], [0.4, 0.1]])) == pytest.approx([-0.5, 0.5, math.sqrt(2), -0.1])
+    assert self_crossing(square) is None and self_crossing(square[[0, 2, 1, 3]]) == (0, 2)
+
+
+@pytest.mark.parametrize("file", ["\0", "folder", "pipe"])
+def test_a_mesh_that_is_no_file(file, tmp_path):
+    """A folder, a pipe that nobody writes to, a name that no file has: refused at once, by name."""
+    (tmp_path / "folder").mkdir()
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(BadInput, match=r"^body.1.file: '.*' is no file"):
+        read_scene(SCENE | {"body": [dict(shape="mesh", file=file, position=[0, 1])]}, tmp_path, "mine")
+
+
+def test_a_broken_mesh_file_is_named_as_given(tmp_path):
+    """The message has the user's name of the file, and no other, and what is accepted."""
+    (tmp_path / "mine.msh").write_text("3 1 3\n0 0")
+    with pytest.raises(BadInput, match="^body.1.file: mine.msh is no mesh .accepted: a 2D mesh as FreeFEM's savemesh or gmsh writes it, .msh"):
+        read_scene(SCENE | {"body": [dict(shape="mesh", file="mine.msh", position=[0, 1])]}, tmp_path, "mine")
+
+
+def test_a_sliver_is_refused_by_its_thickness():
+    """A polygon thinner than any length that is accepted."""
+    with pytest.raises(BadInput, match=r"^body.1: is 1e-12 m thick \(accepted: from 2e-09 m\)"):
+        read(with_body(shape="polygon", vertices=[[0, 0], [1, 0], [1, 1e-12]]))
+
+
+# ---- written down
+
+def odd_texts(count: int) -> list[str]:
+    """Texts of characters that files trip over, drawn at random, the first of all control characters."""
+    rng = np.random.default_rng(20)
+    odd = [*map(chr, range(0x80)), *"\x80\x85\xa0\u2028\u2029\ufeff\ufffd\U0001f600ß中", '"""', "'''", "\r\n", "\\u0041", "]]", " # ", " = "]
+    return ["".join(map(chr, range(0xa1))), *("".join(rng.choice(odd, rng.integers(0, 12))) for _ in range(count))]
+
+
+def test_what_toml_accepts_is_written_back():
+    """Whatever a TOML file can say is written so that it reads, as the same."""
+    texts = odd_texts(400)
+    said = {text: [text, 1e-300, -0.0, True, 10**30, [[], [1.5, "x"]], math.inf] for text in texts}
+    said |= {"table": {text: text for text in texts}, "list": [{"a": text, "b": {text: {}}} for text in texts], "none": [], "mixed": [{"a": "\x7f"}, 1]}
+    said |= tomllib.loads("day = 2026-11-23\nat = 07:32:00.5\nboth = 1979-05-27T07:32:00.25Z\n")
+    assert tomllib.loads(to_toml(said)) == said
+
+
+def test_values_of_numpy_are_written_as_numbers():
+    values = {"number": np.float64(1e-9), "whole": np.int64(3), "flag": np.bool_(True), "points": np.array([[0.0, 1.0]])}
+    assert tomllib.loads(to_toml({"of": values})) == {"of": {"number": 1e-9, "whole": 3, "flag": True, "points": [[0.0, 1.0]]}}
+    with pytest.raises(BadInput, match="is no text in UTF-8"):
+        to_toml({"body": [{"surface": "\udcff.stl"}]})

@@ -1,0 +1,65 @@
+"""Scenes of bodies of revolution: sections, their meshes and places, what is refused, and two balls against Hertz."""
+
+import math
+
+import numpy as np
+import pytest
+
+from ffimpact.failure import BadInput
+from tests.support.bodies_axisymmetric import BALL, FLOOR, SHAPES, read
+
+
+def test_a_cone_is_about_its_centre_of_volume():
+    """A quarter of its height from the base, not a third as the centre of its section."""
+    cone, = read(SHAPES["cone"][0]).bodies
+    assert cone.outline.points[:, 1].max() == pytest.approx(0.25) and cone.outline.points[:, 1].min() == pytest.approx(-0.75)
+
+
+def test_a_rigid_profile_is_a_surface_of_revolution():
+    """A polyline from the axis outwards and its mirror image: distances from a cone's tip and from its flank; from axis to axis it closes."""
+    with pytest.raises(BadInput, match="is no section of a surface of revolution"):
+        read(BALL, obstacles=[{"kind": "polyline", "vertices": [[1, -1], [2, 0]]}])
+    with pytest.raises(BadInput, match="overlaps"):                       # travelled inwards all but the cone is solid
+        read(BALL | {"position": 5}, obstacles=[{"kind": "polyline", "vertices": [[1, -1], [0, 0]]}])
+    cone = read(BALL | {"position": 5}, obstacles=[{"kind": "polyline", "vertices": [[0, 0], [1, -1]]}]).obstacles[0]
+    assert cone.gap(np.array([[0, 1.0], [1, 0], [-1, 0], [0, -1]])) == pytest.approx([1, math.sqrt(0.5), math.sqrt(0.5), -math.sqrt(0.5)])
+    block = read(BALL | {"position": 5}, obstacles=[{"kind": "polyline", "vertices": [[0, 0], [1, 0], [1, -1], [0, -1]]}]).obstacles[0]
+    assert block.numbers[0] == 1 and block.gap(np.array([[0, 1.0], [0, -0.4]])) == pytest.approx([1, -0.4])
+
+
+# ---- what is refused
+
+BAD = [
+    ({"position": [0.1, 2]}, {}, "body.1.position: x is 0.1, off the axis of revolution (accepted: [0, y], or y alone)"),
+    ({"velocity": [1, 0]}, {}, "body.1.velocity: x is 1, off the axis"),
+    ({"velocity": "fast"}, {}, "body.1.velocity: 'fast' is not a number"),
+    ({"spin": 3}, {}, "body.1.spin: no such entry, set to '3'"),
+    ({"angle": 30}, {}, "body.1.angle: no such entry, set to '30'"),
+    ({"shape": "disc"}, {}, "body.1.shape: 'disc' is not known (accepted: ball|shell|ellipsoid|cylinder|polygon|tube|torus|mesh)"),
+    ({"shape": "polygon", "vertices": [[0, 0], [1, 0], [1, 1]]}, {}, "body.1.vertices: do not go from the axis to the axis"),
+    ({}, {"body_force_x": 1}, "body_force_x: bodies-axisymmetric takes no such parameter"),
+    ({}, {"contact": {"pairing": "pairwise"}}, "pairing: bodies-axisymmetric takes no such parameter"),
+    ({}, {"dimension": "2d"}, "dimension: '2d' is not known (accepted: plane-strain|axisymmetric"),
+    ({}, {"script": "bodies"}, "script: 'bodies' is not that of [[body]] tables in dimension = 'axisymmetric' (accepted: bodies-axisymmetric)"),
+    ({"position": -0.8}, {}, "body.1.position: 'ball' overlaps 'floor'"),
+]
+
+
+@pytest.mark.parametrize("entries, top, words", BAD, ids=[words.split(" (")[0] for *_, words in BAD])
+def test_what_is_wrong_is_named(entries, top, words):
+    """One line with the entry, the value and what is accepted, exit code 10."""
+    table = {key: value for key, value in BALL.items() if key != "radius" or entries.get("shape", "ball") == "ball"}
+    with pytest.raises(BadInput) as caught:
+        read(table | entries, **top)
+    assert words in str(caught.value) and caught.value.code == 10 and "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("obstacle, words", [
+    ({"normal": [1, 1]}, "obstacle.1.normal: '[1, 1]' is not along the axis of revolution (accepted: [0, 1] or [0, -1])"),
+    ({"velocity": [1, 0]}, "obstacle.1.velocity: x is 1, off the axis"),
+    ({"kind": "circle"}, "obstacle.1.kind: 'circle' is not known (accepted: plane|sphere|bowl|polyline|implicit)")])
+def test_obstacles_off_the_axis_are_refused(obstacle, words):
+    """Planes across the axis, everything else on it."""
+    with pytest.raises(BadInput) as caught:
+        read(BALL, obstacles=[FLOOR | obstacle])
+    assert words in str(caught.value)

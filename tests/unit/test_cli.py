@@ -1,0 +1,52 @@
+"""The command line: exit codes, one-line errors, interruption, and that `make` lists its targets."""
+
+import errno
+import importlib
+import os
+import re
+import subprocess
+
+import pytest
+
+from ffimpact.__main__ import main
+from ffimpact.failure import Unreadable
+from ffimpact.input import parameters
+from ffimpact.running import run
+from tests.support.cli import ROOT
+
+
+def test_lists(capsys):
+    """Scenes and parameters are listed, every one."""
+    assert main(["list"]) == 0 and "disc-normal" in capsys.readouterr().out
+    assert main(["parameters"]) == 0
+    out = capsys.readouterr().out
+    assert all(re.search(rf"^{name} ", out, re.MULTILINE) for name in parameters.names())
+
+
+def test_make_lists_every_target():
+    """`make` alone lists every target with one line each."""
+    out = subprocess.run(["make", "-s"], cwd=ROOT, capture_output=True, text=True).stdout
+    text = (ROOT / "Makefile").read_text()
+    targets, sweeps = (re.search(rf"^{name} (.*)$", text, re.MULTILINE)[1] for name in (r"\.PHONY:", "SWEEPS :="))
+    targets = targets.replace("$(SWEEPS)", sweeps).split()
+    assert [line.split()[1] for line in out.splitlines()] == targets
+
+
+def test_a_full_disk_is_one_line(tmp_path, monkeypatch, capsys):
+    """Where the results cannot be written for want of room, one line says so with exit code 14."""
+    def full(*_, **__):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(tmp_path / "out"))
+    monkeypatch.setattr(run, "run", full)
+    code, error = main(["run", "disc-normal", "--out", str(tmp_path / "out")]), capsys.readouterr().err
+    assert code == 14 and error.count("\n") == 1 and "No space left on device" in error and "--out" in error
+
+
+@pytest.mark.parametrize("module", ["verification.verify", "examples.paper.stick_slip", *(f"benchmarks.{name}" for name in (
+    "promise", "bench", "stress", "oblique_angles", "disc_block_errors", "equal_errors", "scaling", "rubber"))])
+def test_a_loop_of_links_is_no_folder(tmp_path, module):
+    """A result folder behind a loop of links is exit code 14 in one line, for every study."""
+    (tmp_path / "loop").symlink_to(tmp_path / "pool")
+    (tmp_path / "pool").symlink_to(tmp_path / "loop")
+    with pytest.raises(Unreadable, match="cannot be made") as error:
+        importlib.import_module(module).main(["--out", str(tmp_path / "loop/out")])
+    assert error.value.code == 14

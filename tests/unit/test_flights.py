@@ -1,0 +1,41 @@
+"""Free flights of rigid bodies, whatever their length, to the first touch, and the end of a run: when they meet nothing any more."""
+
+import math
+
+import pytest
+
+from ffimpact.failure import BadInput
+from ffimpact.scenes import approach
+from tests.support.flights import DISC, FLOOR, read
+
+MISSES = {
+    "discs that pass": read(DISC | {"position": [-100, 0.101], "velocity": [1, 0], "spin": 50}, DISC | {"position": [100, 0]}),
+    "discs that part": read(DISC | {"position": [-1, 0], "velocity": [-1, 0]}, DISC | {"position": [1, 0]}),
+    "falls beside a post": read(DISC | {"position": [0.2, 1], "velocity": [0, 30]}, gravity=9.81, obstacles=({"kind": "circle", "centre": [0, 0], "radius": 0.1},)),
+    "along the floor": read(DISC | {"position": [0, 0.06], "velocity": [1, 0]}, obstacles=(FLOOR,)),
+}
+
+
+@pytest.mark.parametrize("case", MISSES)
+def test_what_misses_never_touches(case):
+    """Bodies that pass each other, be it by a millimetre, have no contact at any time."""
+    """Bodies that pass each other by a millimetre are said to miss, those alone."""
+    assert all(one.never for one in approach.meetings(MISSES[case]))
+
+
+def test_a_body_set_down_is_refused_at_once():
+    """A square on the floor, also with a ceiling that touches it, never leaves: without end_time that is said before anything is computed."""
+    square = {"shape": "rectangle", "width": 0.1, "height": 0.1, "position": [0, 0.05]}
+    for more in ((), ({"kind": "plane", "point": [0, 0.1], "normal": [0, -1]},)):
+        given = read(square, obstacles=(FLOOR, *more), gravity=9.81)
+        with pytest.raises(BadInput, match="end_time: 0 .* 'body1' is set down on 'obstacle1'"):
+            approach.refuse_nothing(given, approach.meetings(given))
+
+
+def test_corners_that_follow_are_fine():
+    """A square that falls on a corner turns and strikes with the next one: both are meetings of the pair, the second with a corner lowest."""
+    square = {"shape": "rectangle", "width": 0.1, "height": 0.1, "position": [0, 0.08], "angle": 20, "velocity": [0, -2]}
+    first, second = approach.meetings(read(square, obstacles=(FLOOR,)))
+    assert first.time < math.inf and second.closing < first.closing
+    x = [one.outlines[0].points[one.outlines[0].points[:, 1].argmin(), 0] for one in (first, second)]
+    assert x[0] < -0.02 and x[1] > 0.02

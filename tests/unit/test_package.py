@@ -1,0 +1,24 @@
+"""The installed package: what is in it, that it runs from any folder, and what it says where something is missing."""
+
+import re
+
+from ffimpact.input.parameters import ROOT
+from tests.support.package import PROJECT, packed
+
+
+def test_the_package_holds_every_file_of_the_program():
+    """Nothing of orchestrate/ffimpact/ and edp/ is forgotten, nothing else comes along, and no other name lands in site-packages."""
+    there = {path for place in ("orchestrate/ffimpact", "edp") for path in (ROOT / place).rglob("*") if path.is_file() and path.suffix != ".pyc"}
+    assert {str(path.relative_to(ROOT)) for path in there - set(packed().values())} == set()
+    assert set(packed().values()) <= there and {name.split("/")[0] for name in packed()} == {"ffimpact"}
+
+
+def test_the_lock_is_within_the_ranges():
+    """requirements.lock pins every dependency, and pytest, at a version that pyproject.toml accepts."""
+    def numbers(version: str) -> tuple[int, ...]:
+        return tuple(map(int, version.split(".")))
+    pins = dict(line.replace("_", "-").split("==") for line in (ROOT / "requirements.lock").read_text().splitlines() if not line.startswith("#"))
+    for wanted in PROJECT["project"]["dependencies"] + PROJECT["project"]["optional-dependencies"]["test"]:
+        name, low, high = re.fullmatch(r"([\w-]+)>=([\d.]+)(?:,<(\d+))?", wanted).groups()
+        pin = numbers(pins[name.replace("_", "-")])
+        assert numbers(low) <= pin and (not high or pin < numbers(high))

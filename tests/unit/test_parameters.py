@@ -1,0 +1,87 @@
+"""The parameter table and the scenes that are made of it."""
+
+import pytest
+
+from ffimpact import scene
+from ffimpact.failure import BadInput
+from ffimpact.input import flags, parameters
+
+
+def test_the_flags_of_the_scripts_are_those_of_the_table():
+    """edp/core/input/parameters.idp is as the table makes it: python -m ffimpact.input.flags writes it."""
+    assert flags.FILE.read_text() == flags.written()
+
+
+def test_every_row_has_its_words():
+    """Each has a unit, a meaning and a default that is accepted."""
+    for row in parameters.PARAMETERS.values():
+        assert row.unit and row.help and row.check(row.default) == row.default, row.name
+
+
+def test_known_rows():
+    """Values of the table arrive with their types."""
+    table = parameters.PARAMETERS
+    assert (table["young"].default, table["young"].unit, table["young"].low) == (7e6, "Pa", 1e-6)
+    assert table["law"].words[:2] == ("svk", "neohookean")
+    assert table["fields"].kind == "int" and type(table["fields"].default) is int
+    assert "mesh" not in parameters.names()
+
+
+@pytest.mark.parametrize("given, value", [("8", 8.0), ("+8.5", 8.5), (".5", 0.5), ("1e-3", 1e-3), (8, 8.0)])
+def test_numbers_that_are_accepted(given, value):
+    """Text and TOML values give the same number."""
+    assert parameters.check({"speed": given}) == {"speed": value}
+
+
+@pytest.mark.parametrize("name, given, message", [
+    ("speed", "8x", "speed: '8x' is not a number (accepted: 0 to 1e+09)"),
+    ("speed", float("nan"), "speed: nan is out of range (accepted: 0 to 1e+09)"),
+    ("speed", True, "speed: 'true' is not a number (accepted: 0 to 1e+09)"),
+    ("fields", "2.5", "fields: '2.5' is not a whole number (accepted: 0 to 10000)"),
+    ("law", "hooke", "law: 'hooke' is not known; did you mean neohookean? (accepted: " + "|".join(parameters.PARAMETERS["law"].words) + ")"),
+])
+def test_bad_values_are_named_with_what_is_accepted(name, given, message):
+    """The message for a bad value names the parameter, the value and the range or the words, as the scripts do."""
+    with pytest.raises(BadInput) as error:
+        parameters.check({name: given})
+    assert str(error.value) == message and error.value.code == 10
+
+
+def test_unknown_parameter_gets_a_suggestion():
+    """A misspelt parameter is named, with the closest match and the list of all."""
+    with pytest.raises(BadInput, match="sped: no such parameter; did you mean speed.*accepted: law, young"):
+        parameters.check({"sped": 8})
+    with pytest.raises(BadInput, match="^mesh: no such parameter"):
+        parameters.check({"mesh": "file.msh"})
+
+
+def test_scene_file(tmp_path):
+    """A TOML file sets what differs from the defaults; overriding leaves the original alone."""
+    path = tmp_path / "fast.toml"
+    path.write_text('title = "fast"\nscript = "disc-plane"\nspeed = 11\n')
+    loaded = scene.load(str(path))
+    assert (loaded.name, loaded.title, loaded.values["speed"], loaded.values["nu"]) == ("fast", "fast", 11.0, 0.45)
+    assert loaded.override({"speed": "2"}).values["speed"] == 2.0 and loaded.values["speed"] == 11.0
+
+
+@pytest.mark.parametrize("text, words", [
+    ("speed = = 3", "bad.toml: cannot be read"),
+    ("[speed]\nvalue = 3", "bad.toml: speed: .* is not a number"),
+    ("script = 'nothing'", "bad.toml: script: 'nothing' is not known"),
+    ("script = ['nothing']", "bad.toml: script: .* is not known"),
+])
+def test_bad_scene_files_are_named(tmp_path, text, words):
+    """A broken scene file is bad input that names the file and the key."""
+    (tmp_path / "bad.toml").write_text(text)
+    with pytest.raises(BadInput, match=words):
+        scene.load(str(tmp_path / "bad.toml"))
+
+
+@pytest.mark.parametrize("text, said", [("", "says nothing .accepted: a scene"), ('[[obstacle]]\nkind = "plane"\n', "body: is missing .accepted: one table"),
+                                        ("[contact]\nfriction_static = 0.3\n", "body: is missing")])
+def test_a_file_without_bodies_is_no_scene(tmp_path, text, said):
+    """An empty file is not a run at the defaults; obstacles or contact without bodies say what is missing."""
+    path = tmp_path / "mine.toml"
+    path.write_text(text)
+    with pytest.raises(BadInput, match=said):
+        scene.load(str(path))

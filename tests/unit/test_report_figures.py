@@ -1,0 +1,159 @@
+"""What figures must say: where time begins, when the contact ends, the paper's number, a scale; and the cut of a body in three dimensions."""
+
+import itertools
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from ffimpact.output import results, vtu
+from ffimpact.report import bodies, figures, impacts
+from ffimpact.report.figures import plt
+from tests.support.report_figures import SCENE, history, labels
+from tests.support.triangles import areas
+
+
+@pytest.fixture(autouse=True)
+def closed():
+    yield
+    figures.plt.close("all")
+
+
+@pytest.mark.parametrize("draw", [bodies.forces, bodies.velocities, bodies.energies])
+def test_time_begins_at_zero_and_the_last_touch_is_marked(draw):
+    """A run from the touch on has a tick at t = 0; the end of the contact, inside the last step, is a line with its time, in the legend."""
+    figure = draw(history(), SCENE)
+    axes = figure.axes[0]
+    assert axes.get_xlim()[0] == 0 and 0 in axes.get_xticks()
+    assert "end of the contact, 3.93 ms" in labels(axes)
+
+
+def test_a_body_that_goes_on_bouncing_has_no_last_touch():
+    """The run ends in the air between two touches: no end of the contact is claimed. A run that begins with a flight
+    begins a little before the touch, which does not stand on the axis."""
+    h = history(normal_force=np.where(np.arange(100) % 20 < 10, 1e3, 0.0))
+    assert bodies.forces(h, SCENE | {"speed": 3, "touched": (0.0, 4.5e-3)}).axes[0].get_legend() is None
+    figure = bodies.forces(history(t=np.linspace(2e-3, 7e-3, 100)), SCENE)
+    assert figure.axes[0].get_xlim()[0] == pytest.approx(2 - 0.02 * 5)
+
+
+def test_the_papers_contact_time_is_drawn_beside_ours():
+    """4.8 ms for the disc at 8 m/s, inside the axis; another law says so; another speed has none."""
+    axes = bodies.forces(history(), SCENE).axes[0]
+    assert "paper, section 3.3: 4.8 ms" in labels(axes)
+    other = bodies.forces(history(), SCENE | {"law": "neohookean"}).axes[0]
+    assert "paper, section 3.3, St. Venant–Kirchhoff: 4.8 ms" in labels(other)
+    assert figures.numbers_of_the_paper(SCENE | {"speed": 7}, "contact_time") == []
+    assert figures.numbers_of_the_paper(SCENE | {"mesh": "mine.msh"}, "contact_time") == []
+    assert figures.numbers_of_the_paper(SCENE | {"speed": 7}, "contact_time", over="speed") == [(8, 0.0048, "paper, section 3.3")]
+    late = bodies.forces(history(t=np.linspace(5e-5, 4.1e-3, 100)), SCENE).axes[0]
+    assert late.get_xlim()[1] > 4.8
+
+
+def test_no_curve_hides_another():
+    """Under gravity the elastic, contact and gravity's energies are all near 0: each line on another is thinner; small ones say how large they get."""
+    axes = bodies.energies(history(external_work=np.full(100, 0.5)), SCENE).axes[0]
+    widths = [line.get_linewidth() for line in axes.lines if line.get_label() in ("total", "kinetic", "elastic") or line.get_label().startswith(("contact", "external"))]
+    assert len(widths) == 5 and widths == sorted(widths, reverse=True) and len(set(widths)) == 5
+    assert "contact (up to 0.001)" in labels(axes)
+
+
+def test_no_contact_is_in_the_legend_of_rolling():
+    h = history(friction_force=np.full(100, -1.0))
+    assert "no contact" in labels(figures.rolling(h, SCENE).axes[1])
+
+
+def test_a_normal_impact_has_no_flight():
+    """The way of a body that neither goes along the plane nor turns is a vertical line: no figure of it."""
+    assert not figures.goes_along(history(), SCENE)
+    assert figures.goes_along(history(spin=np.full(100, 5.0)), SCENE) and figures.goes_along(history(vx=np.full(100, 1.0)), SCENE)
+
+
+@pytest.mark.parametrize("width, words", [(0.12, "20 mm"), (11.0, "2 m"), (4e-4, "100 μm"), (0.4, "100 mm")])
+def test_scale_of_length(width, words):
+    figure, axes = figures.plt.subplots()
+    axes.set_xlim(0, width)
+    figures.scale_bar(axes)
+    assert [text.get_text() for text in axes.texts] == [words] and axes.get_xlim() == (0, width)
+    bar, = axes.lines
+    assert 0.1 * width < np.ptp(bar.get_xdata()) <= 0.25 * width
+
+
+def test_a_body_at_rest_on_its_partner_has_no_restitution():
+    """An approach of round-off is no denominator; what a vibrating body is pushed off with is marked at the edge, and does not flatten the rest."""
+    rows = pd.DataFrame(dict(body=1, partner=-1, start=[0, 0.03, 0.05], end=[0.02, 0.04, 0.06], impulse=1.0, approach=[5e-20, 0.02, 0.03], separation=0.004,
+                             restitution=[8e16, 0.2, 4.4], restitution_tangential=np.nan, slip_before=0.0))
+    top = impacts.draw(rows.to_records(), ["body"], ["plane"]).axes[0]
+    assert impacts.HIGHEST < top.get_ylim()[1] < 2
+    pushed, = (line for line in top.lines if line.get_marker() == "^")
+    assert list(pushed.get_xdata()) == [50] and list(pushed.get_ydata()) == [impacts.HIGHEST]
+
+
+# ---- cut of a body in three dimensions
+
+def block(low: float, high: float, count: int) -> vtu.Solid:
+    """A block 2 x 2 from z = low to high, of quadratic tetrahedra, six a cell of count^3; u = (x, y, z), a field 1 + 2 x - y + z."""
+    axis = np.linspace(-1, 1, count + 1)
+    corners = np.array([(x, y, low + (high - low) * (z + 1) / 2) for x, y, z in itertools.product(axis, axis, axis)])
+    number = {each: k for k, each in enumerate(itertools.product(range(count + 1), repeat=3))}
+    cells = []
+    for cell in itertools.product(range(count), repeat=3):
+        for order in itertools.permutations(range(3)):                    # along the edges of the cell from corner to corner
+            steps = np.cumsum([np.zeros(3, int), *np.eye(3, dtype=int)[list(order)]], axis=0)
+            cells.append([number[tuple(np.add(cell, step))] for step in steps])
+    points, middles, tetrahedra = list(corners), {}, []
+    for a, b, c, d in cells:
+        row = [a, b, c, d]
+        for pair in ((a, b), (b, c), (a, c), (a, d), (b, d), (c, d)):
+            key = tuple(sorted(pair))
+            if key not in middles:
+                middles[key] = len(points)
+                points.append((corners[key[0]] + corners[key[1]]) / 2)
+            row.append(middles[key])
+        tetrahedra.append(row)
+    points = np.array(points)
+    fields = {"displacement": points.copy(), "von_mises": 1 + points @ (2.0, -1.0, 1.0)}
+    return vtu.Solid(points, np.array(tetrahedra), results.Contents(fields, Path("a.vtu")))
+
+
+@pytest.mark.parametrize("low, high, count", [(-1, 2, 2), (-1, 1, 1), (-1, 1, 3), (-0.25, 0.75, 1)])
+def test_cut_of_a_whole_body(low, high, count):
+    """The cut covers the cross-section once, 4 m2, all triangles one way round, with fields that are exact where they are linear; nodes in the plane or not."""
+    solid = block(low, high, count)
+    on_plane = np.abs(solid.points[:, 2]) < 1e-9
+    snapshot = vtu._cut(solid, on_plane)
+    assert areas(snapshot).sum() == pytest.approx(4) and areas(snapshot).min() > 0
+    assert snapshot.fields["von_mises"] == pytest.approx(1 + snapshot.points @ (2.0, -1.0))
+    assert snapshot.fields["displacement"] == pytest.approx(np.pad(snapshot.points, [(0, 0), (0, 1)]))
+    sides = np.sort(snapshot.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    outline = np.unique(sides, axis=0, return_counts=True)
+    ends = snapshot.points[outline[0][outline[1] == 1]]
+    assert (np.isclose(np.abs(ends).max(axis=2), 1)).all()          # one piece: its only free sides are on the block's surface
+
+
+def test_a_body_beside_the_plane_has_no_cut():
+    solid = block(0.5, 1, 1)
+    assert len(vtu._cut(solid, np.zeros(len(solid.points), bool)).triangles) == 0
+
+
+@pytest.mark.parametrize("restitution, drawn", [(np.nan, False), (0.8, True)])
+def test_no_legend_without_names(recwarn, restitution, drawn):
+    """Bounces of which none has a restitution, as between a table and a plate that presses, have no picture; nothing warns."""
+    columns = {"body": 1, "partner": -1, "start": [0.0, 1e-3], "end": [5e-4, 2e-3], "impulse": [1.0, 0.8], "approach": [1.2, 1.0],
+               "separation": [0.1, 0.1], "slip_before": [0.0, 0.0], "restitution": restitution, "restitution_tangential": np.nan}
+    figure = impacts.draw(pd.DataFrame(columns).to_records(index=False), ["block"], ["table"])
+    assert (figure is not None) == drawn and not recwarn.list
+    plt.close("all")
+
+
+def test_a_legend_takes_what_has_a_name():
+    """A legend of nothing with a name is left out."""
+    figure, axes = plt.subplots()
+    axes.plot([0, 1])
+    figures.legend(axes)
+    assert axes.get_legend() is None
+    axes.plot([1, 0], label="a line")
+    figures.legend(axes)
+    assert labels(axes) == ["a line"]
+    plt.close(figure)

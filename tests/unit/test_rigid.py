@@ -1,0 +1,39 @@
+"""Rigid bodies: the motions of rigid bodies exactly, and the limit of stiff ones."""
+
+import pytest
+
+from ffimpact.__main__ import main
+from tests.support.rigid import DISC, FLOOR, ROLLER
+
+
+@pytest.mark.parametrize("entries, named", [
+    ("young = 1e6", "body.1.young"), ("[[body.support]]\nwhere = 'all'", "body.1.support"), ("mass = 1\ndensity = 1", "body.1.mass"),
+    ("inertia = -1", "body.1.inertia"), ("inertia = [1, 1, 1]", "body.1.inertia"), ("viscosity = 1", "body.1.viscosity")])
+def test_wrong_entries(tmp_path, capsys, entries, named):
+    """One line that names the entry, exit code 10."""
+    file = tmp_path / "scene.toml"
+    file.write_text(DISC + "position = [0, 0.06]\nvelocity = [0, -1]\n" + entries + "\n" + FLOOR)
+    assert main(["run", str(file), "--out", str(tmp_path / "out")]) == 10
+    said = capsys.readouterr().err
+    assert named in said and said.count("\n") == 1
+
+
+def test_all_rigid_needs_a_penalty(tmp_path, capsys):
+    """There is no body whose stiffness it could follow."""
+    file = tmp_path / "scene.toml"
+    file.write_text(DISC + "position = [0, 0.06]\nvelocity = [0, -1]\n" + FLOOR.replace("penalty = 1e7", "friction_static = 0.1"))
+    assert main(["run", str(file), "--out", str(tmp_path / "out")]) == 10
+    assert "contact.penalty" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("entries, named", [
+    ('motion = [0, "1/t"]', "obstacle.1.motion.2"), ("motion = 3", "obstacle.1.motion"), ("pivot = [0, 0]", "obstacle.1.pivot"),
+    ('rotation = "10*t"\nvelocity = [0, -1]', "obstacle.1.velocity"), ('rotation = "u"', "obstacle.1.rotation"),
+    ('rotation = "10*t"\naxis = [0, 0, 1]', "obstacle.1.axis")])
+def test_wrong_motions(tmp_path, capsys, entries, named):
+    """One line that names the entry, exit code 10."""
+    file = tmp_path / "scene.toml"
+    file.write_text(ROLLER.format(entries))
+    assert main(["run", str(file), "--out", str(tmp_path / "out")]) == 10
+    said = capsys.readouterr().err
+    assert named in said and said.count("\n") == 1

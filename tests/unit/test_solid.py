@@ -1,0 +1,29 @@
+"""Pictures of a body in three dimensions: the surfaces and the pressure that they show, and what happens without PyVista."""
+
+import re
+import tomllib
+
+import numpy as np
+import pytest
+
+from ffimpact.input.parameters import ROOT
+from ffimpact.report import contact, solid
+from tests.support.solid import RADIUS
+
+
+def test_body_without_contact_has_no_pressure():
+    """A table without rows: zero everywhere, at any time."""
+    empty = np.rec.fromarrays(np.empty((6, 0)), names=["t", "X", "Y", "Z", "weight", "pressure"])
+    assert not solid.Pressure(empty, (0, 2), np.random.default_rng(1).random((5, 3))).at(0.1).any()
+
+
+def test_hertz_pressure_bears_its_force():
+    """The integral of the ellipsoid over its circle is the force."""
+    r, pressure = contact.hertz(30.0, {"young": 7e6, "nu": 0.45, "radius": RADIUS})
+    assert np.trapezoid(2 * np.pi * r * pressure, r) == pytest.approx(30, rel=2e-3)
+
+
+def test_what_is_missing_is_the_extra():
+    """What the user is told to install is what pyproject.toml names as the extra."""
+    extra = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]["solid"]
+    assert solid.INSTALL.endswith(f"pip install {' '.join(re.split('[<>=]', each)[0] for each in extra)}")
