@@ -91,7 +91,7 @@ CHECKED := $(addprefix orchestrate/ffimpact/,__init__.py api.py model.py plot.py
 check: $(READY) unit ## style, types, spelling and the tests without FreeFEM, in under a minute; format and mypy --strict for the modules of the Python interface
 	@$(PYTHON) -m ruff check -q orchestrate examples benchmarks verification tests docs conftest.py
 	@$(PYTHON) -m ruff format -q --check $(CHECKED) tests/unit/test_api.py tests/run/test_api.py tests/support/api.py conftest.py
-	@$(PYTHON) -m mypy --strict --follow-imports=silent $(CHECKED)
+	@$(PYTHON) -m mypy --strict --follow-imports=silent --cache-dir=.mypy_cache/strict $(CHECKED)
 	@$(PYTHON) -m mypy orchestrate/ffimpact
 	@$(PYTHON) -m codespell_lib
 

@@ -14,11 +14,12 @@ def test_the_package_holds_every_file_of_the_program():
 
 
 def test_the_lock_is_within_the_ranges():
-    """requirements.lock pins every dependency, and pytest, at a version that pyproject.toml accepts."""
+    """requirements.lock pins every dependency, and what the tests and checks need, at a version that pyproject.toml accepts."""
     def numbers(version: str) -> tuple[int, ...]:
         return tuple(map(int, version.split(".")))
-    pins = dict(line.replace("_", "-").split("==") for line in (ROOT / "requirements.lock").read_text().splitlines() if not line.startswith("#"))
-    for wanted in PROJECT["project"]["dependencies"] + PROJECT["project"]["optional-dependencies"]["test"]:
+    pins = dict(re.findall(r"^([\w-]+)==([\d.]+)", (ROOT / "requirements.lock").read_text(), re.MULTILINE))
+    extras = PROJECT["project"]["optional-dependencies"]
+    for wanted in PROJECT["project"]["dependencies"] + extras["test"] + extras["check"]:
         name, low, high = re.fullmatch(r"([\w-]+)>=([\d.]+)(?:,<(\d+))?", wanted).groups()
-        pin = numbers(pins[name.replace("_", "-")])
+        pin = numbers(pins[name])
         assert numbers(low) <= pin and (not high or pin < numbers(high))
