@@ -1,0 +1,56 @@
+"""The Python interface in a notebook: every cell runs, tables and pictures are shown."""
+
+from importlib.util import find_spec
+
+import pytest
+
+from tests.support.block import CELLS, HISTORY, PLAYER, PLOTS, RESULT, STATE, STUDY, SWEEP
+
+nbformat = pytest.importorskip("nbformat")
+nbclient = pytest.importorskip("nbclient")
+pytest.importorskip("ipykernel")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("notebook")
+
+
+@pytest.fixture(scope="module")
+def outputs(folder):
+    """cell -> its outputs, after the whole notebook was executed in an empty folder."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.delenv("MPLBACKEND", raising=False)     # the kernel's own draws into the notebook
+        notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(cell.strip()) for cell in CELLS])
+        nbclient.NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(folder)}}).execute()
+    nbformat.write(notebook, folder / "block.ipynb")
+    return {cell: made.outputs for cell, made in zip(CELLS, notebook.cells)}
+
+
+def count(outputs: list, kind: str) -> int:
+    """How many of the outputs can be shown as `kind`."""
+    return sum(kind in one.get("data", {}) for one in outputs)
+
+
+def test_no_cell_fails(outputs):
+    """All cells run in their order in one kernel."""
+    assert not [one for made in outputs.values() for one in made if one.output_type == "error"]
+
+
+def test_results_and_tables_are_html(outputs):
+    """A result and the table of a sweep are shown as tables."""
+    assert count(outputs[RESULT], "text/html") == 1 and count(outputs[SWEEP], "text/html") == 1
+
+
+@pytest.mark.parametrize("cell, pictures", [(HISTORY, 1), (PLOTS, 3), (STUDY, 1)], ids=["history", "plots", "study"])
+def test_figures_are_shown(outputs, cell, pictures):
+    """A cell that draws shows each of its figures once."""
+    assert count(outputs[cell], "image/png") == pictures
+
+
+@pytest.mark.parametrize("cell, package", [(STATE, "pyvista"), (PLAYER, "k3d")])
+def test_what_is_not_installed_is_a_line(folder, outputs, cell, package):
+    """States need pyvista and the player needs k3d: where one is missing a line says how to install it."""
+    (said,) = ["".join(one.text for one in outputs[cell] if one.output_type == "stream" and one.name == "stdout")]
+    assert said.count("\n") == 1 and (find_spec(package) is not None or f"pip install {package}" in said), said
+    assert find_spec("k3d") is None or (folder / "impact.html").stat().st_size > 1e4
