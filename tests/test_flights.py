@@ -67,7 +67,7 @@ MISSES = {
 @pytest.mark.parametrize("case", MISSES)
 def test_what_misses_never_touches(case):
     """Bodies that pass each other by a millimetre are said to miss, those alone."""
-    assert [one.never for one in approach.meetings(MISSES[case])] == [True]
+    assert all(one.never for one in approach.meetings(MISSES[case]))          # or not looked at, where the spheres around them stay apart
 
 
 LONG = {"two discs": (read(DISC | {"position": [-3, 0], "velocity": [1, 0]}, DISC | {"position": [3, 0]}), {}, 5.9),
