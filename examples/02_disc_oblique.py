@@ -2,9 +2,9 @@
 A disc with friction hits the plane at 60 degrees
 =================================================
 
-The disc of the paper hits the plane at 12 m/s and 60 degrees, with a static coefficient of friction
-of 0.7 and a dynamic one of 0.5. Its lower side sticks, springs back along the plane, and leaves the
-disc with half as much spin again as a rigid disc would have.
+The disc of the paper hits the plane at 12 m/s and 60 degrees, with a static coefficient of
+friction of 0.7 and a dynamic one of 0.5. Its lower side sticks, springs back along the plane, and
+leaves the disc with half as much spin again as a rigid disc would have.
 """
 
 import matplotlib.pyplot as plt
@@ -37,6 +37,7 @@ steep.view()
 fig, ax = plt.subplots(figsize=(6, 4), layout="constrained")
 steep.plot.force(ax=ax)
 ax.axhline(0, color="black", linewidth=0.6)
+plt.show()
 
 # %%
 # Sliding and sticking
@@ -52,6 +53,7 @@ for angle, result in ((60, steep), (30, flat)):
     ax.plot(1e3 * rows.t, rows.sliding_fraction, label=f"{angle} degrees to the plane")
 ax.set(xlabel="time [ms]", ylabel="share of the normal load that slides")
 ax.legend()
+plt.show()
 
 # %%
 # Spin
@@ -65,6 +67,7 @@ ax.plot(1e3 * steep.history.t, steep.history.spin, label="rubber disc, 60 degree
 ax.axhline(rolling, color="black", linewidth=0.8, linestyle="--", label="rigid disc")
 ax.set(xlabel="time [ms]", ylabel="spin [rad/s]")
 ax.legend()
+plt.show()
 
 # %%
 # Comparison
@@ -97,6 +100,7 @@ numbers = pd.DataFrame(
     ],
     columns="quantity unit computed error reference uncertainty source note".split(),
 )
+numbers
 
 # %%
 # What to try next
@@ -104,4 +108,3 @@ numbers = pd.DataFrame(
 # * An angle of 15 degrees: the disc slides throughout, and the rigid law holds.
 # * A spin before the impact, ``spin=-100``.
 # * ``ff.run("disc-oblique-svk")``: the law of the paper, with a warning that says what is wrong.
-numbers

@@ -15,9 +15,9 @@ import ffimpact as ff
 # %%
 # The scene
 # ---------
-# It is section 3.2 of the paper: the block is 10 m wide and 2 m high, both bodies have
-# E = 7 MPa and a density of 1722 kg/m³, and there is neither friction nor gravity. The program
-# chooses ν = 0.45 and a penalty of 10⁹ Pa/m. We run it with both laws of the paper.
+# It is section 3.2 of the paper: the block is 10 m wide and 2 m high, both bodies have E = 7 MPa
+# and a density of 1722 kg/m³, and there is neither friction nor gravity. The program chooses ν =
+# 0.45 and a penalty of 10⁹ Pa/m. We run it with both laws of the paper.
 runs = {"SVK": ff.run("disc-block"), "neo-Hookean": ff.run("disc-block-neohookean")}
 runs["SVK"]
 
@@ -36,6 +36,7 @@ for name, label in (("momentum_y_1", "disc"), ("momentum_y_2", "block"), ("momen
     ax.plot(1e3 * history.t, 1e-3 * history[name], label=label)
 ax.set(xlabel="time [ms]", ylabel="vertical momentum [kN s/m]")
 ax.legend()
+plt.show()
 
 # %%
 # Energies
@@ -49,21 +50,22 @@ total = history.kinetic + history.elastic + history.contact
 ax.plot(1e3 * history.t, 1e-3 * total, "k--", label="total")
 ax.set(xlabel="time [ms]", ylabel="energy [kJ/m]")
 ax.legend()
+plt.show()
 
 # %%
 # Comparison
 # ----------
-# Momentum and energy are exact. For the neo-Hookean law there are two runs of NGSolve. We
-# take the finer one as known to the difference between them. Figure 9 of the paper prints no numbers.
+# Momentum and energy are exact. For the neo-Hookean law there are two runs of NGSolve. We take the
+# finer one as known to the difference between them. Figure 9 of the paper prints no numbers.
 mass, block, speed = 1722 * np.pi * 0.5**2, 1722 * 10 * 2.0, 10.0
 peer = "NGSolve, finer of two meshes"
 rows = []
 for law, result in runs.items():
     disc_v, block_v, errors = result["rebound_vy_1"], result["rebound_vy_2"], result.errors
     of_block = mass / block * errors["rebound_vy_1"]  # the bodies exchange the same impulse
-    theirs = ((4.55505, 0.0213), (-0.57157, 0.0008)) if law == "neo-Hookean" else 2 * ((np.nan,) * 2,)
-    source = peer if law == "neo-Hookean" else ""
-    note = "" if source else "the paper prints no value"
+    theirs, source, note = [(np.nan, np.nan)] * 2, "", "the paper prints no value"
+    if law == "neo-Hookean":
+        theirs, source, note = [(4.55505, 0.0213), (-0.57157, 0.0008)], peer, ""
     rows += [
         (f"momentum after, {law}", "N s/m", mass * disc_v + block * block_v,
          mass * errors["rebound_vy_1"], -mass * speed, 0.0, "exact: momentum before", ""),
@@ -79,6 +81,7 @@ for law, result in runs.items():
 numbers = pd.DataFrame(
     rows, columns="quantity unit computed error reference uncertainty source note".split()
 )
+numbers
 
 # %%
 # What to try next
@@ -86,4 +89,3 @@ numbers = pd.DataFrame(
 # * A higher block, ``block_height=4``: when do the waves come back to the disc?
 # * A narrow block, ``block_width=2``, which vibrates less.
 # * A slower disc, ``speed=1``.
-numbers

@@ -35,6 +35,7 @@ coarse.warnings
 # The meridian half of the ball at the largest force. The colour is the von Mises stress.
 fig, ax = plt.subplots(figsize=(6, 4), layout="constrained")
 ball.plot.shapes(ax=ax)
+plt.show()
 
 # %%
 # Accelerations
@@ -42,12 +43,14 @@ ball.plot.shapes(ax=ax)
 # The mean acceleration of each body, as in figure 11 of the paper: force over mass.
 masses = {"disc": 1722 * np.pi * 0.05**2, "ball": 1722 * 4 / 3 * np.pi * 0.05**3}
 fig, ax = plt.subplots(figsize=(6, 4), layout="constrained")
-for label, body, result in (("disc, neo-Hookean", "disc", disc), ("ball, neo-Hookean", "ball", ball),
+for label, body, result in (("disc, neo-Hookean", "disc", disc),
+                            ("ball, neo-Hookean", "ball", ball),
                             ("ball, SVK on a coarse mesh", "ball", coarse)):
     time = 1e3 * (result.history.t - result["contact_start"])
     ax.plot(time, result.history.normal_force / masses[body], label=label)
 ax.set(xlabel="time since first contact [ms]", ylabel="acceleration [m/s²]")
 ax.legend()
+plt.show()
 
 # %%
 # Comparison
@@ -73,6 +76,7 @@ numbers = pd.DataFrame(
     ],
     columns="quantity unit computed error reference uncertainty source note".split(),
 )
+numbers
 
 # %%
 # What to try next
@@ -80,4 +84,3 @@ numbers = pd.DataFrame(
 # * ``ff.run("ball")``: the same ball in three dimensions.
 # * A hollow ball: ``ff.Shell(radius=0.05, inner_radius=0.04, ...)``.
 # * A slower ball, ``speed=0.1``, which comes close to the theory of Hertz.
-numbers

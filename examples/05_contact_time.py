@@ -2,8 +2,8 @@
 Contact time over the speed of impact
 =====================================
 
-The disc of the paper hits the plane at 0.5 to 12 m/s with both of its laws. The time of contact falls
-with the speed, and the paper reports steps in the curve of one law and none in the other.
+The disc of the paper hits the plane at 0.5 to 12 m/s with both of its laws. The time of contact
+falls with the speed, and the paper reports steps in the curve of one law and none in the other.
 """
 
 import matplotlib.pyplot as plt
@@ -16,8 +16,8 @@ import ffimpact as ff
 # The sweep
 # ---------
 # Figures 6b and 8 of the paper are curves of the time of contact over the speed, for the laws of
-# St. Venant-Kirchhoff (SVK) and neo-Hooke. We run seven speeds with each. With SVK there is no answer
-# at 12 m/s: the material breaks down, and the row of the table says where. The sweeps of
+# St. Venant-Kirchhoff (SVK) and neo-Hooke. We run seven speeds with each. With SVK there is no
+# answer at 12 m/s: the material breaks down, and the row of the table says where. The sweeps of
 # ``make paper`` have 59 speeds and two Poisson's ratios.
 speeds = [0.5, 1, 2, 4, 6, 8, 12]
 study = ff.sweep("disc-normal", {"law": ["svk", "neohookean"], "speed": speeds}, accuracy=0.01)
@@ -35,14 +35,15 @@ for law, rows in table.groupby("law"):
 ax.plot(8, 4.8, "k*", label="paper, SVK")
 ax.set(xlabel="speed [m/s]", ylabel="contact time [ms]")
 ax.legend()
+plt.show()
 
 # %%
 # Slow discs
 # ----------
-# A slow disc is compressed as if it were at rest. The force P on a disc and its compression δ are then
-# related by δ = P/(π E') (ln(4 π R E'/P) − 1 − ν'), with the moduli of plane strain (Gerl and Zippelius
-# 1999). One integral of the equation of motion gives the time of contact. It holds for a hard contact,
-# so that we run slow discs with a hundred times the penalty.
+# A slow disc is compressed as if it were at rest. The force P on a disc and its compression δ are
+# then related by δ = P/(π E') (ln(4 π R E'/P) − 1 − ν'), with the moduli of plane strain (Gerl and
+# Zippelius 1999). One integral of the equation of motion gives the time of contact. It holds for a
+# hard contact, so that we run slow discs with a hundred times the penalty.
 slow = ff.sweep("disc-normal", {"speed": [0.02, 0.1, 0.5]}, accuracy=0.01, law="neohookean",
                 penalty=1e12)
 radius, mass, nu = 0.05, np.pi * 0.05**2 * 1722, 0.45
@@ -68,12 +69,13 @@ ax.errorbar(slow.table.speed, 1e3 * slow.table.contact_time, 1e3 * slow_errors, 
             label="computed, neo-Hookean")
 ax.set(xlabel="speed [m/s]", ylabel="contact time [ms]")
 ax.legend()
+plt.show()
 
 # %%
 # Comparison
 # ----------
-# The paper prints one value of its curves, 0.0048 s at 8 m/s with SVK, and says that the neo-Hookean
-# curve falls monotonically. We compare the largest rise of that curve with zero.
+# The paper prints one value of its curves, 0.0048 s at 8 m/s with SVK, and says that the
+# neo-Hookean curve falls monotonically. We compare the largest rise of that curve with zero.
 neo = table[table.law == "neohookean"]
 rises, bars = np.diff(neo.contact_time), neo.error.to_numpy()
 k = int(np.argmax(rises))
@@ -92,6 +94,7 @@ for one, error in zip(slow.table.itertuples(), slow_errors):
 numbers = pd.DataFrame(
     rows, columns="quantity unit computed error reference uncertainty source note".split()
 )
+numbers
 
 # %%
 # What to try next
@@ -99,4 +102,3 @@ numbers = pd.DataFrame(
 # * More speeds between 4 and 8 m/s, at ``accuracy=0.0025``: are there steps in the curve of SVK?
 # * ``nu=0.3``, where SVK is stable up to higher speeds.
 # * The same sweep for the ball, ``"ball-axisymmetric"``.
-numbers

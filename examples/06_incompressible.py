@@ -2,8 +2,8 @@
 An incompressible disc
 ======================
 
-Rubber hardly changes its volume: ν comes close to 1/2, the value that the paper writes. The program
-computes J = 1 exactly by a law of its own, and discs with ν → 1/2 tend to the same answer.
+Rubber hardly changes its volume: ν comes close to 1/2, the value that the paper writes. The
+program computes J = 1 exactly by a law of its own, and discs with ν → 1/2 tend to the same answer.
 """
 
 import matplotlib.pyplot as plt
@@ -15,10 +15,10 @@ import ffimpact as ff
 # %%
 # The scenes
 # ----------
-# A neo-Hookean disc hits the plane at 4 m/s, once incompressible and four times with ν from 0.45 to
-# 0.4999. In the incompressible disc the pressure is an unknown of its own. In the others the volume
-# part of the stress beyond ν = 0.45 acts on the mean volume of each element, so that the elements do
-# not lock.
+# A neo-Hookean disc hits the plane at 4 m/s, once incompressible and four times with ν from 0.45
+# to 0.4999. In the incompressible disc the pressure is an unknown of its own. In the others the
+# volume part of the stress beyond ν = 0.45 acts on the mean volume of each element, so that the
+# elements do not lock.
 speed, radius, mass = 4.0, 0.05, np.pi * 0.05**2 * 1722
 ratios = [0.45, 0.49, 0.499, 0.4999]
 exact = ff.sweep("disc-normal-incompressible", {"speed": [speed]}).results[0]
@@ -35,6 +35,7 @@ ax.loglog([1 - 2 * nu for nu in ratios[1:]], change, "o-", label="ν below 1/2")
 ax.axhline(exact["volume_change"], color="C1", label="incompressible")
 ax.set(xlabel="1 − 2ν", ylabel="largest change of an element's volume")
 ax.legend()
+plt.show()
 
 # %%
 # Forces
@@ -45,15 +46,16 @@ for label, run in (("ν = 0.45", study.results[0]), ("ν = 0.499", study.results
     ax.plot(1e3 * run.history.t, 1e-3 * run.history.normal_force, label=label)
 ax.set(xlabel="time [ms]", ylabel="normal force [kN/m]")
 ax.legend()
+plt.show()
 
 # %%
 # Comparison
 # ----------
-# For ν → 1/2 answers are linear in 1 − 2ν. The straight line through ν = 0.499 and ν = 0.4999 ends at
-# the limit, and what the line adds to ν = 0.4999 is taken as the uncertainty of the limit, beside the
-# error bar of the run. At ν = 0.499 NGSolve has solved the same equations with plain quadratic
-# elements. The two programs were compared on equal meshes; their converged values are not at hand,
-# so that we take the difference on equal meshes as the uncertainty.
+# For ν → 1/2 answers are linear in 1 − 2ν. The straight line through ν = 0.499 and ν = 0.4999 ends
+# at the limit, and what the line adds to ν = 0.4999 is taken as the uncertainty of the limit,
+# beside the error bar of the run. At ν = 0.499 NGSolve has solved the same equations with plain
+# quadratic elements. The two programs were compared on equal meshes; their converged values are
+# not at hand, so that we take the difference on equal meshes as the uncertainty.
 last, near = study.results[3], study.results[2]
 rows = [("largest change of an element's volume", "1", exact["volume_change"], 1e-6, 0.0, 0.0,
          "exact: J = 1", "error: what the constraint is held to")]
@@ -71,6 +73,7 @@ rows.append(("energy after, incompressible", "J/m", exact["energy_final"],
 numbers = pd.DataFrame(
     rows, columns="quantity unit computed error reference uncertainty source note".split()
 )
+numbers
 
 # %%
 # What to try next
@@ -78,4 +81,3 @@ numbers = pd.DataFrame(
 # * ``ff.run("disc-normal-incompressible")``: the same at the 8 m/s of the paper.
 # * An incompressible ball: ``ff.run("ball-axisymmetric", law="incompressible", nu=0.5)``.
 # * ``degree=1`` with ν = 0.4999: linear elements lock.
-numbers

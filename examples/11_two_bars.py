@@ -15,10 +15,10 @@ import ffimpact as ff
 # %%
 # The scene
 # ---------
-# It is the benchmark of Runcie, Lee, Haider, Gil and Bonet (IJNME 123, 5700, 2022): E = 100, ρ = 0.01
-# and ν = 0, bars of length 10, a gap of 0.01 and a speed of 0.1. Waves have the speed c = 100. The
-# benchmark has no units. The second bar has shorter elements than the first one, so that the nodes of
-# the bars do not coincide.
+# It is the benchmark of Runcie, Lee, Haider, Gil and Bonet (IJNME 123, 5700, 2022): E = 100, ρ =
+# 0.01 and ν = 0, bars of length 10, a gap of 0.01 and a speed of 0.1. Waves have the speed c =
+# 100. The benchmark has no units. The second bar has shorter elements than the first one, so that
+# the nodes of the bars do not coincide.
 length, young, density, gap, speed = 10.0, 100.0, 0.01, 0.01, 0.1
 wave = np.sqrt(young / density)
 bar = ff.NeoHookean(young=young, nu=0, density=density)
@@ -42,14 +42,15 @@ def collision(elements):
 # %%
 # Pressure between the bars
 # -------------------------
-# The bars touch at 0.1. The fronts start at the interface, return from the free ends after 2 L/c, and
-# part the bars at 0.3. Between these instants the pressure is ρ c v/2.
+# The bars touch at 0.1. The fronts start at the interface, return from the free ends after 2 L/c,
+# and part the bars at 0.3. Between these instants the pressure is ρ c v/2.
 begin, end, plateau = gap / speed, gap / speed + 2 * length / wave, density * wave * speed / 2
 fig, ax = plt.subplots(figsize=(6, 4), layout="constrained")
 ax.plot(fine.history.t, force, label="50 elements")
 ax.plot([0, begin, begin, end, end, 0.4], np.repeat([0, plateau, 0], 2), "k--", label="exact")
 ax.set(xlabel="time", ylabel="contact pressure")
 ax.legend()
+plt.show()
 
 # %%
 # Energies
@@ -61,13 +62,14 @@ for k, label in ((1, "left bar"), (2, "right bar")):
 ax.plot(history.t, history.kinetic + history.elastic + history.contact, "k--", label="total")
 ax.set(xlabel="time", ylabel="energy per thickness")
 ax.legend()
+plt.show()
 
 # %%
 # Comparison
 # ----------
-# The bars are in contact while the pressure is above half of ρ c v/2. A scheme of second order smears
-# a front over the element size to the power 2/3. The error is therefore the difference of the two
-# meshes over 2^(2/3) − 1. It is an estimate from two runs, and can be too small by chance.
+# The bars are in contact while the pressure is above half of ρ c v/2. A scheme of second order
+# smears a front over the element size to the power 2/3. The error is therefore the difference of
+# the two meshes over 2^(2/3) − 1. It is an estimate from two runs, and can be too small by chance.
 
 
 def measured(result, p):
@@ -89,6 +91,7 @@ numbers["reference"] = [begin, end, plateau, 0, speed, 0, 1]
 numbers["uncertainty"], numbers["source"] = 0.0, "exact: Runcie and others 2022"
 waves = "misses: short waves behind the fronts stay in the bars; two meshes give a rough error"
 numbers["note"] = 3 * [""] + 4 * [waves]
+numbers
 
 # %%
 # What to try next
@@ -96,4 +99,3 @@ numbers["note"] = 3 * [""] + 4 * [waves]
 # * A second bar of twice the length: it takes the momentum, but the bars stay in contact longer.
 # * A second bar with another density: part of the wave is reflected at the interface.
 # * A faster bar, ``speed = 10``: the strains are no longer small.
-numbers

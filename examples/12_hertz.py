@@ -3,8 +3,8 @@ An aluminium sphere hits a rigid plane: Hertz
 =============================================
 
 An aluminium sphere of 0.1 m touches a rigid plane at 0.2 m/s, the second test of Chung and Ooi for
-codes of discrete elements. Finite elements know nothing of Hertz, and yet give his force, depth and
-time of contact.
+codes of discrete elements. Finite elements know nothing of Hertz, and yet give his force, depth
+and time of contact.
 """
 
 import matplotlib.pyplot as plt
@@ -28,10 +28,11 @@ result
 # %%
 # Hertz' theory
 # -------------
-# The force is F = 4/3 E* √R δ^(3/2), with E* = E/(1 − ν²). The equation of motion is integrated once
-# for the largest depth and numerically for the history. Hertz takes the sphere for a half-space. For
-# a ball of this program that is off by about a third of a/R, the radius of the contact over that of
-# the ball: contacts at a/R = 0.18 are 4.6 to 6 % shorter than his. We take this as the uncertainty.
+# The force is F = 4/3 E* √R δ^(3/2), with E* = E/(1 − ν²). The equation of motion is integrated
+# once for the largest depth and numerically for the history. Hertz takes the sphere for a
+# half-space. For a ball of this program that is off by about a third of a/R, the radius of the
+# contact over that of the ball: contacts at a/R = 0.18 are 4.6 to 6 % shorter than his. We take
+# this as the uncertainty.
 mass, stiff = 4 / 3 * np.pi * radius**3 * density, young / (1 - nu**2)
 deepest = (15 * mass * speed**2 / (16 * stiff * np.sqrt(radius))) ** 0.4
 peak = 4 / 3 * stiff * np.sqrt(radius) * deepest**1.5
@@ -52,6 +53,7 @@ ax.plot(1e6 * (history.t - history.dt / 2 - start), 1e-3 * history.normal_force,
 ax.plot(1e6 * time, 1e-3 * peak * (depth / deepest) ** 1.5, "k--", label="Hertz")
 ax.set(xlabel="time since first contact [µs]", ylabel="force [kN]", xlim=(-20, 800))
 ax.legend()
+plt.show()
 
 # %%
 # Stress
@@ -60,13 +62,14 @@ ax.legend()
 fig, ax = plt.subplots(figsize=(6, 4), layout="constrained")
 result.plot.shapes(ax=ax)
 ax.set(xlim=(-0.006, 0.006), ylim=(-0.001, 0.007))
+plt.show()
 
 # %%
 # Comparison
 # ----------
 # The depth is how far the centre of mass comes down; it is an integral of the velocity, with the
 # error of the peak force.
-down, errors = radius - history.y.min(), result.errors
+down, errors = history.y[0] - history.y.min(), result.errors
 of_depth = down * errors["peak_force"] / result["peak_force"]
 test = "Chung and Ooi 2011, test 2 (Hertz)"
 rows = [
@@ -79,6 +82,7 @@ numbers = pd.DataFrame([(*row, test, "") for row in rows] + [
     ("restitution", "1", result["restitution"], errors["restitution"], 1.0, 0.0,
      "Hertz: no loss", "")],
     columns="quantity unit computed error reference uncertainty source note".split())
+numbers
 
 # %%
 # What to try next
@@ -86,4 +90,3 @@ numbers = pd.DataFrame([(*row, test, "") for row in rows] + [
 # * A slower sphere, ``velocity=(0, -0.002)``: the theory becomes better as the contact shrinks.
 # * A sphere of glass, or of rubber at 8 m/s, where Hertz fails.
 # * Two spheres: ``ff.run("two-balls")``.
-numbers

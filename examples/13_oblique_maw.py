@@ -2,9 +2,9 @@
 A ball hits the plane obliquely: Maw, Barber and Fawcett
 ========================================================
 
-A ball of rubber hits a plane with friction at three angles, in three dimensions. If the ball sticks,
-the contact springs back and the slip after the impact is opposite to the slip before, which no law
-for rigid bodies gives.
+A ball of rubber hits a plane with friction at three angles, in three dimensions. If the ball
+sticks, the contact springs back and the slip after the impact is opposite to the slip before,
+which no law for rigid bodies gives.
 """
 
 import matplotlib.pyplot as plt
@@ -16,9 +16,9 @@ import ffimpact as ff
 # %%
 # The scene
 # ---------
-# The speed along the normal is 0.2 m/s, the coefficient of friction 0.1. The speed v_s along the plane
-# follows from the dimensionless angle ψ = 2 (1 − ν) v_s / (μ (2 − ν) v_n). With ν = 0.45 a rigid plane
-# acts nearly as one of the same rubber, for which the theory is made.
+# The speed along the normal is 0.2 m/s, the coefficient of friction 0.1. The speed v_s along the
+# plane follows from the dimensionless angle ψ = 2 (1 − ν) v_s / (μ (2 − ν) v_n). With ν = 0.45 a
+# rigid plane acts nearly as one of the same rubber, for which the theory is made.
 nu, friction, young, density, radius, normal = 0.45, 0.1, 7e6, 1722.0, 0.05, 0.2
 rubber = ff.NeoHookean(young=young, nu=nu, density=density)
 ratio = 2 * (1 - nu) / (2 - nu)
@@ -40,9 +40,9 @@ runs = {psi: impact(psi) for psi in (1.2, 2.5, 5.0)}
 # %%
 # Theory
 # ------
-# The theory joins Hertz' normal contact with Cattaneo and Mindlin's partial slip. It is the same as a
-# row of independent springs under a parabola, each with Coulomb's law (Popov and Hess 2015). Lengths
-# and speeds are those of a ball with R = E* = m = 1.
+# The theory joins Hertz' normal contact with Cattaneo and Mindlin's partial slip. It is the same
+# as a row of independent springs under a parabola, each with Coulomb's law (Popov and Hess 2015).
+# Lengths and speeds are those of a ball with R = E* = m = 1.
 
 
 def theory(psi):
@@ -64,9 +64,9 @@ def theory(psi):
 # %%
 # Restitution along the plane
 # ---------------------------
-# β is 1 if the slip is fully reversed, 0 if the ball rolls after the impact, and −1 without friction.
-# A rigid ball has β = 0, or slides throughout. An elastic one slides throughout from
-# ψ = 7 · 2 (1 − ν)/(2 − ν) − 1 on.
+# β is 1 if the slip is fully reversed, 0 if the ball rolls after the impact, and −1 without
+# friction. A rigid ball has β = 0, or slides throughout. An elastic one slides throughout from ψ =
+# 7 · 2 (1 − ν)/(2 − ν) − 1 on.
 beta = {psi: -(run["rebound_vx"] + radius * run["rebound_spin"]) / slip
         for psi, (slip, run) in runs.items()}
 bars = {psi: (run.errors["rebound_vx"] + radius * run.errors["rebound_spin"]) / slip
@@ -79,6 +79,7 @@ ax.errorbar(beta.keys(), beta.values(), bars.values(), fmt="o", capsize=3, label
 ax.axhline(0, color="black", linewidth=0.6)
 ax.set(xlabel="angle ψ", ylabel="restitution along the plane β")
 ax.legend()
+plt.show()
 
 # %%
 # Comparison
@@ -98,6 +99,7 @@ for psi, (_, run) in runs.items():
 numbers = pd.DataFrame(
     rows, columns="quantity unit computed error reference uncertainty source note".split()
 )
+numbers
 
 # %%
 # What to try next
@@ -105,4 +107,3 @@ numbers = pd.DataFrame(
 # * A slower ball, ``normal = 0.02``: the contact is smaller, and the theory better.
 # * A spin before the impact, ``spin=(0, 0, 2)``: only the slip of the contact matters.
 # * A golf ball on granite: a friction of 0.18, and angles about 40 degrees.
-numbers

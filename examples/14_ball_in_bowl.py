@@ -15,8 +15,8 @@ import ffimpact as ff
 # %%
 # The scene
 # ---------
-# The ball has a radius of 10 mm, E = 100 MPa, ν = 0.3 and 2500 kg/m³, and comes down at 50 mm/s. The
-# bowls are rigid, with radii of 1.2 to 4 times that of the ball. The last obstacle is a plane.
+# The ball has a radius of 10 mm, E = 100 MPa, ν = 0.3 and 2500 kg/m³, and comes down at 50 mm/s.
+# The bowls are rigid, with radii of 1.2 to 4 times that of the ball. The last obstacle is a plane.
 radius, young, nu, density, speed = 0.01, 1e8, 0.3, 2500.0, 0.05
 material = ff.NeoHookean(young=young, nu=nu, density=density)
 ball = ff.Ball(radius=radius, material=material, position=(0, radius), velocity=(0, -speed))
@@ -27,7 +27,8 @@ def fall(fit):
     obstacle = ff.Plane()
     if np.isfinite(fit):
         obstacle = ff.Bowl(centre=(0, fit * radius), radius=fit * radius)
-    return ff.run(ff.Scene(bodies=[ball], obstacles=[obstacle], title="ball in bowl"), accuracy=0.01)
+    scene = ff.Scene(bodies=[ball], obstacles=[obstacle], title="ball in bowl")
+    return ff.run(scene, accuracy=0.01)
 
 
 runs = {fit: fall(fit) for fit in (1.2, 1.5, 2.0, 4.0, np.inf)}
@@ -39,13 +40,14 @@ runs[1.2]
 # The ball in the closest bowl at the largest force.
 fig, ax = plt.subplots(figsize=(6, 4), layout="constrained")
 runs[1.2].plot.shapes(ax=ax)
+plt.show()
 
 # %%
 # Theory
 # ------
-# Hertz' formulas hold with 1/R = 1/R₁ − 1/R₂, R₁ the radius of the ball and R₂ that of the bowl. They
-# take both for parabolas and the ball for a half-space. A ball on a plane differs from that by about
-# a third of a/R₁, a the radius of the contact, and we take this share as the uncertainty.
+# Hertz' formulas hold with 1/R = 1/R₁ − 1/R₂, R₁ the radius of the ball and R₂ that of the bowl.
+# They take both for parabolas and the ball for a half-space. A ball on a plane differs from that
+# by about a third of a/R₁, a the radius of the contact, and we take this share as the uncertainty.
 mass, stiff = 4 / 3 * np.pi * radius**3 * density, young / (1 - nu**2)
 
 
@@ -70,6 +72,7 @@ ax.errorbar(list(runs)[:-1], times[:-1], bars[:-1], fmt="o", capsize=3, label="c
 ax.errorbar([5], times[-1:], bars[-1:], fmt="s", capsize=3, label="computed, plane")
 ax.set(xlabel="radius of the bowl over that of the ball", ylabel="contact time [ms]")
 ax.legend()
+plt.show()
 
 # %%
 # Comparison
@@ -84,6 +87,7 @@ for fit, run in runs.items():
 numbers = pd.DataFrame(
     rows, columns="quantity unit computed error reference uncertainty source note".split()
 )
+numbers
 
 # %%
 # What to try next
@@ -91,4 +95,3 @@ numbers = pd.DataFrame(
 # * A fit of 1.05: contact over a wide area, where the parabolas of Hertz end.
 # * A faster ball, 5 m/s.
 # * ``ff.run("disc-bowl")``: a disc rolls down the wall of a bowl.
-numbers
