@@ -56,9 +56,9 @@ plt.show()
 # Comparison
 # ----------
 # The paper prints a time of contact of 0.0048 s. We take a printed number as known to half a unit
-# of its last digit. A penalty of 10⁹ Pa/m gives that time: the paper may have had a contact as soft
-# as this. NGSolve and GetFEM agree with each other for ν = 0.45 and a penalty of 10¹⁰ Pa/m. The
-# energy is exact: half the mass times the square of the speed.
+# of its last digit. A penalty of 10⁹ Pa/m gives that time: the paper may have had a contact as
+# soft as this. NGSolve and GetFEM agree with each other for ν = 0.45 and a penalty of 10¹⁰ Pa/m.
+# The energy is exact: half the mass times the square of the speed.
 soft = ff.sweep("disc-normal", {"penalty": [1e9]}).results[0]
 energy = 0.5 * np.pi * radius**2 * density * speed**2
 peers, errors = "NGSolve and GetFEM, converged", result.errors

@@ -44,11 +44,11 @@ plt.show()
 # --------------------
 # At 60 degrees the disc sticks nearly from the beginning and slides at the end. At 30 degrees it
 # slides first and sticks during the last third, as the paper describes it.
-touching, sticks = {}, {}
+sticks = {}
 fig, ax = plt.subplots(figsize=(6, 4), layout="constrained")
 for angle, result in ((60, steep), (30, flat)):
     force = result.history.normal_force
-    rows = touching[angle] = result.history[force > 0.01 * force.max()]
+    rows = result.history[force > 0.01 * force.max()]
     sticks[angle] = rows.dt[rows.sliding_fraction < 0.5].sum() / rows.dt.sum()
     ax.plot(1e3 * rows.t, rows.sliding_fraction, label=f"{angle} degrees to the plane")
 ax.set(xlabel="time [ms]", ylabel="share of the normal load that slides")

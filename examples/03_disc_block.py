@@ -55,8 +55,9 @@ plt.show()
 # %%
 # Comparison
 # ----------
-# Momentum and energy are exact. For the neo-Hookean law there are two runs of NGSolve. We take the
-# finer one as known to the difference between them. Figure 9 of the paper prints no numbers.
+# Momentum and energy are kept exactly. For the neo-Hookean law there are two runs of NGSolve. We
+# take the finer one as known to the difference between them. Figure 9 of the paper prints no
+# numbers.
 mass, block, speed = 1722 * np.pi * 0.5**2, 1722 * 10 * 2.0, 10.0
 peer = "NGSolve, finer of two meshes"
 rows = []

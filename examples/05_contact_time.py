@@ -16,9 +16,9 @@ import ffimpact as ff
 # The sweep
 # ---------
 # Figures 6b and 8 of the paper are curves of the time of contact over the speed, for the laws of
-# St. Venant-Kirchhoff (SVK) and neo-Hooke. We run seven speeds with each. With SVK there is no
-# answer at 12 m/s: the material breaks down, and the row of the table says where. The sweeps of
-# ``make paper`` have 59 speeds and two Poisson's ratios.
+# St. Venant-Kirchhoff (SVK) and the neo-Hookean one. We run seven speeds with each. With SVK there
+# is no answer at 12 m/s: the material breaks down, and the row of the table says where. The sweeps
+# of ``make paper`` have 59 speeds and two Poisson's ratios.
 speeds = [0.5, 1, 2, 4, 6, 8, 12]
 study = ff.sweep("disc-normal", {"law": ["svk", "neohookean"], "speed": speeds}, accuracy=0.01)
 table = study.table.assign(error=[run.errors["contact_time"] if run else np.nan

@@ -92,7 +92,8 @@ def measured(result, p):
     early, late = loaded[loaded < 2.5], loaded[loaded > 2.5]
     middle = (t > begin + 0.1 * (end - begin)) & (t < end - 0.1 * (end - begin))
     mean = np.average(p[middle], weights=dt[middle])
-    return early.min(), early.max(), late.min(), late.max(), mean, np.sum((p * dt)[t < 2.5])
+    impulse = np.sum((p * dt)[t < 2.5])
+    return np.array([early.min(), early.max(), late.min(), late.max(), mean, impulse])
 
 
 names = ["first contact begins", "first contact ends", "second contact begins",

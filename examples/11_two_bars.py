@@ -78,8 +78,8 @@ def measured(result, p):
     t, last = h.t - h.dt / 2, h.iloc[-1]
     loaded, middle = t[p > plateau / 2], (t > 0.12) & (t < 0.28)
     energies = [last[f"kinetic_{k}"] + last[f"elastic_{k}"] for k in (1, 2)]
-    return (loaded.min(), loaded.max(), np.average(p[middle], weights=h.dt[middle]), last.vx_1,
-            last.vx_2, *(energies / h.kinetic[0]))
+    mean, shares = np.average(p[middle], weights=h.dt[middle]), energies / h.kinetic[0]
+    return np.array([loaded.min(), loaded.max(), mean, last.vx_1, last.vx_2, *shares])
 
 
 names = ["contact begins", "contact ends", "pressure in the middle of the contact",

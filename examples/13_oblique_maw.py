@@ -65,8 +65,8 @@ def theory(psi):
 # Restitution along the plane
 # ---------------------------
 # β is 1 if the slip is fully reversed, 0 if the ball rolls after the impact, and −1 without
-# friction. A rigid ball has β = 0, or slides throughout. An elastic one slides throughout from ψ =
-# 7 · 2 (1 − ν)/(2 − ν) − 1 on.
+# friction. A rigid ball has β = 0, or slides throughout. An elastic one slides throughout beyond ψ
+# = 14 (1 − ν)/(2 − ν) − 1.
 beta = {psi: -(run["rebound_vx"] + radius * run["rebound_spin"]) / slip
         for psi, (slip, run) in runs.items()}
 bars = {psi: (run.errors["rebound_vx"] + radius * run.errors["rebound_spin"]) / slip
