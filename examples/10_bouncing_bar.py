@@ -113,4 +113,4 @@ numbers
 # ----------------
 # * More elements: the fronts become steeper.
 # * ``end_time=50``: does the bar still bounce with the same period of 16/3?
-# * The gravity and height of the benchmark itself, where strains are one per cent.
+# * The gravity and height of the benchmark itself, where strains are a third.

@@ -16,7 +16,7 @@ import ffimpact as ff
 # %%
 # The scene
 # ---------
-# The sphere is a body of revolution. Its contact is 5 mm wide, a fortieth of its diameter, so that
+# The sphere is a body of revolution. Its contact is 4.5 mm wide, 2 % of its diameter, so that
 # elements near the contact are much smaller than elsewhere.
 radius, speed, young, nu, density = 0.1, 0.2, 70e9, 0.3, 2699.0
 aluminium = ff.NeoHookean(young=young, nu=nu, density=density)
@@ -67,8 +67,8 @@ plt.show()
 # %%
 # Comparison
 # ----------
-# The depth is how far the centre of mass comes down; it is an integral of the velocity, with the
-# error of the peak force.
+# The depth is how far the centre of mass comes down; its relative error is taken as that of the
+# peak force.
 down, errors = history.y[0] - history.y.min(), result.errors
 of_depth = down * errors["peak_force"] / result["peak_force"]
 test = "Chung and Ooi 2011, test 2 (Hertz)"
