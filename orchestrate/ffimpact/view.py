@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,14 +14,24 @@ from .output import vtu
 if TYPE_CHECKING:
     from .result import Result
 
-__all__ = ["view"]
+__all__ = ["Player", "view"]
 
 SECONDS = 5.0  # that the animation takes
 
 
+class Player:
+    """An animation that notebooks and pages of a gallery show, without a network; `plot` is its k3d plot."""
+
+    def __init__(self, plot: Any):
+        self.plot = plot
+
+    def _repr_html_(self) -> str:
+        page = escape(self.plot.get_snapshot())
+        return f'<iframe srcdoc="{page}" style="width: 100%; height: 480px; border: 0"></iframe>'
+
+
 def view(result: Result, path: str | Path | None = None, field: str = "von_mises") -> Any:
-    """The deforming bodies over time with a field of the states: a k3d plot, or `path`, the
-    HTML file that was written.
+    """The deforming bodies over time with a field of the states: a Player, or `path`, the HTML file that was written.
 
     The time of the player is that of the run, slowed down so that all of it takes some seconds.
     """
@@ -62,7 +73,7 @@ def view(result: Result, path: str | Path | None = None, field: str = "von_mises
     plot.camera = [*(centre + [0, 0, 1.6 * size]), *centre, 0, 1, 0]
     plot.fps = 25
     if path is None:
-        return plot
+        return Player(plot)
     path = Path(path)
     path.write_text(plot.get_snapshot(), "utf-8")
     return path
