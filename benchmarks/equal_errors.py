@@ -15,7 +15,7 @@ from ffimpact.progress import in_turn
 from ffimpact.sweeps import study
 from verification import commands
 
-from . import peers
+from . import page, peers
 
 LEVELS = (1.0, 0.5, 0.1)    # % of error
 LIMIT = 1200.0              # seconds a run may take
@@ -126,17 +126,35 @@ def main(argv: list[str]) -> int:
         if name not in CASES:
             parser.error(unknown(name, CASES, ", "))
     freefem.find()      # which builds the kernels where there are none, outside all times
-    tables, texts, agreed, ratios = [], [], {}, {}
+    tables, references, texts, agreed, ratios = [], [], [], {}, {}
     for name in in_turn("equal-errors", options.cases):
         rows, reference = measure(CASES[name])
         tables.append(rows.assign(case=name))
+        references.append(reference.assign(case=name))
         texts.append(text(CASES[name], rows, reference))
         agreed[name], ratios[name] = not reference.empty and bool(reference.agree.all()), beside(rows)
     study.save(pd.concat(tables), options.out / "equal-errors.csv")
     report = "\n\n".join([HEAD.format(repeats=REPEATS, long=LONG), *texts, verdict(agreed, ratios)])
     print(report + f"\n\n{shown(options.out)}/equal-errors.csv")
-    commands.page(options.page, "Run time at equal errors", ["equal-errors", *argv], report)
+    page.write(options.page, "Run time at equal errors", ["equal-errors", *argv], verdict(agreed, ratios).partition(" The quickest other")[0],
+               in_files(tables, references, ratios), ["ratios"])
     return 0 if all(agreed.values()) else 1
+
+
+
+def in_files(tables: list[pd.DataFrame], references: list[pd.DataFrame], ratios: dict[str, dict[float, tuple[float, float]]]) -> page.Tables:
+    """The tables of the page: all settings; what each program needs for a level; the quickest other over ours; the references."""
+    rows = pd.concat(tables).rename(columns=SECONDS)
+    first = ["case", "program", "setting", "dofs", "steps", *SECONDS.values()]
+    answers = [name for name in rows if name.endswith(" %")]
+    best = [{"case": one["case"].iloc[0], "program": program, "level %": level, "march": row.cpu_seconds, "process": row.process_seconds,
+             "setting": row.setting}
+            for one in tables for program in one.program.unique() for level in LEVELS if (row := safe(one, program, level)) is not None]
+    quicker = [{"case": name} | {f"{level:g} %, {kind}": pair[k] for level, pair in of.items() for k, kind in enumerate(("march", "process"))}
+               for name, of in ratios.items()]
+    found = {"": rows.reindex(columns=[*first, *answers, "error", "message"]), "levels": pd.DataFrame(best), "ratios": pd.DataFrame(quicker)}
+    agreeing = pd.concat(references)
+    return found | ({"references": agreeing[["case", *agreeing.columns.drop("case")]]} if len(agreeing) else {})
 
 
 # ---- the measurement

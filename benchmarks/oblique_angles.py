@@ -34,6 +34,8 @@ from verification.oblique_ball import (
 )
 from verification.rigid_disc import STIFF
 
+from . import page
+
 INERTIA = {"disc": 2.0, "ball": 2.5}                      # R^2/k^2, k the radius of gyration; the scenes are <body>-oblique
 BASE = {"law": "neohookean", "nu": NU, "fields": 0}
 PAPER = {"young": YOUNG, "density": DENSITY, "radius": RADIUS}
@@ -73,7 +75,9 @@ def main(argv: list[str]) -> int:
     cases = in_turn("oblique-angles", itertools.product(bodies, kinds))
     table = judge(pd.concat([impacts(body, kind, friction[0], angles, out) for body, kind in cases], ignore_index=True))
     draw(table, out / "oblique-angles.png")
-    return commands.finish(options, table, report(table), holds(table), argv, "Disc and ball over the angle of incidence", "{csv,png}")
+    first = ["body", "kind", "friction"]
+    tables = {"": table[[*first, *[name for name in FORMATS if name not in first], "e_error", "along_error"]]}
+    return page.finish(options, table, report(table), holds(table), argv, "Disc and ball over the angle of incidence", tables, files="{csv,png}")
 
 
 def numbers(name: str, text: str, low: float, high: float) -> list[float]:
