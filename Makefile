@@ -75,16 +75,17 @@ movie: CASE := disc-oblique
 movie: $(READY) ## a film of a scene, built in or a file: make movie CASE=disc-oblique
 	@$(PYTHON) -m ffimpact $@ "$(CASE)" $(ARGS)
 
-docs: $(READY) ## a site of README and docs/: results/site/html (installs MkDocs with its theme)
-	@$(PYTHON) -m pip install -q --disable-pip-version-check "mkdocs>=1.6,<2" "mkdocs-material>=9.5,<10"
-	@$(PYTHON) docs/pages.py --site results/site/docs
-	@NO_MKDOCS_2_WARNING=1 $(PYTHON) -m mkdocs build -q -s && echo "results/site/html/index.html"
+docs: .venv/.docs ## the documentation as a site, with the gallery of examples: results/site/html (ARGS="-D plot_gallery=0": without running them)
+	@$(PYTHON) docs/pages.py >/dev/null
+	@$(PYTHON) -m sphinx -q -W --keep-going -d results/site/doctrees docs results/site/html $(ARGS) && echo "results/site/html/index.html"
 
-pictures: disc-normal disc-oblique ## the README's pictures, drawn again from the present runs
-	@$(PYTHON) -c "from PIL import Image; from pathlib import Path; from ffimpact.report import drawing; \
-	runs = {'disc-normal': ('shapes', 'picture.png'), 'disc-oblique': ('flight', 'picture-oblique.png')}; \
-	[(drawing.draw(run := Path('results', name)), \
-	Image.open(run / f'figures/{figure}.png').convert('RGB').quantize(256).save(picture, optimize=True)) for name, (figure, picture) in runs.items()]"
+.venv/.docs: $(READY) pyproject.toml
+	@$(PYTHON) -m pip install -q --disable-pip-version-check -e ".[docs]"
+	@touch $@
+
+pictures: disc-normal disc-oblique ## the pictures of README.md and docs/index.md, drawn again from the present runs
+	@$(PYTHON) -m ffimpact movie disc-oblique --frames 40 --format gif
+	@$(PYTHON) docs/pictures.py
 
 CHECKED := $(addprefix orchestrate/ffimpact/,__init__.py api.py model.py plot.py result.py schema.py view.py \
   input/flags.py input/parameter.py input/table.py)

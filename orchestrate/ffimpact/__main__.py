@@ -102,7 +102,7 @@ def _parser() -> argparse.ArgumentParser:
     command = commands.add_parser("kernels", help="print the word that a FreeFem++ of your own needs to load the compiled kernels")
     command.set_defaults(command=_kernels)
     command = commands.add_parser("figures", help="draw the figures of a result folder again")
-    command.add_argument("folder", metavar="DIR", type=Path)
+    command.add_argument("folder", metavar="DIR", type=Path, help="the result folder")
     command.set_defaults(command=_figures)
     for name in OWN_MAIN:                              # for the list of what is accepted; main() calls them itself
         commands.add_parser(name, help=HELP[name])

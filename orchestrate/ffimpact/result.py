@@ -66,7 +66,7 @@ OF_ITSELF = (
 
 
 class Result:
-    """The finished run in a folder. result["impulse"] is a number of its summary, SI units (docs/results.md lists them all).
+    """The finished run in a folder. result["impulse"] is a number of its summary, SI units (docs/reference/results.md lists them all).
 
     `reused` says whether the run was there already.
     """
