@@ -9,7 +9,18 @@ import pandas as pd
 from matplotlib.axis import Axis
 from matplotlib.ticker import LogLocator, NullFormatter, NullLocator
 
-from ffimpact.report.figures import ABOVE, BLACK, BLUE, DASHED, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE, save
+from ffimpact.report.figures import (
+    BLACK,
+    BLUE,
+    DASHED,
+    GREEN,
+    GREY,
+    LAWS,
+    ORANGE,
+    PURPLE,
+    STYLE,
+    save,
+)
 
 Tables = Mapping[str, pd.DataFrame]     # by the name of their file behind that of the page; "" is the main one
 FIXED = {"svg.hashsalt": "ffimpact", "svg.fonttype": "none"}     # the same file from the same numbers, letters as text

@@ -12,8 +12,6 @@ ROOT = HERE.parent
 sys.path[:0] = [str(ROOT / "orchestrate"), str(HERE), str(ROOT)]
 os.environ.setdefault("MPLBACKEND", "Agg")
 
-from docutils import nodes  # noqa: E402
-
 import ffimpact  # noqa: E402
 import pages  # noqa: E402
 from ffimpact.input import models  # noqa: E402

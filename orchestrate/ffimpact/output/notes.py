@@ -29,7 +29,7 @@ NUMBERS = {"penalty": "max_penetration", "locking": "peak_force", "corner": "min
 
 
 def name(sentence: str) -> str:
-    """By which a sentence is known (docs/warnings.md)."""
+    """By which a sentence is known (docs/reference/warnings.md)."""
     return sentence.partition(":")[0]
 
 
