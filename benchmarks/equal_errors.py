@@ -1,6 +1,7 @@
 """Who takes how long at equal errors: five impacts by this program and, where they are installed (peers.py), by NGSolve and GetFEM,
 from coarse to fine settings; processor seconds of the march and of the whole process for 1, 0.5 and 0.1 %."""
 
+import itertools
 import math
 from dataclasses import dataclass, field
 from typing import Any
@@ -136,25 +137,38 @@ def main(argv: list[str]) -> int:
     study.save(pd.concat(tables), options.out / "equal-errors.csv")
     report = "\n\n".join([HEAD.format(repeats=REPEATS, long=LONG), *texts, verdict(agreed, ratios)])
     print(report + f"\n\n{shown(options.out)}/equal-errors.csv")
-    page.write(options.page, "Run time at equal errors", ["equal-errors", *argv], verdict(agreed, ratios).partition(" The quickest other")[0],
+    page.write(options.page, "Run time at equal errors", ["equal-errors", *argv],
+               verdict(agreed, ratios).partition(" The quickest other")[0],
                in_files(tables, references, ratios), ["ratios"])
     return 0 if all(agreed.values()) else 1
 
 
 
-def in_files(tables: list[pd.DataFrame], references: list[pd.DataFrame], ratios: dict[str, dict[float, tuple[float, float]]]) -> page.Tables:
-    """The tables of the page: all settings; what each program needs for a level; the quickest other over ours; the references."""
+def in_files(tables: list[pd.DataFrame], references: list[pd.DataFrame],
+             ratios: dict[str, dict[float, tuple[float, float]]]) -> page.Tables:
+    """The tables of the page: all settings, the cheapest of each program for each level, the time of
+    the quickest other program over ours, and the references."""
     rows = pd.concat(tables).rename(columns=SECONDS)
     first = ["case", "program", "setting", "dofs", "steps", *SECONDS.values()]
     answers = [name for name in rows if name.endswith(" %")]
-    best = [{"case": one["case"].iloc[0], "program": program, "level %": level, "march": row.cpu_seconds, "process": row.process_seconds,
-             "setting": row.setting}
-            for one in tables for program in one.program.unique() for level in LEVELS if (row := safe(one, program, level)) is not None]
-    quicker = [{"case": name} | {f"{level:g} %, {kind}": pair[k] for level, pair in of.items() for k, kind in enumerate(("march", "process"))}
-               for name, of in ratios.items()]
-    found = {"": rows.reindex(columns=[*first, *answers, "error", "message"]), "levels": pd.DataFrame(best), "ratios": pd.DataFrame(quicker)}
+    best = []
+    for one in tables:
+        for program, level in itertools.product(one.program.unique(), LEVELS):
+            if (row := safe(one, program, level)) is not None:
+                best.append({"case": one["case"].iloc[0], "program": program, "level %": level,
+                             "march": row.cpu_seconds, "process": row.process_seconds, "setting": row.setting})
+    quicker = []
+    for name, levels in ratios.items():
+        row = {"case": name}
+        for level, (march, process) in levels.items():
+            row |= {f"{level:g} %, march": march, f"{level:g} %, process": process}
+        quicker.append(row)
+    found = {"": rows.reindex(columns=[*first, *answers, "error", "message"]),
+             "levels": pd.DataFrame(best), "ratios": pd.DataFrame(quicker)}
     agreeing = pd.concat(references)
-    return found | ({"references": agreeing[["case", *agreeing.columns.drop("case")]]} if len(agreeing) else {})
+    if agreeing.empty:
+        return found
+    return found | {"references": agreeing[["case", *agreeing.columns.drop("case")]]}
 
 
 # ---- the measurement

@@ -76,8 +76,9 @@ def main(argv: list[str]) -> int:
     table = judge(pd.concat([impacts(body, kind, friction[0], angles, out) for body, kind in cases], ignore_index=True))
     draw(table, out / "oblique-angles.png")
     first = ["body", "kind", "friction"]
-    tables = {"": table[[*first, *[name for name in FORMATS if name not in first], "e_error", "along_error"]]}
-    return page.finish(options, table, report(table), holds(table), argv, "Disc and ball over the angle of incidence", tables, files="{csv,png}")
+    columns = [*first, *(name for name in FORMATS if name not in first), "e_error", "along_error"]
+    return page.finish(options, table, report(table), holds(table), argv,
+                       "Disc and ball over the angle of incidence", {"": table[columns]}, files="{csv,png}")
 
 
 def numbers(name: str, text: str, low: float, high: float) -> list[float]:

@@ -28,7 +28,8 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--laws", metavar="LAW", nargs="+", default=LAWS, choices=LAWS, help="of the bodies (default: all)")
     options = parser.parse_args(argv)
     table = compare(options.laws, options.out)
-    return page.finish(options, table, report(table), holds(table), argv, "Closest points and pairs of points", {"": table[list(FORMATS)]})
+    return page.finish(options, table, report(table), holds(table), argv,
+                       "Closest points and pairs of points", {"": table[list(FORMATS)]})
 
 
 def solve(points: list[study.Point], base: study.Point, out: Path) -> list[dict]:

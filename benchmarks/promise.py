@@ -64,7 +64,8 @@ def main(argv: list[str]) -> int:
             "where faces strike flat" if options.flat else "of what is held, loaded or rigid"))
     good = silent(table) == 0 if options.hard else kept(table) and covered(table)
     text = report(table) + f"; {'the requirement' if options.hard else 'the promise'} {'is kept' if good else 'IS NOT KEPT'}"
-    title = ("Hard scenes" if options.hard else "Coverage of the error estimates") + (f" of {options.of}" if options.of else "")
+    title = "Hard scenes" if options.hard else "Coverage of the error estimates"
+    title += f" of {options.of}" if options.of else ""
     tables = {"": shown_in(table), "stated": cover(table)}
     return page.finish(options, table, text, good, argv, title, tables, ["stated"])
 
@@ -73,7 +74,8 @@ def shown_in(table: pd.DataFrame) -> pd.DataFrame:
     """Of compare() what the page has: promised answers, and whether a scene warns."""
     answers = [each for name in estimate.PROMISED for each in (name, f"{name} stated")]
     found = table.assign(warnings=table.warnings.fillna("").str.len() > 0)
-    return found[["scene", *answers, "error", "estimated", "seconds", "finer seconds", "warnings", "message"]]
+    return found[["scene", *answers, "error", "estimated", "seconds", "finer seconds", "warnings",
+                  "message"]]
 
 
 def _drawn(options: Namespace, seed: int, count: int) -> list[Drawn]:
@@ -97,7 +99,8 @@ def _finish_parts(options: Namespace, table: pd.DataFrame, part: pd.Series, argv
     text = "\n".join([f"Stated errors of {len(table.error.dropna())} scenes: share of the cases within them (wanted: {KEPT:.0%} of each), "
                       "how many times too large they are in the median", "", study.table(found, COVER), "",
                       f"stated errors {'hold' if good else 'DO NOT HOLD'}"])
-    return page.finish(options, table, text, good, argv, title, {"": shown_in(table), "stated": found}, ["stated"])
+    tables = {"": shown_in(table), "stated": found}
+    return page.finish(options, table, text, good, argv, title, tables, ["stated"])
 
 
 def compare(drawn: list[Drawn], out: Path) -> pd.DataFrame:

@@ -39,8 +39,8 @@ def main(argv: list[str]) -> int:
     beside = [row for body in BODIES for row in peer(body)]
     text = report(table, beside)
     tables = {"": table[list(FORMATS)]} | ({"ngsolve": pd.DataFrame(beside)} if beside else {})
-    return page.finish(options, table, text, holds(table) and agrees(beside), argv, "Rubber: nu to 0.5", tables, list(tables)[1:],
-                       "csv, .png")
+    return page.finish(options, table, text, holds(table) and agrees(beside), argv,
+                       "Rubber: nu to 0.5", tables, list(tables)[1:], "csv, .png")
 
 
 def compare(nus: list[float], limit: float, out: Path) -> pd.DataFrame:

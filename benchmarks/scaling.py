@@ -68,8 +68,8 @@ def main(argv: list[str]) -> int:
                f"{MOST_OVER_FLOOR} times its floor.")
     table = pd.concat(rows)
     tables = {"": table[["case", *table.columns.drop("case")]], "exponents": pd.DataFrame(slopes)}
-    return page.finish(options, table, "\n\n".join([*texts, verdict]), good, argv, "Time and memory over the number of unknowns",
-                       tables, ["exponents"])
+    return page.finish(options, table, "\n\n".join([*texts, verdict]), good, argv,
+                       "Time and memory over the number of unknowns", tables, ["exponents"])
 
 
 def _row(case: Case, finer: float, out: Path) -> dict:

@@ -56,7 +56,8 @@ def main(argv: list[str]) -> int:
     tables = [make(options.out) for make in in_turn("viscoelastic", (balls, discs))]
     draw(*tables, options.out / "viscoelastic.png")
     shown = {"": tables[0][list(BALL_FORMATS)], "disc": tables[1][list(DISC_FORMATS)]}
-    return page.finish(options, pd.concat(tables), report(*tables), holds(*tables), argv, "Damped impacts", shown, files="{csv,png}")
+    return page.finish(options, pd.concat(tables), report(*tables), holds(*tables), argv,
+                       "Damped impacts", shown, files="{csv,png}")
 
 
 # ---- theory

@@ -1,4 +1,7 @@
-"""The documentation as a site: `make docs`. Pages are MyST Markdown; the gallery is made from examples/NN_*.py."""
+"""The documentation as a site: `make docs`.
+
+Pages are MyST Markdown; the gallery is made from examples/NN_*.py.
+"""
 
 import inspect
 import os
@@ -19,11 +22,23 @@ from ffimpact.input import models  # noqa: E402
 project, author, copyright = "ffimpact", "the ffimpact authors", "the ffimpact authors"
 version = release = ffimpact.__version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.autosummary", "sphinx.ext.mathjax", "sphinx_design", "sphinx_copybutton",
-              "sphinx_gallery.gen_gallery"]
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "sphinx.ext.mathjax",
+    "sphinx_design",
+    "sphinx_copybutton",
+    "sphinx_gallery.gen_gallery",
+]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
-exclude_patterns = [page.name for page in HERE.glob("*.md") if page.name != "index.md"]     # every other page is in a folder
-suppress_warnings = ["toc.empty_glob", "config.cache"]      # a folder that has no page yet; settings that are functions
+exclude_patterns = [
+    page.name for page in HERE.glob("*.md") if page.name != "index.md"
+]  # every other page is in a folder
+suppress_warnings = [
+    "toc.empty_glob",
+    "config.cache",
+]  # a folder that has no page yet; settings that are functions
 
 myst_enable_extensions = ["colon_fence", "deflist", "dollarmath", "fieldlist"]
 myst_heading_anchors = 3
@@ -43,23 +58,45 @@ html_show_sourcelink = False
 html_copy_source = False
 html_sidebars = {"index": []}
 html_theme_options = {
-    "navigation_with_keys": False, "show_prev_next": False, "header_links_before_dropdown": 6, "navbar_align": "left",
-    "navbar_persistent": [], "navbar_end": ["search-button-field", "theme-switcher"],
-    "secondary_sidebar_items": {"**": ["page-toc"], "index": []}, "footer_start": ["copyright"], "footer_end": [],
-    "pygments_light_style": "tango", "back_to_top_button": True}
+    "navigation_with_keys": False,
+    "show_prev_next": False,
+    "header_links_before_dropdown": 6,
+    "navbar_align": "left",
+    "navbar_persistent": [],
+    "navbar_end": ["search-button-field", "theme-switcher"],
+    "secondary_sidebar_items": {"**": ["page-toc"], "index": []},
+    "footer_start": ["copyright"],
+    "footer_end": [],
+    "pygments_light_style": "tango",
+    "back_to_top_button": True,
+}
 
 sphinx_gallery_conf = {
-    "examples_dirs": [str(ROOT / "examples")], "gallery_dirs": ["gallery"],
-    "filename_pattern": r"[/\\][0-9][0-9]_[^/\\]*\.py$", "ignore_pattern": r"(^|[/\\])(?![0-9][0-9]_)[^/\\]*\.py$",
-    "within_subsection_order": "FileNameSortKey", "abort_on_example_error": True, "parallel": 2 if find_spec("joblib") else False,
-    "backreferences_dir": None, "capture_repr": ("_repr_html_", "__repr__"), "download_all_examples": False, "show_signature": False,
-    "show_memory": False, "min_reported_time": 1e9, "remove_config_comments": True, "matplotlib_animations": True,
-    "nested_sections": False}
+    "examples_dirs": [str(ROOT / "examples")],
+    "gallery_dirs": ["gallery"],
+    "filename_pattern": r"[/\\][0-9][0-9]_[^/\\]*\.py$",
+    "ignore_pattern": r"(^|[/\\])(?![0-9][0-9]_)[^/\\]*\.py$",
+    "within_subsection_order": "FileNameSortKey",
+    "abort_on_example_error": True,
+    "parallel": 2 if find_spec("joblib") else False,
+    "backreferences_dir": None,
+    "capture_repr": ("_repr_html_", "__repr__"),
+    "download_all_examples": False,
+    "show_signature": False,
+    "show_memory": False,
+    "min_reported_time": 1e9,
+    "remove_config_comments": True,
+    "matplotlib_animations": True,
+    "nested_sections": False,
+}
 
 
 # ---- links to files of the program, which are no pages: their words
 
-FILES = re.compile(r"\[([^]\n]+)\]\((?:\.\./)*(?:edp|orchestrate|verification|benchmarks|examples|tests|LICENSE|CITATION)[^)\s]*\)")
+FILES = re.compile(
+    r"\[([^]\n]+)\]\((?:\.\./)*"
+    r"(?:edp|orchestrate|verification|benchmarks|examples|tests|LICENSE|CITATION)[^)\s]*\)"
+)
 
 
 def plain_links(app, name: str, source: list[str]) -> None:
@@ -68,6 +105,7 @@ def plain_links(app, name: str, source: list[str]) -> None:
 
 
 # ---- classes of the Python interface
+
 
 def signature(app, what: str, name: str, one: object, options, found: str, returns: str):
     """Of a table of a scene the entries that are needed; what is left open follows in the table."""
@@ -93,11 +131,14 @@ def literal(line: str) -> str:
     parts = re.split(r"(`+[^`]*`+)", line)
     if line == "-":
         return r"\-"
-    return "".join(part if k % 2 else re.sub(r"([*|]|(?<=\w)_(?=\W|$))", r"\\\1", part) for k, part in enumerate(parts))
+    return "".join(
+        part if k % 2 else re.sub(r"([*|]|(?<=\w)_(?=\W|$))", r"\\\1", part)
+        for k, part in enumerate(parts)
+    )
 
 
 def entries(model: type[models.Entries]) -> list[str]:
-    """A table of the entries of a model: those that its base does not have, and a link to the base."""
+    """A table of the entries of a model that its base does not have, and a link to the base."""
     base = model.__mro__[1]
     common = base.model_fields if base in pages.BASES.values() else {}
     lines = [".. list-table::", "   :header-rows: 1", "   :widths: 22 10 24 44", ""]
@@ -105,14 +146,38 @@ def entries(model: type[models.Entries]) -> list[str]:
     for name, field in model.model_fields.items():
         told = pages.entry_of(name, field)
         if told and (name not in common or field.is_required() != common[name].is_required()):
-            rows.append((f"``{name}``{', needed' if field.is_required() else ''}", *(literal(each) for each in told)))
+            rows.append(
+                (
+                    f"``{name}``{', needed' if field.is_required() else ''}",
+                    *(literal(each) for each in told),
+                )
+            )
     for row in rows:
         lines += [f"   {'* -' if k == 0 else '  -'} {each}".rstrip() for k, each in enumerate(row)]
     if model is ffimpact.Scene:
-        names = [name for name in model.model_fields if not pages.entry_of(name, model.model_fields[name]) and name != "folder"]
-        lines = [f"Entries: {', '.join(f'``{name}``' for name in names)}, and those in the table.", "", *lines] if names else lines
+        names = [
+            name
+            for name in model.model_fields
+            if not pages.entry_of(name, model.model_fields[name]) and name != "folder"
+        ]
+        lines = (
+            [
+                f"Entries: {', '.join(f'``{name}``' for name in names)}, and those in the table.",
+                "",
+                *lines,
+            ]
+            if names
+            else lines
+        )
     found = lines if len(rows) > 1 else []
-    return found + (["", f"Further entries: those of `~ffimpact.{base.__name__}`.".replace("`~", ":py:class:`~")] if common else [])
+    return found + (
+        [
+            "",
+            f"Further entries: those of `~ffimpact.{base.__name__}`.".replace("`~", ":py:class:`~"),
+        ]
+        if common
+        else []
+    )
 
 
 def setup(app) -> None:

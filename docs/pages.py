@@ -1,5 +1,8 @@
-"""What the reference says that the program says of itself. Between the marks `<!-- NAME -->` and `<!-- end of NAME -->` of any page stands
-the part NAME: parameters, columns, warnings, exit codes, commands, equations, and the Python interface."""
+"""Generates the parts of pages that the program itself knows.
+
+A part NAME stands between the marks `<!-- NAME -->` and `<!-- end of NAME -->` of any page:
+parameters, columns, warnings, exit codes, commands, equations, and the Python interface.
+"""
 
 import argparse
 import contextlib
@@ -22,33 +25,76 @@ from ffimpact.input import models, parameters
 from ffimpact.input.parameter import Parameter, Rule
 from ffimpact.places import ROOT, shown
 
-TABLES = (("history.csv", "history", ("columns", "body_columns")), ("summary.json", "summary", ("summary", "body_summary")),
-          ("contacts.csv", "contacts", ("contact_columns",)), ("fields/contact.csv", "points", ()))
+TABLES = (
+    ("history.csv", "history", ("columns", "body_columns")),
+    ("summary.json", "summary", ("summary", "body_summary")),
+    ("contacts.csv", "contacts", ("contact_columns",)),
+    ("fields/contact.csv", "points", ()),
+)
 SCRIPTS = ("disc-plane", "disc-block", "ball-axisymmetric", "ball-plane")
 EQUATION = re.compile(r"// ((?:\(\d+\)(?:, |–| ))*\(\d+\))(?::| |$)")
 
 
 KINDS = {"warn": "warning", "note": "note"}
+# with which an advice begins
+VERBS = (
+    "take|compare|round|give|make|end|use|set|run|choose|lower|increase|reduce|raise|check|try|see"
+)
 # what to do where a sentence does not say it
 ADVICE = {
-    "angular momentum": "take integrator=energy-momentum, or a smaller dt", "energy": "take integrator=energy-momentum, or a smaller dt",
-    "momentum": "take integrator=energy-momentum, or a smaller dt", "no contact": "take a larger end_time, or correct position and velocity",
-    "rebound": "take the impulse, or a smaller gravity", "thresholded contact time": "take the error bar as it is, or contact_time"}
+    "angular momentum": "take integrator=energy-momentum, or a smaller dt",
+    "energy": "take integrator=energy-momentum, or a smaller dt",
+    "momentum": "take integrator=energy-momentum, or a smaller dt",
+    "no contact": "take a larger end_time, or correct position and velocity",
+    "rebound": "take the impulse, or a smaller gravity",
+    "thresholded contact time": "take the error bar as it is, or contact_time",
+}
 # of what no call above has the words
-OF_ESTIMATES = "".join(f"| {name} | {kind} | {words} | {advice} |\n" for name, kind, words, advice in (
-    ("chatter", "warning", "the body left and was back within a wave's transit … times in a row (`chatter=continue`)",
-     "take a smaller dt or penalty, or a viscosity"),
-    ("estimated errors", "warning / note", "a warning where a promised answer is off by more than 1.5 times what was "
-     "asked; a note below that, of a contact time that scatters on every mesh, and of the exact contact time and the "
-     "peak force from twice that on", "take a smaller accuracy, or the error bar as it is"),
-    ("touches", "warning / note", "in place of these: the two runs of an estimate have different numbers of "
-     "intervals of contact", "take a smaller accuracy, or answers that do not depend on single touches, as the impulse"),
-    ("mesh of the file", "note", "estimated errors are those of the step alone: the mesh of a file is not varied",
-     "compare with a finer file"),
-    ("no finer run", "warning", "the error is above what was asked, and the run that was to make it smaller failed",
-     "see `log.txt`; take the error bar as it is"),
-    ("the error is not estimated", "warning", "the second run failed, or took the same steps",
-     "take another accuracy and compare")))
+OF_ESTIMATES = "".join(
+    f"| {name} | {kind} | {words} | {advice} |\n"
+    for name, kind, words, advice in (
+        (
+            "chatter",
+            "warning",
+            "the body left and was back within a wave's transit … times in a row "
+            "(`chatter=continue`)",
+            "take a smaller dt or penalty, or a viscosity",
+        ),
+        (
+            "estimated errors",
+            "warning / note",
+            "a warning where a promised answer is off by more than 1.5 times what was "
+            "asked; a note below that, of a contact time that scatters on every mesh, and of the "
+            "exact contact time and the peak force from twice that on",
+            "take a smaller accuracy, or the error bar as it is",
+        ),
+        (
+            "touches",
+            "warning / note",
+            "in place of these: the two runs of an estimate have different numbers of "
+            "intervals of contact",
+            "take a smaller accuracy, or the impulse, which does not depend on single touches",
+        ),
+        (
+            "mesh of the file",
+            "note",
+            "estimated errors are those of the step alone: the mesh of a file is not varied",
+            "compare with a finer file",
+        ),
+        (
+            "no finer run",
+            "warning",
+            "the error is above what was asked, and the run that was to make it smaller failed",
+            "see `log.txt`; take the error bar as it is",
+        ),
+        (
+            "the error is not estimated",
+            "warning",
+            "the second run failed, or took the same steps",
+            "take another accuracy and compare",
+        ),
+    )
+)
 
 
 def main(argv: list[str]) -> int:
@@ -76,22 +122,41 @@ def pages() -> dict[Path, str]:
 
 def entries() -> str:
     """All entries of a scene: table by table, with unit, what is accepted and meaning."""
-    text = "\n## Parameters of a run\nAt the top of a scene file, by `--set name=value`, as flags of the scripts, and in Python.\n"
+    text = "\n## Parameters of a run\nAt the top of a scene file, by `--set name=value`, "
+    text += "as flags of the scripts, and in Python.\n"
     text += "\n| name | unit | default | accepted | meaning |\n|---|---|---|---|---|\n"
     for one in parameters.PARAMETERS.values():
         default = one.default if isinstance(one.default, str) else f"{one.default:g}"
-        text += f"| `{one.name}` | {one.unit} | {default} | {cell(words(one.accepted))} | {cell(one.help)} |\n"
-    text += "\n## Materials\nIn Python `material = NeoHookean(...)` and so on; in a file the same entries in a body's table, or at the top for all bodies.\n\n"
-    text += "".join(f"- `{name}`, `{one.__name__}`: {first_line(one)}\n" for name, one in models.LAWS.items())
-    text += table_of("Bodies", "`[[body]]`, `Body` in Python: what bodies of all shapes have.", models.Body)
+        accepted = cell(words(one.accepted))
+        text += f"| `{one.name}` | {one.unit} | {default} | {accepted} | {cell(one.help)} |\n"
+    text += "\n## Materials\nIn Python `material = NeoHookean(...)` and so on; in a file the same "
+    text += "entries in a body's table, or at the top for all bodies.\n\n"
+    text += "".join(
+        f"- `{name}`, `{one.__name__}`: {first_line(one)}\n" for name, one in models.LAWS.items()
+    )
+    text += table_of(
+        "Bodies", "`[[body]]`, `Body` in Python: what bodies of all shapes have.", models.Body
+    )
     text += kinds("shape", models.BODIES, models.Body)
     text += table_of("Supports", "`[[body.support]]`, `Support`.", models.Support)
-    text += table_of("Loads", "`[[body.load]]`, `Load`: one of traction, pressure and gas.", models.Load)
+    text += table_of(
+        "Loads", "`[[body.load]]`, `Load`: one of traction, pressure and gas.", models.Load
+    )
     text += table_of("Gas", "`gas = {...}` of a load, `Gas`.", models.Gas)
-    text += table_of("Rigid obstacles", "`[[obstacle]]`, `Obstacle`: what obstacles of all kinds have.", models.Obstacle)
+    text += table_of(
+        "Rigid obstacles",
+        "`[[obstacle]]`, `Obstacle`: what obstacles of all kinds have.",
+        models.Obstacle,
+    )
     text += kinds("kind", models.OBSTACLES, models.Obstacle)
     text += table_of("Contact", "`[contact]`, `Contact`: of the whole scene.", models.Contact)
-    return text + table_of("Pairs", "`[[contact.pair]]`, `Pair`: what differs between two partners.", models.Pair) + "\n"
+    return (
+        text
+        + table_of(
+            "Pairs", "`[[contact.pair]]`, `Pair`: what differs between two partners.", models.Pair
+        )
+        + "\n"
+    )
 
 
 def first_line(model: type) -> str:
@@ -101,7 +166,10 @@ def first_line(model: type) -> str:
 
 def table_of(heading: str, words: str, model: type[models.Entries]) -> str:
     """The entries of a model under a heading."""
-    return f"\n## {heading}\n{words}\n\n| name | unit | accepted | meaning |\n|---|---|---|---|\n" + rows(model)
+    return (
+        f"\n## {heading}\n{words}\n\n| name | unit | accepted | meaning |\n|---|---|---|---|\n"
+        + rows(model)
+    )
 
 
 def rows(model: type[models.Entries], but: Collection[str] = (), first: str = "") -> str:
@@ -128,7 +196,8 @@ def kinds(word: str, table: Mapping[str, type], common: type[models.Entries]) ->
     text = f"\n| {word}, entry | unit | accepted | meaning |\n|---|---|---|---|\n"
     for name, model in table.items():
         dimensions = ", ".join(one.name for one in model.dimensions)
-        text += f"| **`{name}`** | | {dimensions} | {cell(first_line(model))} |\n{rows(model, common.model_fields)}"
+        text += f"| **`{name}`** | | {dimensions} | {cell(first_line(model))} |\n"
+        text += rows(model, common.model_fields)
     return text
 
 
@@ -137,46 +206,69 @@ def results() -> str:
     told = [describe_results({}, script) for script in SCRIPTS]
     text, meanings = "", told[0]["meanings"]
     for file, table, lists in TABLES:
-        known = {name: entry for each in reversed(meanings.values()) for name, entry in each.items()} | meanings[table]
-        names = {name: None for each in told for key in lists for name in each[key]} or meanings[table]
+        known = {
+            name: entry for each in reversed(meanings.values()) for name, entry in each.items()
+        } | meanings[table]
+        names = {name: None for each in told for key in lists for name in each[key]} or meanings[
+            table
+        ]
         names |= {name: None for name in meanings[table]}
-        of_body = {name for each in told for key in lists if key.startswith("body") for name in each[key]}
+        of_body = {
+            name for each in told for key in lists if key.startswith("body") for name in each[key]
+        }
         text += f"\n## `{file}`\n| name | unit | meaning |\n|---|---|---|\n"
-        text += "".join(f"| `{name}`{' `_1` …' if name in of_body else ''} | {known[name][0]} | {cell(known[name][1])} |\n"
-                        for name in names)
+        text += "".join(
+            f"| `{name}`{' `_1` …' if name in of_body else ''} | {known[name][0]} | {cell(known[name][1])} |\n"
+            for name in names
+        )
     return text
 
 
 def warnings() -> str:
-    """Every sentence of warnings.idp and estimate.py by its first words: what it says, and what to do."""
+    """Every sentence of warnings.idp and estimate.py by its name: what it says, what to do."""
     rows = {}
     for path in sorted((ROOT / "edp/core").rglob("*.idp")):
         for call in re.finditer(r"\b(warn|note)\((.*?)\);\n", path.read_text(), re.DOTALL):
             sentence = _literal(call[2])
-            rows.setdefault(sentence.partition(":")[0], []).append((call[1], sentence.partition(": ")[2]))
+            rows.setdefault(sentence.partition(":")[0], []).append(
+                (call[1], sentence.partition(": ")[2])
+            )
     found = ""
     for name, told in sorted(rows.items()):
         if told[0][1]:
             said = [split(words) for _, words in told]
             kind = " / ".join(dict.fromkeys(KINDS[each] for each, _ in told))
-            facts, advice = (" / ".join(dict.fromkeys(each[k] for each in said if each[k])) for k in (0, 1))
+            facts, advice = (
+                " / ".join(dict.fromkeys(each[k] for each in said if each[k])) for k in (0, 1)
+            )
             advice = advice or ADVICE.get(name, "")
             found += f"| {name} | {kind} | {cell(facts)} | {cell(advice)} |\n"
     return "| name | kind | what it says | what to do |\n|---|---|---|---|\n" + found + OF_ESTIMATES
 
 
 def split(words: str) -> tuple[str, str]:
-    """The fact and the advice of a sentence: the advice is the last part, behind a colon or a full stop."""
-    parts = re.split(r"(?:: |\. (?=[A-Z]))(?=(?:take|compare|round|give|make|end|use|set|run|choose|lower|increase|reduce|raise|check|try|ask|see|… (?:end|take))\b)",
-                     words, flags=re.IGNORECASE)
+    """The fact and the advice of a sentence; the advice follows a colon or a full stop."""
+    parts = re.split(
+        rf"(?:: |\. (?=[A-Z]))(?=(?:… )?(?:{VERBS})\b)",
+        words,
+        flags=re.IGNORECASE,
+    )
     return (": ".join(parts[:-1]), parts[-1]) if len(parts) > 1 else (words, "")
 
 
 def _literal(expression: str) -> str:
-    """The string literals of an expression of FreeFEM's, what stands between them as an ellipsis."""
+    """The string literals of an expression in FreeFEM, with ellipses between them."""
     parts = re.split(r'"((?:[^"\\]|\\.)*)"', expression.replace("string(", "("))
-    text = "".join(part if k % 2 else ("…" if part.strip(" +()\n") else "") for k, part in enumerate(parts))
-    return re.sub(r"(…\s*)+", "… ", text).replace("… )", "…)").replace("… :", "…:").replace("… ,", "…,").strip()
+    text = "".join(
+        part if k % 2 else ("…" if part.strip(" +()\n") else "") for k, part in enumerate(parts)
+    )
+    return (
+        re.sub(r"(…\s*)+", "… ", text)
+        .replace("… )", "…)")
+        .replace("… :", "…:")
+        .replace("… ,", "…,")
+        .strip()
+    )
 
 
 def equations(prefix: str = "") -> str:
@@ -185,24 +277,42 @@ def equations(prefix: str = "") -> str:
     for path in sorted((ROOT / "edp/core").rglob("*.idp")):
         for number, line in enumerate(path.read_text().splitlines(), 1):
             if match := EQUATION.search(line):
-                if line[:match.start()].strip():                     # code, not prose
-                    found.setdefault(match[1], []).append((path, number, line[match.end():].strip()))
+                if line[: match.start()].strip():  # code, not prose
+                    found.setdefault(match[1], []).append(
+                        (path, number, line[match.end() :].strip())
+                    )
     text = "| equation | line | what stands there |\n|---|---|---|\n"
     for marks, places in sorted(found.items(), key=lambda each: int(re.search(r"\d+", each[0])[0])):
-        links = ", ".join(f"[{path.parent.name}/{path.name}:{number}]({prefix}{path.relative_to(ROOT)}#L{number})"
-                          for path, number, _ in places)
+        links = ", ".join(
+            f"[{path.parent.name}/{path.name}:{number}]({prefix}{path.relative_to(ROOT)}#L{number})"
+            for path, number, _ in places
+        )
         text += f"| {marks} | {links} | {cell('; '.join(words for _, _, words in places))} |\n"
     return text
 
 
 def exit_codes() -> str:
     """What the program's exit codes mean, and the exceptions of Python that they are."""
-    kinds = [one for _, one in inspect.getmembers(failure, inspect.isclass) if issubclass(one, failure.Failure)]
-    rows = [(one.code, f"`{one.__name__}`", first_line(one)) for one in kinds if one is not failure.Failure]
-    rows += [(0, "", "Finished."), (1, f"`{failure.Failure.__name__}`", "A failure of another kind."),
-             (130, "`KeyboardInterrupt`", "Interrupted by Ctrl-C."), (143, "", "Ended by a signal: 128 and the signal's number, 15 of SIGTERM.")]
+    kinds = [
+        one
+        for _, one in inspect.getmembers(failure, inspect.isclass)
+        if issubclass(one, failure.Failure)
+    ]
+    rows = [
+        (one.code, f"`{one.__name__}`", first_line(one))
+        for one in kinds
+        if one is not failure.Failure
+    ]
+    rows += [
+        (0, "", "Finished."),
+        (1, f"`{failure.Failure.__name__}`", "A failure of another kind."),
+        (130, "`KeyboardInterrupt`", "Interrupted by Ctrl-C."),
+        (143, "", "Ended by a signal: 128 and the signal's number, 15 of SIGTERM."),
+    ]
     text = "| exit code | exception | meaning |\n|---:|---|---|\n"
-    return text + "".join(f"| {code} | {name} | {cell(words)} |\n" for code, name, words in sorted(rows))
+    return text + "".join(
+        f"| {code} | {name} | {cell(words)} |\n" for code, name, words in sorted(rows)
+    )
 
 
 def commands() -> str:
@@ -211,10 +321,16 @@ def commands() -> str:
     for name, parser in parsers():
         heading = f"ffimpact {name}".strip()
         text += f"\n## `{heading}`\n\n{sentences(parser.description)}\n"
-        rows = [action for action in parser._actions if not isinstance(action, argparse._HelpAction | argparse._SubParsersAction)]
+        rows = [
+            action
+            for action in parser._actions
+            if not isinstance(action, argparse._HelpAction | argparse._SubParsersAction)
+        ]
         if rows:
             text += "\n| argument | meaning |\n|---|---|\n"
-            text += "".join(f"| {spelled(action)} | {cell(plain(parser, action))} |\n" for action in rows)
+            text += "".join(
+                f"| {spelled(action)} | {cell(plain(parser, action))} |\n" for action in rows
+            )
     return text
 
 
@@ -222,7 +338,9 @@ def parsers() -> Iterator[tuple[str, argparse.ArgumentParser]]:
     """The name and the parser of the program and of every command, with its help as description."""
     whole = command_line._parser()
     yield "", whole
-    listed = next(action for action in whole._actions if isinstance(action, argparse._SubParsersAction))
+    listed = next(
+        action for action in whole._actions if isinstance(action, argparse._SubParsersAction)
+    )
     helps = {one.dest: one.help for one in listed._choices_actions}
     for name, parser in listed.choices.items():
         if name in command_line.OWN_MAIN:
@@ -257,7 +375,13 @@ def sentences(description: str) -> str:
 
 def spelled(action: argparse.Action) -> str:
     """An argument as it is typed."""
-    value = action.metavar if isinstance(action.metavar, str) else "|".join(action.choices) if action.choices else action.dest.upper()
+    value = (
+        action.metavar
+        if isinstance(action.metavar, str)
+        else "|".join(action.choices)
+        if action.choices
+        else action.dest.upper()
+    )
     if action.nargs in ("+", "*"):
         value += " …"
     if not action.option_strings:
@@ -272,9 +396,18 @@ def plain(parser: argparse.ArgumentParser, action: argparse.Action) -> str:
 
 # ---- the Python interface
 
+
 def exports() -> dict[str, list[str]]:
     """The names that the package exports, by the page that has them."""
-    found = {"functions": [], "results": [], "scenes": [], "materials": [], "bodies": [], "obstacles": [], "exceptions": []}
+    found = {
+        "functions": [],
+        "results": [],
+        "scenes": [],
+        "materials": [],
+        "bodies": [],
+        "obstacles": [],
+        "exceptions": [],
+    }
     for name in ffimpact.__all__:
         one = getattr(ffimpact, name)
         if not inspect.isclass(one):
@@ -292,18 +425,35 @@ def exports() -> dict[str, list[str]]:
 
 
 BASES = {"materials": models.Material, "bodies": models.Body, "obstacles": models.Obstacle}
-MORE = {"results": ("plot.Plots", "result.Fields")}       # what results give that is not exported
-SHOWN_OF = {"Scene": "set, save, load", "Result": "", "Study": "", "plot.Plots": "", "result.Fields": ""}    # members; "": all
+MORE = {"results": ("plot.Plots", "result.Fields")}  # what results give that is not exported
+SHOWN_OF = {
+    "Scene": "set, save, load",
+    "Result": "",
+    "Study": "",
+    "plot.Plots": "",
+    "result.Fields": "",
+}  # members; "": all
 
 
 def interface(part: str) -> str:
     """A part of the Python interface: a table of its names, and each with its signature."""
     names = [*exports()[part], *MORE.get(part, ())]
-    text = "```{eval-rst}\n.. autosummary::\n   :nosignatures:\n\n" + "".join(f"   ffimpact.{name}\n" for name in names) + "```\n"
+    text = (
+        "```{eval-rst}\n.. autosummary::\n   :nosignatures:\n\n"
+        + "".join(f"   ffimpact.{name}\n" for name in names)
+        + "```\n"
+    )
     for name in names:
-        kind = "function" if part == "functions" else "exception" if part == "exceptions" else "class"
-        members = f"   :members:{' ' * bool(SHOWN_OF[name])}{SHOWN_OF[name]}\n" if name in SHOWN_OF else ""
-        text += f"\n## {name.rpartition('.')[2]}\n```{{eval-rst}}\n.. auto{kind}:: ffimpact.{name}\n{members}```\n"
+        kind = (
+            "function" if part == "functions" else "exception" if part == "exceptions" else "class"
+        )
+        members = (
+            f"   :members:{' ' * bool(SHOWN_OF[name])}{SHOWN_OF[name]}\n"
+            if name in SHOWN_OF
+            else ""
+        )
+        text += f"\n## {name.rpartition('.')[2]}\n```{{eval-rst}}\n"
+        text += f".. auto{kind}:: ffimpact.{name}\n{members}```\n"
     return text
 
 
@@ -318,9 +468,16 @@ def words(accepted: str) -> str:
 
 # what stands between two marks, made for a page in a folder
 PARTS: dict[str, Callable[[Path], str]] = {
-    "parameters": lambda _: entries(), "columns": lambda _: results(), "warnings": lambda _: warnings(), "exit codes": lambda _: exit_codes(),
-    "commands": lambda _: commands(), "equations": lambda folder: equations(os.path.relpath(ROOT, folder) + "/" if folder != ROOT else ""),
-    **{f"interface: {part}": lambda _, part=part: interface(part) for part in exports()}}
+    "parameters": lambda _: entries(),
+    "columns": lambda _: results(),
+    "warnings": lambda _: warnings(),
+    "exit codes": lambda _: exit_codes(),
+    "commands": lambda _: commands(),
+    "equations": lambda folder: equations(
+        os.path.relpath(ROOT, folder) + "/" if folder != ROOT else ""
+    ),
+    **{f"interface: {part}": lambda _, part=part: interface(part) for part in exports()},
+}
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""The pictures of README.md and the animation of docs/index.md, from runs that are there: `make pictures`."""
+"""The pictures of README.md and the animation of docs/index.md: `make pictures`."""
 
 import sys
 from pathlib import Path
@@ -8,8 +8,15 @@ from PIL import Image, ImageSequence
 from ffimpact.places import RESULTS, ROOT
 from ffimpact.report import drawing
 
-PICTURES = {"picture.png": ("disc-normal", "shapes"), "picture-oblique.png": ("disc-oblique", "flight")}
-FILM, WIDTH, DURATION = Path("movies/disc-oblique/disc-oblique.gif"), 460, 90      # of a frame: pixels, ms
+PICTURES = {
+    "picture.png": ("disc-normal", "shapes"),
+    "picture-oblique.png": ("disc-oblique", "flight"),
+}
+FILM, WIDTH, DURATION = (
+    Path("movies/disc-oblique/disc-oblique.gif"),
+    460,
+    90,
+)  # of a frame: pixels, ms
 
 
 def main() -> int:
@@ -20,8 +27,19 @@ def main() -> int:
         picture.quantize(256).save(ROOT / name, optimize=True)
     film = Image.open(RESULTS / FILM)
     size = (WIDTH, round(film.height * WIDTH / film.width))
-    first, *others = [frame.convert("RGB").resize(size, Image.Resampling.LANCZOS) for frame in ImageSequence.Iterator(film)]
-    first.save(ROOT / "docs/_static/impact.webp", save_all=True, append_images=others, duration=DURATION, loop=0, quality=50, method=6)
+    first, *others = [
+        frame.convert("RGB").resize(size, Image.Resampling.LANCZOS)
+        for frame in ImageSequence.Iterator(film)
+    ]
+    first.save(
+        ROOT / "docs/_static/impact.webp",
+        save_all=True,
+        append_images=others,
+        duration=DURATION,
+        loop=0,
+        quality=50,
+        method=6,
+    )
     return 0
 
 
