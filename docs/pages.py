@@ -15,6 +15,7 @@ import sys
 from collections.abc import Callable, Collection, Iterator, Mapping
 from pathlib import Path
 
+import pandas as pd
 from pydantic.fields import FieldInfo
 
 import ffimpact
@@ -457,6 +458,17 @@ def interface(part: str) -> str:
     return text
 
 
+def run_times() -> str:
+    """Processor seconds of the programs for each case and error, from the measurement's table."""
+    table = pd.read_csv(ROOT / "docs/measurements/bench-levels.csv")
+    programs = list(table.program.unique())
+    text = f"| case, error | {' | '.join(programs)} |\n|---|{'---:|' * len(programs)}\n"
+    for (case, level), rows in table.groupby(["case", "level %"], sort=False):
+        found = {row.program: f"{row.march:.2f} / {row.process:.2f}" for row in rows.itertuples()}
+        text += f"| {case}, {level:g} % | {' | '.join(found.get(one, '—') for one in programs)} |\n"
+    return text
+
+
 def cell(text: str) -> str:
     return text.replace("|", r"\|")
 
@@ -473,6 +485,7 @@ PARTS: dict[str, Callable[[Path], str]] = {
     "warnings": lambda _: warnings(),
     "exit codes": lambda _: exit_codes(),
     "commands": lambda _: commands(),
+    "run times": lambda _: run_times(),
     "equations": lambda folder: equations(
         os.path.relpath(ROOT, folder) + "/" if folder != ROOT else ""
     ),
