@@ -56,7 +56,8 @@ html_static_path = ["_static"]
 html_css_files = ["site.css"]
 html_show_sourcelink = False
 html_copy_source = False
-html_sidebars = {"index": []}
+alone = [page.parent.name for page in HERE.glob("*/index.md") if len(list(page.parent.glob("*.md"))) == 1]
+html_sidebars = {page: [] for page in ("index", *(f"{folder}/index" for folder in alone))}
 html_theme_options = {
     "navigation_with_keys": False,
     "show_prev_next": False,
@@ -95,7 +96,7 @@ sphinx_gallery_conf = {
 
 FILES = re.compile(
     r"\[([^]\n]+)\]\((?:\.\./)*"
-    r"(?:edp|orchestrate|verification|benchmarks|examples|tests|LICENSE|CITATION)[^)\s]*\)"
+    r"(?:edp|orchestrate|verification|benchmarks|examples|tests|[A-Z_]+(?:\.\w+)?)[^)\s]*\)"
 )
 
 

@@ -20,6 +20,7 @@ from .failure import BadInput, NotInstalled, Unreadable, unknown
 from .freefem.describe import describe_results
 from .output import vtu
 from .output.results import check_files, read_answers, read_summary
+from .places import shown
 from .report import report
 
 if TYPE_CHECKING:
@@ -201,7 +202,7 @@ class Result:
         ]
         told = [line for line in report.told(self.summary) if line.startswith("  warning")]
         more = [f"  and {len(rows) - LINES} more: result.table"] if len(rows) > LINES else []
-        return "\n".join([f"Result in {self.folder}", *rows[:LINES], *more, *told])
+        return "\n".join([f"Result in {shown(self.folder)}", *rows[:LINES], *more, *told])
 
     def _repr_html_(self) -> str:
         rows = "".join(
@@ -209,7 +210,7 @@ class Result:
             for name, row in self.table.iterrows()
         )
         told = "".join(f"<p>{escape(sentence)}</p>" for sentence in self.warnings)
-        return f"<table><caption>{escape(str(self.folder))}</caption>{rows}</table>{told}"
+        return f"<table><caption>{escape(str(shown(self.folder)))}</caption>{rows}</table>{told}"
 
     @property
     def plot(self) -> Plots:
@@ -255,7 +256,7 @@ class Fields(Sequence["pyvista.UnstructuredGrid"]):
         return len(self.series)
 
     def __repr__(self) -> str:
-        return f"{len(self)} states of {self.folder}"
+        return f"{len(self)} states of {shown(self.folder)}"
 
     def __getitem__(self, index: Any) -> Any:
         try:
