@@ -56,7 +56,9 @@ html_static_path = ["_static"]
 html_css_files = ["site.css"]
 html_show_sourcelink = False
 html_copy_source = False
-alone = [page.parent.name for page in HERE.glob("*/index.md") if len(list(page.parent.glob("*.md"))) == 1]
+alone = [
+    page.parent.name for page in HERE.glob("*/index.md") if len(list(page.parent.glob("*.md"))) == 1
+]
 html_sidebars = {page: [] for page in ("index", *(f"{folder}/index" for folder in alone))}
 html_theme_options = {
     "navigation_with_keys": False,
