@@ -279,7 +279,7 @@ def verdict(agreed: dict[str, bool], ratios: dict[str, dict[float, tuple[float, 
                                             for level, (march, process) in of.items()) for name, of in ratios.items())
     return (f"The references of both programs agree within their bars in {len(agreed) - len(without)} of {len(agreed)} cases"
             + f" (not: {', '.join(without)})" * bool(without)
-            + f". Our march is the quickest in {quicker[0]} of {len(pairs)} comparisons, our whole process "
+            + f". Our time integration is the quickest in {quicker[0]} of {len(pairs)} comparisons, our whole process "
             f"in {quicker[1]}. The quickest other over ours, march / process: {each}.")
 
 

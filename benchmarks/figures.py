@@ -100,7 +100,7 @@ def bench(tables: Tables, path: Path) -> None:
     rows = tables[""]
     cases = list(rows.case.unique())
     figure, grid = plt.subplots(
-        2, len(cases), figsize=(11, 5.4), sharex="col", sharey="row", squeeze=False
+        2, len(cases), figsize=(9.5, 5.2), sharex="col", sharey="row", squeeze=False
     )
     colours = dict(zip(rows.program.unique(), COLOURS))
     for column, case in zip(grid.T, cases):
@@ -141,7 +141,8 @@ def disc_block(tables: Tables, path: Path) -> None:
     rows, other = tables[""], tables["ngsolve"]
     cases = rows[["law", "nu"]].drop_duplicates().reset_index(drop=True)
     places = {(row.law, row.nu): k for k, row in cases.iterrows()}
-    figure, panels = plt.subplots(1, 4, figsize=(11, 3.4))
+    figure, grid = plt.subplots(2, 2, figsize=(8, 5.4))
+    panels = grid.ravel()
     answers = {
         "v disc m/s": "velocity of the disc [m/s]",
         "v block m/s": "velocity of the block [m/s]",
@@ -177,7 +178,8 @@ def disc_block(tables: Tables, path: Path) -> None:
         )
         panel.set(title=words, xlim=(-0.5, len(cases) - 0.5))
         panel.grid(axis="y", alpha=0.3)
-    panels[0].set_xlabel("law, ν")
+    for panel in panels[-2:]:
+        panel.set_xlabel("law, ν")
     shown = panels[0].get_legend_handles_labels()
     figure.legend(*shown, loc="outside lower center", ncols=3)
     save(figure, path)

@@ -222,10 +222,10 @@ def report(table: pd.DataFrame) -> str:
                      "contacts alone, and the approach of a\n  half-plane depends on the point it is measured from. A disc that slides "
                      "throughout loses what friction in one direction takes, as the ball does.")
     agree, partly, asked = (table.verdict == "agrees").sum(), (table.verdict == "partly").sum(), table["asked [%]"].notna().sum()
-    lines += ["", f"{agree} of {asked} that a theory is asked of agree, to {100 * ASKED:g} % of the slip that is lost, as in V17; {partly} "
-                  f"agree partly: slow balls that stick, within",
-              f"{FINITE:g} times the contact's radius over the ball's on top, as a ball is no half-space. The requirement "
-              f"{'holds' if holds(table) else 'FAILS'}."]
+    lines += ["", f"{agree} of {asked} runs with a theory agree with it to {100 * ASKED:g} % of the lost slip. "
+                  f"{partly} agree partly: slow balls that",
+              f"stick, within {FINITE:g} times contact radius over ball radius more, since a ball is not a half-space. "
+              f"The requirement {'holds' if holds(table) else 'FAILS'}."]
     return "\n".join(lines)
 
 
