@@ -32,7 +32,7 @@ PAGES = ("tutorial", "how-to", "explanation")
 def prose(text: str) -> str:
     """The text of a page without code, HTML comments and targets of links; as many lines as before."""
     text = re.sub(r"(?s)```.*?```|<!--.*?-->", lambda found: "\n" * found[0].count("\n"), text)
-    return re.sub(r"\]\([^)]*\)", "]", re.sub(r"`[^`\n]*`", "", text))
+    return re.sub(r"\]\([^)]*\)", "]", re.sub(r"`[^`\n]*`|\$[^$\n]+\$", "", text))
 
 
 def messages(path: Path) -> list[tuple[int, str]]:

@@ -24,12 +24,12 @@ svk = (lam + 2 * mu) * (stretch**3 - stretch) / 2
 neo = mu * (stretch - 1 / stretch) + lam * np.log(stretch) / stretch
 right.plot(stretch, svk / mu, color=RED, label="St. Venant–Kirchhoff (5)")
 right.plot(stretch, neo / mu, color=BLUE, label="neo-Hookean (6)")
-limit, lost = 1 / np.sqrt(3), np.sqrt(nu / (1 - nu))
+limit, lost = 1 / np.sqrt(3), 0.9055  # the latter: see ellipticity.py
 right.plot(limit, np.interp(limit, stretch, svk) / mu, "o", color=RED, ms=5)
 right.annotate("limit point Λ = 0.577:\nsoftens below", (limit, np.interp(limit, stretch, svk) / mu), (0.32, -6.5), fontsize=8.5, color=RED,
                arrowprops={"arrowstyle": "-", "color": RED, "lw": 0.8})
 right.plot(lost, np.interp(lost, stretch, svk) / mu, "s", color=RED, ms=5)
-right.annotate("ellipticity lost\nΛ = 0.905 (ν = 0.45)", (lost, np.interp(lost, stretch, svk) / mu), (0.42, 1.3), fontsize=8.5, color=RED, va="center",
+right.annotate("ellipticity lost\nΛ = 0.906 (ν = 0.45)", (lost, np.interp(lost, stretch, svk) / mu), (0.42, 1.3), fontsize=8.5, color=RED, va="center",
                arrowprops={"arrowstyle": "-", "color": RED, "lw": 0.8})
 right.axhline(0, color=GREY, lw=0.7)
 right.set(xlabel="stretch Λ = J", ylabel="stress P / μ", ylim=(-14, 3.5), xlim=(0.3, 1.15))
