@@ -15,6 +15,10 @@ ROOT = HERE.parent
 sys.path[:0] = [str(ROOT / "orchestrate"), str(HERE), str(ROOT)]
 os.environ.setdefault("MPLBACKEND", "Agg")
 
+from docutils import nodes  # noqa: E402
+from latex2mathml.converter import convert  # noqa: E402
+from sphinx.util.math import get_node_equation_number  # noqa: E402
+
 import ffimpact  # noqa: E402
 import pages  # noqa: E402
 from ffimpact.input import models  # noqa: E402
@@ -26,15 +30,11 @@ extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
-    "sphinx.ext.mathjax",
     "sphinx_design",
     "sphinx_copybutton",
     "sphinx_gallery.gen_gallery",
 ]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
-exclude_patterns = [
-    page.name for page in HERE.glob("*.md") if page.name != "index.md"
-]  # every other page is in a folder
 suppress_warnings = [
     "toc.empty_glob",
     "config.cache",
@@ -50,6 +50,7 @@ toc_object_entries = False
 default_role = "code"
 autosummary_generate = False
 
+html_math_renderer = "mathml"
 html_theme = "pydata_sphinx_theme"
 html_title = "ffimpact"
 html_static_path = ["_static"]
@@ -105,6 +106,25 @@ FILES = re.compile(
 def plain_links(app, name: str, source: list[str]) -> None:
     """Links to files of the program become code."""
     source[0] = FILES.sub(lambda link: f"`{link[1].strip('`')}`", source[0])
+
+
+# ---- formulas as MathML, which a browser draws without a script and without a network
+
+
+def formula(self, node) -> None:
+    """A formula in a line of text."""
+    self.body.append(convert(node.astext()))
+    raise nodes.SkipNode
+
+
+def displayed_formula(self, node) -> None:
+    """A formula in a line of its own, with its number."""
+    number = get_node_equation_number(self, node) if node["number"] else ""
+    mark = f'<span class="eqno">({number})</span>' if number else ""
+    name = f' id="{node["ids"][0]}"' if node.get("ids") else ""
+    formula = convert(node.astext(), display="block")
+    self.body.append(f'<div class="math"{name}>{mark}{formula}</div>')
+    raise nodes.SkipNode
 
 
 # ---- classes of the Python interface
@@ -184,6 +204,7 @@ def entries(model: type[models.Entries]) -> list[str]:
 
 
 def setup(app) -> None:
+    app.add_html_math_renderer("mathml", (formula, None), (displayed_formula, None))
     app.connect("source-read", plain_links)
     app.connect("autodoc-process-signature", signature)
     app.connect("autodoc-process-docstring", docstring)
