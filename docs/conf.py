@@ -16,7 +16,6 @@ sys.path[:0] = [str(ROOT / "orchestrate"), str(HERE), str(ROOT)]
 os.environ.setdefault("MPLBACKEND", "Agg")
 
 from docutils import nodes  # noqa: E402
-from latex2mathml.converter import convert  # noqa: E402
 from sphinx.util.math import get_node_equation_number  # noqa: E402
 
 import ffimpact  # noqa: E402
@@ -33,6 +32,7 @@ extensions = [
     "sphinx_design",
     "sphinx_copybutton",
     "sphinx_gallery.gen_gallery",
+    *([] if find_spec("latex2mathml") else ["sphinx.ext.mathjax"]),
 ]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 suppress_warnings = [
@@ -50,7 +50,7 @@ toc_object_entries = False
 default_role = "code"
 autosummary_generate = False
 
-html_math_renderer = "mathml"
+html_math_renderer = "mathml" if find_spec("latex2mathml") else "mathjax"
 html_theme = "pydata_sphinx_theme"
 html_title = "ffimpact"
 html_static_path = ["_static"]
@@ -113,12 +113,16 @@ def plain_links(app, name: str, source: list[str]) -> None:
 
 def formula(self, node) -> None:
     """A formula in a line of text."""
+    from latex2mathml.converter import convert
+
     self.body.append(convert(node.astext()))
     raise nodes.SkipNode
 
 
 def displayed_formula(self, node) -> None:
     """A formula in a line of its own, with its number."""
+    from latex2mathml.converter import convert
+
     number = get_node_equation_number(self, node) if node["number"] else ""
     mark = f'<span class="eqno">({number})</span>' if number else ""
     name = f' id="{node["ids"][0]}"' if node.get("ids") else ""
