@@ -19,8 +19,7 @@ import pandas as pd
 from pydantic.fields import FieldInfo
 
 import ffimpact
-from ffimpact import __main__ as command_line
-from ffimpact import failure, schema
+from ffimpact import __main__ as command_line, failure, schema
 from ffimpact.freefem.describe import describe_results
 from ffimpact.input import models, parameters
 from ffimpact.input.parameter import Parameter, Rule

@@ -9,8 +9,7 @@ import pytest
 from ffimpact import scene
 from ffimpact.report import impacts
 from ffimpact.running import run
-from verification import measure as runs
-from verification import modes, solids
+from verification import measure as runs, modes, solids
 
 NU = 0.3
 SLOW = {"law": "neohookean", "nu": NU, "speed": 0.2, "fields": 0}
@@ -18,7 +17,7 @@ SLOW = {"law": "neohookean", "nu": NU, "speed": 0.2, "fields": 0}
 FINE = {"accuracy": 0.02, "mesh_size": 0.01, "end_time": 1e-5}
 
 
-def of(tmp_path, name: str, values: dict) -> tuple[pd.DataFrame, run.RunResult]:
+def of(tmp_path, name: str, values: dict) -> tuple[pd.DataFrame, run.Record]:
     found = run.run(scene.load(name), SLOW | values, tmp_path / "out", estimate=False)
     return pd.read_csv(found.folder / "modes.csv"), found
 

@@ -1,4 +1,6 @@
-"""Command line: ffimpact COMMAND, or python -m ffimpact COMMAND; the commands are listed by --help."""
+"""Command line: ffimpact COMMAND, or python -m ffimpact COMMAND; the commands are listed by
+--help.
+"""
 
 import argparse
 import contextlib
@@ -21,12 +23,20 @@ __all__ = ["execute", "guarded", "leave", "main", "start"]
 
 Command = Callable[[list[str]], int | None]
 # the commands with a module of their own, which has a main(argv)
-OWN_MAIN = {"sweep": "ffimpact.sweeps.sweep", "friction-laws": "ffimpact.report.friction_laws",
-            "compare": "ffimpact.report.compare", "movie": "ffimpact.report.movie"}
-HELP = {"sweep": "run a scene for every combination of some entries: a table and a figure", "friction-laws": "draw the friction laws",
-        "compare": "several runs in one figure, with a table", "movie": "a film of a scene"}
+OWN_MAIN = {
+    "sweep": "ffimpact.sweeps.sweep",
+    "friction-laws": "ffimpact.report.friction_laws",
+    "compare": "ffimpact.report.compare",
+    "movie": "ffimpact.report.movie",
+}
+HELP = {
+    "sweep": "run a scene for every combination of some entries: a table and a figure",
+    "friction-laws": "draw the friction laws",
+    "compare": "several runs in one figure, with a table",
+    "movie": "a film of a scene",
+}
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
-CHOICES = re.compile(r"[^', ]+")   # the words in argparse's own message
+CHOICES = re.compile(r"[^', ]+")  # the words in argparse's own message
 
 
 def main(argv: list[str]) -> int:
@@ -36,7 +46,7 @@ def main(argv: list[str]) -> int:
 
 def guarded(run: Command, argv: list[str]) -> int:
     """The exit code of a command; what goes wrong is one line on stderr."""
-    argparse.ArgumentParser.error = _bad_usage   # one line and exit code 10 as for any bad input
+    argparse.ArgumentParser.error = _bad_usage  # one line and exit code 10 as for any bad input
     try:
         return run(argv) or 0
     except Failure as failure:
@@ -45,12 +55,16 @@ def guarded(run: Command, argv: list[str]) -> int:
         if failure.folder:
             print(f"files of the failed run: {shown(failure.folder)}")
         return failure.code
-    except BrokenPipeError:   # the reader of our output left
+    except BrokenPipeError:  # the reader of our output left
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
     except OSError as error:  # a full disk, a folder that was taken away
-        advice = "make room, or choose another --out" if error.errno in FULL else "choose another --out"
-        failure = Unreadable(f"{error.filename or 'the result folder'}: {error.strerror or error}; {advice}")
+        advice = (
+            "make room, or choose another --out" if error.errno in FULL else "choose another --out"
+        )
+        failure = Unreadable(
+            f"{error.filename or 'the result folder'}: {error.strerror or error}; {advice}"
+        )
         print(f"ffimpact: {failure}", file=sys.stderr)
         return failure.code
     except KeyboardInterrupt:
@@ -68,43 +82,80 @@ def execute(argv: list[str]) -> int | None:
 
 
 def _bad_usage(parser: argparse.ArgumentParser, message: str) -> None:
-    if choice := re.fullmatch(r"argument (\S+): invalid choice: (['\"])(.*)\2 \(choose from (.*)\)", message):
+    if choice := re.fullmatch(
+        r"argument (\S+): invalid choice: (['\"])(.*)\2 \(choose from (.*)\)", message
+    ):
         message = f"{choice[1]}: {unknown(choice[3], CHOICES.findall(choice[4]), ', ')}"
         raise BadInput(f"{message} (see {parser.prog} --help)")
     raise BadInput(f"{brief(message)} (see {parser.prog} --help)")
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="ffimpact", description="Impact of nonlinear deformable bodies.",
-                                     epilog="Each command has its own --help.")
+    parser = argparse.ArgumentParser(
+        prog="ffimpact",
+        description="Impact of nonlinear deformable bodies.",
+        epilog="Each command has its own --help.",
+    )
     parser.add_argument("--version", action="version", version=f"ffimpact {__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
     command = commands.add_parser("run", help="run a scene, or reuse its finished result")
-    command.add_argument("scene", metavar="SCENE", help="a built-in scene (see list) or the path of a TOML file")
-    command.add_argument("--set", metavar="NAME=VALUE", nargs="+", action="extend", default=[], help="set a parameter (see parameters); of "
-                         "a scene of bodies any entry: body.2.young=1e6")
-    command.add_argument("--out", metavar="DIR", type=Path, help="the result folder (default: results/SCENE)")
-    command.add_argument("--mesh", metavar="FILE", type=Path, help="a mesh of a body of your own, FreeFEM's or gmsh's .msh; labels 1: may "
-                         "touch, 2: symmetry axis, others: free, never touch")
-    command.add_argument("--checkpoint-every", metavar="STEPS",
-                         help="make a checkpoint every so many steps; a run that is killed goes on from the last when called again")
-    command.add_argument("--force", action="store_true", help="run again, from the start, even if the result is there")
-    command.add_argument("--quiet", action="store_true", help="print warnings and errors only, on stderr")
+    command.add_argument(
+        "scene", metavar="SCENE", help="a built-in scene (see list) or the path of a TOML file"
+    )
+    command.add_argument(
+        "--set",
+        metavar="NAME=VALUE",
+        nargs="+",
+        action="extend",
+        default=[],
+        help="set a parameter (see parameters); of a scene of bodies any entry: body.2.young=1e6",
+    )
+    command.add_argument(
+        "--out", metavar="DIR", type=Path, help="the result folder (default: results/SCENE)"
+    )
+    command.add_argument(
+        "--mesh",
+        metavar="FILE",
+        type=Path,
+        help="a mesh of a body of your own, FreeFEM's or gmsh's .msh; labels 1: may "
+        "touch, 2: symmetry axis, others: free, never touch",
+    )
+    command.add_argument(
+        "--checkpoint-every",
+        metavar="STEPS",
+        help="make a checkpoint every so many steps; a run that is killed goes on from the last when called again",
+    )
+    command.add_argument(
+        "--force",
+        action="store_true",
+        help="run again, from the start, even if the result is there",
+    )
+    command.add_argument(
+        "--quiet", action="store_true", help="print warnings and errors only, on stderr"
+    )
     command.set_defaults(command=_run)
 
     command = commands.add_parser("list", help="list the built-in scenes, with their scripts")
     command.set_defaults(command=_list)
-    command = commands.add_parser("parameters", help="list the parameters: default, unit, what is accepted")
+    command = commands.add_parser(
+        "parameters", help="list the parameters: default, unit, what is accepted"
+    )
     command.set_defaults(command=_parameters)
-    command = commands.add_parser("schema", help="print the JSON schema of scene files, with which editors complete and check them")
+    command = commands.add_parser(
+        "schema",
+        help="print the JSON schema of scene files, with which editors complete and check them",
+    )
     command.set_defaults(command=_schema)
-    command = commands.add_parser("kernels", help="print the word that a FreeFem++ of your own needs to load the compiled kernels")
+    command = commands.add_parser(
+        "kernels",
+        help="print the word that a FreeFem++ of your own needs to load the compiled kernels",
+    )
     command.set_defaults(command=_kernels)
     command = commands.add_parser("figures", help="draw the figures of a result folder again")
     command.add_argument("folder", metavar="DIR", type=Path, help="the result folder")
     command.set_defaults(command=_figures)
-    for name in OWN_MAIN:                              # for the list of what is accepted; main() calls them itself
+    for name in OWN_MAIN:  # for the list of what is accepted; main() calls them itself
         commands.add_parser(name, help=HELP[name])
     return parser
 
@@ -114,12 +165,19 @@ def _run(options: argparse.Namespace) -> None:
     from .input import parameters
     from .report import report
     from .running import run
+
     given = parameters.overrides(options.set)
     if options.checkpoint_every:
         given["checkpoint_every"] = options.checkpoint_every
     with contextlib.redirect_stdout(None if options.quiet else sys.stdout):
-        result = run.run(scene.load(options.scene), given, options.out, mesh_file=options.mesh,
-                         force=options.force, progress=False if options.quiet else None)
+        result = run.run(
+            scene.load(options.scene),
+            given,
+            options.out,
+            mesh_file=options.mesh,
+            force=options.force,
+            progress=False if options.quiet else None,
+        )
         report.draw(result)
         print(report.report(result))
     for sentence in result.summary["warnings"] if options.quiet else ():
@@ -128,6 +186,7 @@ def _run(options: argparse.Namespace) -> None:
 
 def _list(options: argparse.Namespace) -> None:
     from . import scene
+
     names = scene.built_in()
     for name in names:
         one = scene.load(name)
@@ -136,6 +195,7 @@ def _list(options: argparse.Namespace) -> None:
 
 def _parameters(options: argparse.Namespace) -> None:
     from .input import parameters
+
     for name in parameters.names():
         p = parameters.PARAMETERS[name]
         default = p.default if isinstance(p.default, str) else f"{p.default:g}"
@@ -145,49 +205,66 @@ def _parameters(options: argparse.Namespace) -> None:
 
 def _schema(options: argparse.Namespace) -> None:
     from .schema import text
+
     print(text(), end="")
 
 
 def _kernels(options: argparse.Namespace) -> None:
     from .freefem import freefem
+
     if not (word := freefem.find().plugin):
-        raise NotInstalled("the kernels cannot be compiled: FreeFem++'s ff-c++, g++ or SuiteSparse's headers are missing; "
-                           "run: apt-get install g++ libfreefem++-dev libsuitesparse-dev")
+        raise NotInstalled(
+            "the kernels cannot be compiled: FreeFem++'s ff-c++, g++ or SuiteSparse's headers are missing; "
+            "run: apt-get install g++ libfreefem++-dev libsuitesparse-dev"
+        )
     print(word)
 
 
 def _figures(options: argparse.Namespace) -> None:
     from .output import results
     from .report import drawing, solid
-    results.read_summary(options.folder)               # Unreadable where there is no finished run
+
+    results.read_summary(options.folder)  # Unreadable where there is no finished run
     drawn = drawing.draw(options.folder)
     for path in drawn:
         print(path)
-    if "z" in results.read_history(options.folder) and options.folder / "figures/solid.png" not in drawn and (reason := solid.missing()):
+    if (
+        "z" in results.read_history(options.folder)
+        and options.folder / "figures/solid.png" not in drawn
+        and (reason := solid.missing())
+    ):
         print(f"ffimpact: without figures/solid.png: {reason}", file=sys.stderr)
 
 
 def leave(number: int, _) -> None:
-    """Ends the program on a signal through every `finally`, as Ctrl-C does: there FreeFem++ is ended and unfinished files go."""
+    """Ends the program on a signal through every `finally`, as Ctrl-C does: there FreeFem++ is
+    ended and unfinished files go.
+    """
     sys.exit(128 + number)
 
 
 def start(run: Command | None = None) -> int:
     """A command as a program: ffimpact, or python -m."""
-    if locale.getencoding().lower() not in ("utf-8", "utf8") and not sys.flags.utf8_mode:   # files are UTF-8 whatever the locale is
+    if (
+        locale.getencoding().lower() not in ("utf-8", "utf8") and not sys.flags.utf8_mode
+    ):  # files are UTF-8 whatever the locale is
         os.execv(sys.executable, [sys.executable, "-X", "utf8", *sys.orig_argv[1:]])
-    gc.set_threshold(100_000)                          # to look for garbage every few hundred objects takes longer than to keep it
-    os.environ.setdefault("MPLBACKEND", "Agg")         # figures become files
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")   # numpy's too: to start its threads takes as long as to load it
+    gc.set_threshold(
+        100_000
+    )  # to look for garbage every few hundred objects takes longer than to keep it
+    os.environ.setdefault("MPLBACKEND", "Agg")  # figures become files
+    os.environ.setdefault(
+        "OPENBLAS_NUM_THREADS", "1"
+    )  # numpy's too: to start its threads takes as long as to load it
     for number in (signal.SIGTERM, signal.SIGHUP):
         if signal.getsignal(number) is signal.SIG_DFL:  # not under nohup
             signal.signal(number, leave)
-    for name in ("stdout", "stderr"):                  # closed by who started us
+    for name in ("stdout", "stderr"):  # closed by who started us
         if getattr(sys, name) is None:
             setattr(sys, name, open(os.devnull, "w"))
-    sys.stdout.reconfigure(errors="surrogateescape")   # paths are bytes, not all of them text
+    sys.stdout.reconfigure(errors="surrogateescape")  # paths are bytes, not all of them text
     code = guarded(run or execute, sys.argv[1:])
-    gc.freeze()                                        # nor at the end, which took a tenth of a second
+    gc.freeze()  # nor at the end, which took a tenth of a second
     return code
 
 

@@ -41,23 +41,29 @@ def run(
     progress: bool | None = None,
     **more: Any,
 ) -> Result:
-    """The result of a scene: one made in Python, the name of a built-in one, or the path of a TOML file.
+    """The result of a scene: one made in Python, the name of a built-in one, or the path of a
+    TOML file.
 
-    Entries of the scene are set by keywords (accuracy=0.005) or by dotted names (entries={"body.1.young": 2e6}). `out` is the result
-    folder: results/NAME of a file or a built-in scene; of a scene made in Python a folder of its own. A run that is there is not made
-    again, unless `force`. With `estimate` a second run estimates the errors. Raises the exceptions of ffimpact: BadInput,
-    StepFailed and so on. A run keeps STATES states where the scene leaves `fields` open.
+    Entries of the scene are set by keywords (accuracy=0.005) or by dotted names
+    (entries={"body.1.young": 2e6}). `out` is the result folder: results/NAME of a file or a
+    built-in scene; of a scene made in Python a folder of its own. A run that is there is not
+    made again, unless `force`. With `estimate` a second run estimates the errors. Raises the
+    exceptions of ffimpact: BadInput, StepFailed and so on. A run keeps STATES states where the
+    scene leaves `fields` open.
     """
-    if not isinstance(entries or {}, Mapping):
-        raise BadInput(f"entries: '{entries}' is no table (accepted: {{\"body.1.young\": 2e6}})")
-    given = {
-        name: value for name, value in (dict(entries or {}) | more).items() if value is not None
-    }
+    given = _given(entries, more)
     wanted, place = _wanted(scene, given)
     found = running.run(
         wanted, given, out or place, force=force, progress=progress, estimate=estimate
     )
-    return Result(found.folder, found.reused)
+    return Result(found)
+
+
+def _given(entries: Mapping[str, Any] | None, more: dict[str, Any]) -> dict[str, Any]:
+    """The entries that are set, by dotted names; keywords that are None are not."""
+    if not isinstance(entries or {}, Mapping):
+        raise BadInput(f"entries: '{entries}' is no table (accepted: {{\"body.1.young\": 2e6}})")
+    return dict(entries or {}) | {name: value for name, value in more.items() if value is not None}
 
 
 def _wanted(scene: Scene | str | Path, given: dict[str, Any]) -> tuple[Any, Path]:
@@ -86,8 +92,10 @@ def _word(title: str) -> str:
 
 
 class Study:
-    """A sweep: `table` has a row for each point, with the entries that vary, the exit code, its message and the numbers of the run;
-    `results` the Result of each, None where a run failed."""
+    """A sweep: `table` has a row for each point, with the entries that vary, the exit code, its
+    message and the numbers of the run; `results` the Result of each, None where a run
+    failed.
+    """
 
     def __init__(
         self,
@@ -114,7 +122,9 @@ class Study:
         return str(self.table.to_html(max_cols=12))
 
     def plot(self, x: str, y: str, by: str | None = None, ax: Axes | None = None) -> Axes:
-        """A number y over an entry x with error bars, a line for each value of the entry `by`; returns the axes."""
+        """A number y over an entry x with error bars, a line for each value of the entry
+        `by`; returns the axes.
+        """
         import matplotlib.pyplot as plt
 
         for name, accepted in (
@@ -150,25 +160,33 @@ class Study:
 def sweep(
     scene: Scene | str | Path,
     values: Mapping[str, Sequence[Any]],
+    entries: Mapping[str, Any] | None = None,
     *,
     workers: int | None = None,
     out: str | Path | None = None,
+    force: bool = False,
+    estimate: bool = True,
     **more: Any,
 ) -> Study:
-    """Every combination of the values of some entries, each a run with estimated errors; `workers` run at a time (as many as cores).
+    """Runs every combination of the `values` of some entries; `workers` runs at a time
+    (default: one per core).
 
-    Each run has a folder of its own below `out`; what is finished there is not run again. A run that fails is a row with its exit
-    code and message.
+    `entries` and keywords are set in all runs; `force` and `estimate` are those of `run`. Each
+    run has its own folder below `out`. A finished run is not run again. A run that fails is a
+    row with its exit code and message.
     """
     _check(values, workers)
-    given = dict(more)
+    given = _given(entries, more)
     wanted, place = _wanted(scene, given)
     points = [dict(zip(values, combination)) for combination in itertools.product(*values.values())]
     told = {name: list(one) for name, one in values.items()}
     folder = Path(out) if out else place.with_name(f"{place.name}-sweep-{_digits(told)}")
     scenes = [wanted.override(given | point) for point in points]  # BadInput before anything is run
     folder.mkdir(parents=True, exist_ok=True)
-    acts = {k: partial(_point, one, folder / f"{k:03d}") for k, one in enumerate(scenes, 1)}
+    acts = {
+        k: partial(_point, one, folder / f"{k:03d}", force, estimate)
+        for k, one in enumerate(scenes, 1)
+    }
     found = dict(side_by_side(acts, workers or freefem.CORES, folder.name))
     outcomes = [found[k] for k in acts]
     return Study(
@@ -203,10 +221,12 @@ def _listed(name: str, value: Any) -> list[Any]:
     return list(value)
 
 
-def _point(wanted: Any, folder: Path) -> Result | Failure | None:
-    """The result of one run, or why there is none; None where another program is writing it."""
+def _point(wanted: Any, folder: Path, force: bool, estimate: bool) -> Result | Failure | None:
+    """The result of one run, or its failure; None if another program is writing the folder."""
     try:
-        return Result(running.run(wanted, out=folder, progress=False).folder, reused=False)
+        return Result(
+            running.run(wanted, out=folder, force=force, estimate=estimate, progress=False)
+        )
     except Busy:
         return None
     except Failure as failure:

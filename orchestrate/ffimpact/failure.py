@@ -6,20 +6,34 @@ from pathlib import Path
 from typing import Self, TypeVar
 
 __all__ = [
-    "BadInput", "Busy", "Failure", "MaterialFailed", "NotInstalled", "StepFailed", "TooLong",
-    "Unreadable", "brief", "gathered", "of_code", "shortened", "suggestion", "unknown",
+    "BadInput",
+    "Busy",
+    "Failure",
+    "MaterialFailed",
+    "NotInstalled",
+    "StepFailed",
+    "TooLong",
+    "Unreadable",
+    "brief",
+    "gathered",
+    "of_code",
+    "shortened",
+    "suggestion",
+    "unknown",
 ]
 
 T = TypeVar("T")
 
 MORE = " ..."  # behind a text that is cut
-MOST = 200     # characters of a value that a message repeats
-ALIKE = 0.15   # a second word is suggested where its likeness to the user's is this near to that of the first
-SWITCHES = {"true": "on", "false": "off"}   # what a user may write for a word
+MOST = 200  # characters of a value that a message repeats
+# a second word is suggested where its likeness to the user's is this near to that of the first
+ALIKE = 0.15
+SWITCHES = {"true": "on", "false": "off"}  # what a user may write for a word
 
 
 class Failure(Exception):
-    """A failure that the user can act on. `code` is the exit code: 11 step, 12 material, 1 anything else.
+    """A failure that the user can act on. `code` is the exit code: 11 step, 12 material, 1
+    anything else.
 
     `folder` is where the files of a failed run were kept.
     """
@@ -28,7 +42,9 @@ class Failure(Exception):
     folder: Path | None = None
 
     def __init__(self, *messages: str, code: int | None = None):
-        self.messages = tuple(" ".join(one.splitlines()) for one in messages)   # a line each, whatever the user's text had in it
+        self.messages = tuple(
+            " ".join(one.splitlines()) for one in messages
+        )  # a line each, whatever the user's text had in it
         super().__init__("\n".join(self.messages))
         self.code = self.code if code is None else code
 
@@ -45,13 +61,17 @@ def brief(value) -> str:
 
 def shortened(text: str, most: int) -> str:
     """A text of up to so many characters."""
-    return text if len(text) <= most else text[:most - len(MORE)] + MORE
+    return text if len(text) <= most else text[: most - len(MORE)] + MORE
 
 
 def suggestion(word, accepted: Iterable[str]) -> str:
-    """What a message adds where one or two of the accepted words are near to the user's; empty where none is."""
+    """What a message adds where one or two of the accepted words are near to the user's; empty
+    where none is.
+    """
     given, words = brief(word).lower(), list(dict.fromkeys(accepted))
-    near = [one for one in (SWITCHES.get(given),) if one in words] or difflib.get_close_matches(given, words, n=2)
+    near = [one for one in (SWITCHES.get(given),) if one in words] or difflib.get_close_matches(
+        given, words, n=2
+    )
     likeness = [difflib.SequenceMatcher(None, one, given).ratio() for one in near]
     near = [one for one, like in zip(near, likeness) if like > likeness[0] - ALIKE]
     return f"; did you mean {' or '.join(near)}?" if near else ""
@@ -60,7 +80,9 @@ def suggestion(word, accepted: Iterable[str]) -> str:
 def unknown(word, accepted: Iterable[str], between: str = "|") -> str:
     """What a message says of a word that is none of the accepted ones."""
     words = list(accepted)
-    return f"'{brief(word)}' is not known{suggestion(word, words)} (accepted: {between.join(words)})"
+    return (
+        f"'{brief(word)}' is not known{suggestion(word, words)} (accepted: {between.join(words)})"
+    )
 
 
 class StepFailed(Failure):
@@ -105,7 +127,10 @@ class Busy(Unreadable):
 
 def of_code(code: int, message: str) -> Failure:
     """The failure of an exit code."""
-    kinds = {one.code: one for one in (StepFailed, MaterialFailed, TooLong, BadInput, NotInstalled, Unreadable)}
+    kinds = {
+        one.code: one
+        for one in (StepFailed, MaterialFailed, TooLong, BadInput, NotInstalled, Unreadable)
+    }
     return kinds[code](message) if code in kinds else Failure(message, code=code)
 
 

@@ -1,11 +1,12 @@
-"""A scene as Python objects, SI units: what a TOML file of a scene holds, entry by entry under the same names.
+"""A scene as Python objects, SI units: what a TOML file of a scene holds, entry by entry under the
+same names.
 
     rubber = NeoHookean(young=7e6, nu=0.45, density=1722)
     Scene(bodies=[Disc(radius=0.05, material=rubber, position=(0, 0.051), velocity=(0, -8))], obstacles=[Plane()])
 
-A Scene is checked as a whole when it is made and when an entry of it is set. Whatever is wrong is a BadInput, a line each, with
-the dotted name of the entry (body.1.young, counted from 1), its value and what is accepted. An entry that is None is
-left open: the program chooses it.
+A Scene is checked as a whole when it is made and when an entry of it is set. Whatever is wrong is a
+BadInput, a line each, with the dotted name of the entry (body.1.young, counted from 1), its value
+and what is accepted. An entry that is None is left open: the program chooses it.
 """
 
 from __future__ import annotations
@@ -20,81 +21,12 @@ from . import scene as files
 from .failure import BadInput
 from .input import models
 from .input.dimension import AXISYMMETRIC, DIMENSIONS, PLANE_STRAIN, SOLID, Dimension
-from .input.models import (
-    Ball,
-    Body,
-    Bowl,
-    Box,
-    Circle,
-    Contact,
-    Cylinder,
-    Disc,
-    Ellipse,
-    Ellipsoid,
-    Gas,
-    Implicit,
-    Incompressible,
-    Load,
-    Material,
-    Mesh,
-    MooneyRivlin,
-    NeoHookean,
-    Obstacle,
-    Ogden,
-    Pair,
-    Plane,
-    Polygon,
-    Polyline,
-    Rectangle,
-    Ring,
-    SaintVenantKirchhoff,
-    Shell,
-    Sphere,
-    Support,
-    Surface,
-    Torus,
-    Tube,
-)
+from .input.models import Body, Contact, Obstacle, Plane
 from .input.parameter import plain
 from .input.toml_text import to_toml
 from .scenes import scene as reading
 
-__all__ = [
-    "Ball",
-    "Body",
-    "Bowl",
-    "Box",
-    "Circle",
-    "Contact",
-    "Cylinder",
-    "Disc",
-    "Ellipse",
-    "Ellipsoid",
-    "Gas",
-    "Implicit",
-    "Incompressible",
-    "Load",
-    "Material",
-    "Mesh",
-    "MooneyRivlin",
-    "NeoHookean",
-    "Obstacle",
-    "Ogden",
-    "Pair",
-    "Plane",
-    "Polygon",
-    "Polyline",
-    "Rectangle",
-    "Ring",
-    "SaintVenantKirchhoff",
-    "Scene",
-    "Shell",
-    "Sphere",
-    "Support",
-    "Surface",
-    "Torus",
-    "Tube",
-]
+__all__ = ["Scene"]
 
 
 def _of_tables(key: str) -> BeforeValidator:
@@ -114,7 +46,9 @@ def _of_tables(key: str) -> BeforeValidator:
 
 
 class Scene(models.Top):
-    """Bodies, obstacles, contact, and how the run is to be made. Entries are those of a TOML file, under the same names."""
+    """Bodies, obstacles, contact, and how the run is to be made. Entries are those of a TOML
+    file, under the same names.
+    """
 
     nested = {"contact": Contact}
     bodies: Annotated[list[Body], _of_tables("body")]
@@ -174,7 +108,9 @@ class Scene(models.Top):
 
     @classmethod
     def load(cls, path: str | Path) -> Scene:
-        """The scene of a TOML file, or a built-in one that is made of bodies (disc-beam, two-discs ...)."""
+        """The scene of a TOML file, or a built-in one that is made of bodies (disc-beam,
+        two-discs ...).
+        """
         name = str(path)
         path = files.SCENES / f"{name}.toml" if name in files.built_in() else Path(name)
         _, given = files.read_toml(path, files.absent(name, "scene", files.built_in()))
@@ -200,8 +136,11 @@ class Scene(models.Top):
         return cls(folder=folder, contact=Contact(**given.get("contact", {})), **tables, **top)
 
     def set(self, values: Mapping[str, Any] | None = None, /, **entries: Any) -> Scene:
-        """The same scene with entries set by their dotted names: scene.set(**{"body.1.velocity.2": -4, "accuracy": 0.01}),
-        or scene.set({...})."""
+        """The same scene with entries set by their dotted names:
+        scene.set({"body.1.velocity.2": -4}), or scene.set(accuracy=0.01).
+
+        An entry that is set to None is removed: the program then chooses its value.
+        """
         given = plain(dict(values or {}) | entries)
         return type(self).of(self.checked().override(given).given, self.folder)
 

@@ -1,4 +1,6 @@
-"""Figures of a run, drawn into axes: result.plot.force(ax=...). Importing this changes no setting of matplotlib."""
+"""Figures of a run, drawn into axes: result.plot.force(ax=...). Importing this changes no setting
+of matplotlib.
+"""
 
 from __future__ import annotations
 
@@ -37,7 +39,9 @@ ENERGIES = {
 
 
 class Plots:
-    """The figures of a finished run. Each method takes `ax`, the axes to draw into (its own by default), and returns them."""
+    """The figures of a finished run. Each method takes `ax`, the axes to draw into (its own by
+    default), and returns them.
+    """
 
     def __init__(self, result: Result):
         self.result = result
@@ -79,7 +83,9 @@ class Plots:
     def shapes(
         self, ax: Axes | None = None, field: str = "von_mises", time: float | None = None
     ) -> Axes:
-        """The deformed bodies with a field at a time [s], that of the largest force by default. Needs states (fields=N of the run)."""
+        """The deformed bodies with a field at a time [s], that of the largest force by
+        default. Needs states (fields=N of the run).
+        """
         ax, series = _axes(ax), vtu.series(self.result.folder / "fields.pvd")
         if not series:
             raise Unreadable(

@@ -1,7 +1,9 @@
-"""Progress: one line on a terminal or in a notebook: what is being done, the share of it that is done, the time left.
+"""Progress: one line on a terminal or in a notebook: what is being done, the share of it that is
+done, the time left.
 
-Work in parts has one line. What its parts say of themselves, each a line of its own where it stands alone, goes into that one: those of a
-part in this thread (part, in_turn), and those of a thread beside others (forward, in study.side_by_side).
+Work in parts has one line. What its parts say of themselves, each a line of its own where it stands
+alone, goes into that one: those of a part in this thread (part, in_turn), and those of a thread
+beside others (forward, in study.side_by_side).
 """
 
 import contextlib
@@ -13,7 +15,7 @@ from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 __all__ = ["Line", "forward", "in_notebook", "in_turn"]
 
 FORMAT = "{desc} {percentage:3.0f}% |{bar}| {elapsed}, {remaining} left"
-Tell = Callable[[float, str], None]     # the share that is done, in [0, 1], and what is being done
+Tell = Callable[[float, str], None]  # the share that is done, in [0, 1], and what is being done
 
 
 class _Thread(threading.local):
@@ -27,7 +29,9 @@ _thread = _Thread()
 
 @contextlib.contextmanager
 def forward(tell: Tell) -> Iterator[None]:
-    """Sends the lines that this thread makes inside the `with` to `tell`, which shows them as part of another line."""
+    """Sends the lines that this thread makes inside the `with` to `tell`, which shows them as
+    part of another line.
+    """
     before, _thread.tell = _thread.tell, tell
     try:
         yield
@@ -40,20 +44,30 @@ def in_notebook() -> bool:
 
 
 class Line(contextlib.AbstractContextManager):
-    """Progress of the work `name` in parts of these costs, in any unit. `watched`: whether it is shown; None: on a terminal and in a
-    notebook."""
+    """Progress of the work `name` in parts of these costs, in any unit. `watched`: whether it
+    is shown; None: on a terminal and in a notebook.
+    """
 
-    def __init__(self, name: str, costs: Mapping[Hashable, float], watched: bool | None = None, words: str = ""):
+    def __init__(
+        self,
+        name: str,
+        costs: Mapping[Hashable, float],
+        watched: bool | None = None,
+        words: str = "",
+    ):
         self.name, self.costs, self.shares = name, dict(costs), dict.fromkeys(costs, 0.0)
         self.outer, self.bar, self.quiet = _thread.tell, None, watched is False
-        if not self.outer and (watched or watched is None and (sys.stderr.isatty() or in_notebook())):
+        if not self.outer and (
+            watched or watched is None and (sys.stderr.isatty() or in_notebook())
+        ):
             if in_notebook():
                 from tqdm.auto import tqdm
             else:
                 from tqdm import tqdm
             from tqdm.contrib import DummyTqdmFile
+
             self.leaving = contextlib.ExitStack()
-            if sys.stdout.isatty():                    # what is printed stands above the line
+            if sys.stdout.isatty():  # what is printed stands above the line
                 self.leaving.enter_context(contextlib.redirect_stdout(DummyTqdmFile(sys.stdout)))
             self.bar = tqdm(total=1.0, desc=self._words(words), leave=False, bar_format=FORMAT)
 
@@ -65,8 +79,14 @@ class Line(contextlib.AbstractContextManager):
     def at(self, part: Hashable, share: float, words: str = "", cost: float = 1.0) -> None:
         """A part has come that far; one that was not foreseen joins the rest with its cost."""
         self.costs.setdefault(part, cost)
-        self.shares[part] = min(1.0, max(share, self.shares.get(part, 0.0))) if math.isfinite(share) else self.shares.get(part, 0.0)
-        done = sum(self.costs[each] * of for each, of in self.shares.items()) / (sum(self.costs.values()) or 1.0)
+        self.shares[part] = (
+            min(1.0, max(share, self.shares.get(part, 0.0)))
+            if math.isfinite(share)
+            else self.shares.get(part, 0.0)
+        )
+        done = sum(self.costs[each] * of for each, of in self.shares.items()) / (
+            sum(self.costs.values()) or 1.0
+        )
         if self.outer:
             self.outer(done, self._words(words))
         elif self.bar is not None:
@@ -80,6 +100,7 @@ class Line(contextlib.AbstractContextManager):
         """Prints a sentence of its own above the line, which stays."""
         if not self.quiet:
             from tqdm import tqdm
+
             tqdm.write(sentence, file=sys.stderr)
 
     @contextlib.contextmanager

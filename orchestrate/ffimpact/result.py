@@ -19,7 +19,7 @@ import pandas as pd
 from .failure import BadInput, NotInstalled, Unreadable, unknown
 from .freefem.describe import describe_results
 from .output import vtu
-from .output.results import check_files, read_answers, read_summary
+from .output.results import Record, read_answers, read_record, read_summary
 from .places import shown
 from .report import report
 
@@ -67,15 +67,17 @@ OF_ITSELF = (
 
 
 class Result:
-    """The finished run in a folder. result["impulse"] is a number of its summary, SI units (docs/reference/results.md lists them all).
+    """A finished run: its numbers with units and error estimates, tables, figures and states.
 
-    `reused` says whether the run was there already.
+    `source` is its folder, or the Record of its files. result["impulse"] is a number of
+    summary.json, in SI units; `keys()` lists them. `folder` is where its files are, `reused`
+    says whether the run was there already.
     """
 
-    def __init__(self, folder: str | Path, reused: bool = True):
-        self.folder, self.reused = Path(folder), reused
-        self.summary: dict[str, Any] = read_summary(self.folder)
-        check_files(self.folder)
+    def __init__(self, source: Record | str | Path):
+        self.record = source if isinstance(source, Record) else read_record(Path(source))
+        self.folder, self.reused = self.record.folder, self.record.reused
+        self.summary: dict[str, Any] = self.record.summary
 
     def __getitem__(self, name: str) -> Any:
         if name not in self.summary:
@@ -115,7 +117,8 @@ class Result:
     @cached_property
     def history(self) -> pd.DataFrame:
         """A row for each step, SI units: columns t, normal_force, kinetic ..."""
-        return pd.read_csv(self._path("history.csv"))
+        self._path("history.csv")
+        return pd.DataFrame(dict(self.record.history))
 
     @cached_property
     def contacts(self) -> pd.DataFrame:
@@ -130,9 +133,11 @@ class Result:
 
     @cached_property
     def errors(self) -> Mapping[str, float]:
-        """The estimated error of each number in its own unit: the answer is result[name] +- result.errors[name].
+        """The estimated error of each number in its own unit: the answer is result[name] +-
+        result.errors[name].
 
-        Numbers without an estimate are left out. Penalty and slip velocity are no part of it.
+        Numbers without an estimate are left out. Penalty and slip velocity are no part of
+        it.
         """
         share = self.summary.get("estimated_error") or {}
         if not share:
@@ -214,7 +219,9 @@ class Result:
 
     @property
     def plot(self) -> Plots:
-        """Figures: result.plot.force(), .energies(), .velocities(), .shapes(); each returns axes and draws into ax=..."""
+        """Figures: result.plot.force(), .energies(), .velocities(), .shapes(); each returns
+        axes and draws into ax=...
+        """
         from .plot import Plots
 
         return Plots(self)
@@ -225,7 +232,9 @@ class Result:
         return Fields(self.folder)
 
     def view(self, path: str | Path | None = None, field: str = "von_mises") -> Any:
-        """An animation of the states that were kept: a player in a notebook, or one HTML file that needs no network."""
+        """An animation of the states that were kept: a player in a notebook, or one HTML
+        file that needs no network.
+        """
         from .view import view
 
         return view(self, path, field)
@@ -245,7 +254,9 @@ def _unit(unit: str) -> str:
 
 
 class Fields(Sequence["pyvista.UnstructuredGrid"]):
-    """The kept states in the order of time: fields[-1]["von_mises"] are values at the nodes. `times` [s]."""
+    """The kept states in the order of time: fields[-1]["von_mises"] are values at the nodes.
+    `times` [s].
+    """
 
     def __init__(self, folder: Path):
         self.series = vtu.series(folder / "fields.pvd")

@@ -19,11 +19,15 @@ def built_in() -> list[str]:
 
 
 def read_toml(path: Path, missing: str) -> tuple[str, dict]:
-    """The text of a TOML file and what it says; BadInput with the words `missing` where there is none, or why it cannot be read."""
+    """The text of a TOML file and what it says; BadInput with the words `missing` where there
+    is none, or why it cannot be read.
+    """
     try:
-        if path.exists() and not path.is_file() and not path.is_dir():   # reading a pipe or a device might never end
+        if (
+            path.exists() and not path.is_file() and not path.is_dir()
+        ):  # reading a pipe or a device might never end
             raise BadInput(f"{path}: is no file")
-        text = path.read_text("utf-8-sig")          # some editors write a byte order mark
+        text = path.read_text("utf-8-sig")  # some editors write a byte order mark
         return text, tomllib.loads(text)
     except (FileNotFoundError, IsADirectoryError, NotADirectoryError):
         raise BadInput(missing) from None
@@ -35,7 +39,9 @@ def read_toml(path: Path, missing: str) -> tuple[str, dict]:
 
 
 def _unit_in(path: Path, error: Exception) -> str:
-    """Of a file that is no TOML: the entry in the line of the error, where its number has a unit; else empty."""
+    """Of a file that is no TOML: the entry in the line of the error, where its number has a
+    unit; else empty.
+    """
     if not (line := re.search(r"at line ([0-9]+)", str(error))):
         return ""
     entry, _, value = path.read_text("utf-8").splitlines()[int(line[1]) - 1].partition("=")
@@ -46,18 +52,25 @@ def _unit_in(path: Path, error: Exception) -> str:
 
 
 def absent(name: str, kind: str, names: list[str]) -> str:
-    """The message where a word is neither the name of one of the built-in scenes (sweeps) nor a file."""
+    """The message where a word is neither the name of one of the built-in scenes (sweeps) nor a
+    file.
+    """
     hint = suggestion(name.removesuffix(".toml"), names)
     if name.endswith(".toml"):
-        return f"{name}: no such file{hint} (accepted: the path of a TOML {kind}, or a built-in one)"
-    return f"{name}: no such {kind}{hint} (built in: {', '.join(names)}; or the path of a TOML file)"
+        return (
+            f"{name}: no such file{hint} (accepted: the path of a TOML {kind}, or a built-in one)"
+        )
+    return (
+        f"{name}: no such {kind}{hint} (built in: {', '.join(names)}; or the path of a TOML file)"
+    )
 
 
 def load(name: str | Path) -> Scene:
-    """A built-in scene, or the scene of a TOML file: title, script and any parameters, all at top level; or one with bodies.
+    """A built-in scene, or the scene of a TOML file: title, script and any parameters, all at
+    top level; or one with bodies.
 
-    The scene.toml of a result folder is such a file too. BadInput when there is no such scene, on a TOML error
-    and on an unknown key.
+    The scene.toml of a result folder is such a file too. BadInput when there is no such scene,
+    on a TOML error and on an unknown key.
     """
     name = str(name)
     path = SCENES / f"{name}.toml" if name in built_in() else Path(name)

@@ -1,5 +1,6 @@
-"""The JSON schema of scene files, from the models of input/models.py and the table of parameters: editors
-complete and check TOML files with it (ffimpact schema)."""
+"""The JSON schema of scene files, from the models of input/models.py and the table of parameters:
+editors complete and check TOML files with it (ffimpact schema).
+"""
 
 from __future__ import annotations
 
@@ -20,7 +21,9 @@ DRAFT = "https://json-schema.org/draft/2020-12/schema"
 
 
 def schema() -> dict[str, Any]:
-    """The schema of a scene file: one of bodies and obstacles in tables, or one of the paper's cases."""
+    """The schema of a scene file: one of bodies and obstacles in tables, or one of the paper's
+    cases.
+    """
     models = [Top, Contact, *BODIES.values(), *OBSTACLES.values()]
     _, made = models_json_schema([(one, "validation") for one in models])
     known: dict[str, Any] = {name: _plain(one) for name, one in made["$defs"].items()}

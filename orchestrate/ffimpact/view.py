@@ -19,7 +19,8 @@ SECONDS = 5.0  # that the animation takes
 
 
 def view(result: Result, path: str | Path | None = None, field: str = "von_mises") -> Any:
-    """The deforming bodies over time with a field of the states: a k3d plot, or `path`, the HTML file that was written.
+    """The deforming bodies over time with a field of the states: a k3d plot, or `path`, the
+    HTML file that was written.
 
     The time of the player is that of the run, slowed down so that all of it takes some seconds.
     """

@@ -3,8 +3,7 @@
 import pandas as pd
 import pytest
 
-from benchmarks import __main__ as measurements
-from benchmarks import viscoelastic as study
+from benchmarks import __main__ as measurements, viscoelastic as study
 from ffimpact.__main__ import guarded
 
 

@@ -11,8 +11,7 @@ import pandas as pd
 import pytest
 
 import ffimpact as ff
-from ffimpact import scene as files
-from ffimpact import schema
+from ffimpact import scene as files, schema
 from ffimpact.output.results import read_history
 from tests.support.api import RUBBER, drop
 
@@ -172,6 +171,18 @@ def test_a_sweep(tmp_path):
     }
     with pytest.raises(ff.BadInput, match="impuls"):
         study.plot(x="body.1.velocity.2", y="impuls")
+
+
+def test_entries_of_a_sweep_hold_in_all_its_runs(tmp_path):
+    """Beside those that vary; without an estimate no run has errors."""
+    study = ff.sweep(
+        drop(accuracy=0.3, fields=0),
+        {"body.1.velocity.2": [-2]},
+        {"body.1.young": 2e6},
+        estimate=False,
+        out=tmp_path,
+    )
+    assert study.results[0].scene["body"][0]["young"] == 2e6 and not study.results[0].errors
 
 
 def test_importing_it_changes_nothing_global():

@@ -98,7 +98,7 @@ COMMAND = ("run", "disc-normal", "--quiet", "--checkpoint-every", "10", "--set",
            *(f"{name}={value}" for name, value in SET.items() if name != "checkpoint_every"), "--out")
 
 
-def go(out: Path, **changed) -> results.RunResult:
+def go(out: Path, **changed) -> results.Record:
     options = {name: changed.pop(name) for name in ("force", "mesh_file") if name in changed}
     return run.run(scene.load("disc-normal"), SET | changed, out, **options)
 
@@ -108,7 +108,7 @@ def children(process: subprocess.Popen) -> list[int]:
 
 
 @pytest.fixture(scope="module")
-def straight(tmp_path_factory) -> results.RunResult:
+def straight(tmp_path_factory) -> results.Record:
     """The run that is never killed."""
     return go(tmp_path_factory.mktemp("straight") / "out", checkpoint_every=0)
 
@@ -139,7 +139,7 @@ def out(killed, tmp_path) -> Path:
 def test_killed_driver(out, straight):
     """After kill -9 of the driver the same command goes on, and leaves the folder that a straight run leaves."""
     assert call(*COMMAND, str(out)) == (0, "", "")
-    result = results.RunResult(out, results.read_summary(out), False)
+    result = results.Record(out, results.read_summary(out), False)
     assert result.summary["resumed_at"] > 1.5e-3
     assert set(result.summary["provenance"]) == set(straight.summary["provenance"])
     assert {path.name for path in out.iterdir()} == {path.name for path in straight.folder.iterdir()} | {"figures"}

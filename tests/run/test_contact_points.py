@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from ffimpact import scene
-from ffimpact.output.results import RunResult
+from ffimpact.output.results import Record
 from ffimpact.report import contact, report
 from ffimpact.report.figures import plt
 from ffimpact.running import run
@@ -21,14 +21,14 @@ CORNER = {"law": "neohookean", "young": 7e6, "nu": 0.4, "density": 1722, "accura
 @pytest.fixture(scope="module")
 def ran(tmp_path_factory):
     """ran(name, **set): the scene, coarse, with 8 snapshots or as set."""
-    def at(name: str, **given) -> RunResult:
+    def at(name: str, **given) -> Record:
         folder = tmp_path_factory.mktemp("run")
         wanted = read_scene(CORNER, folder, name) if name == "corner" else scene.load(name)
         return run.run(wanted, {"accuracy": 0.4, "fields": 8} | given, folder / "out", estimate=False)
     return at
 
 
-def summed(result: RunResult) -> tuple[pd.DataFrame, pd.DataFrame]:
+def summed(result: Record) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Forces [N/m] by instant and partner from contact.csv, and the rows of the history at the same instants."""
     points = pd.DataFrame(contact.read(result.folder))
     points = points.assign(pressure=points.pressure * points.weight, shear=points.shear * points.weight)

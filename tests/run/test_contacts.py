@@ -13,7 +13,7 @@ COARSE = {"law": "neohookean", "accuracy": 0.1, "fields": 0}
 OBLIQUE = COARSE | {"speed": 12, "angle": 60, "friction_static": 0.7, "friction_dynamic": 0.5, "slip_velocity": 0.1}
 
 
-def go(tmp_path, name: str, values: dict) -> tuple[pd.DataFrame, run.RunResult]:
+def go(tmp_path, name: str, values: dict) -> tuple[pd.DataFrame, run.Record]:
     found = run.run(scene.load(name), values, tmp_path / "out", estimate=False)
     return pd.read_csv(found.folder / "contacts.csv"), found
 

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from ffimpact import __main__ as program
-from ffimpact import scene
+from ffimpact import __main__ as program, scene
 from ffimpact.report import report
 from ffimpact.running import run
 

@@ -18,7 +18,7 @@ COARSE = {"law": "neohookean", "accuracy": 0.1, "fields": 0}
 RADIUS = 0.05
 
 
-def go(out, name: str, values: dict | None = None, mesh_file=None) -> tuple[pd.Series, run.RunResult]:
+def go(out, name: str, values: dict | None = None, mesh_file=None) -> tuple[pd.Series, run.Record]:
     values = values or {}
     found = run.run(scene.load(name), values if mesh_file is None else COARSE | values, out, mesh_file=mesh_file, estimate=False)
     return pd.read_csv(found.folder / "contacts.csv").iloc[0], found
@@ -78,7 +78,7 @@ BLOCK = '[[body]]\nname = "block"\nshape = "rectangle"\nwidth = 0.3\nheight = 0.
 ABOUT_AN_IMPACT = ("restitution", "restitution_tangential", "angle_out")
 
 
-def of(tmp_path, text: str, values: dict | None = None) -> tuple[pd.DataFrame, run.RunResult]:
+def of(tmp_path, text: str, values: dict | None = None) -> tuple[pd.DataFrame, run.Record]:
     (tmp_path / "given.toml").write_text(HEAD + text)
     found = run.run(scene.load(str(tmp_path / "given.toml")), {"fields": 0} | (values or {}), tmp_path / "out", estimate=False)
     return pd.read_csv(found.folder / "contacts.csv"), found

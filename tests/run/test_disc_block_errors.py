@@ -5,8 +5,7 @@ import math
 import pandas as pd
 import pytest
 
-from benchmarks import disc_block_errors as block
-from benchmarks import peers
+from benchmarks import disc_block_errors as block, peers
 from tests.support.disc_block_errors import tables
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ffimpact.failure import Unreadable
-from ffimpact.output import vtu
+from ffimpact.output import folder, vtu
 from ffimpact.report import drawing, figures
 from tests.support.triangles import areas
 
@@ -14,6 +14,7 @@ from tests.support.triangles import areas
 def test_all_figures_are_drawn(finished_folder):
     """A folder with snapshots gives four pictures that are not empty."""
     files = drawing.draw(finished_folder)
+    assert {file.stem for file in files} <= set(folder.FIGURES)
     assert sorted(f.name for f in files) == ["energies.png", "force.png", "shapes.png", "velocity.png"]
     assert all(f.stat().st_size > 5000 for f in files)
 

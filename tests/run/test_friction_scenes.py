@@ -83,7 +83,7 @@ def test_report_tells_sliding_from_sticking(oblique):
 def test_report_tells_breakdown_and_unsolved_jumps(oblique):
     """Where there are any, unsolved jumps are told in plain words, and the place and time of a breakdown in mm and ms."""
     told = oblique.summary | {"unsolved_jumps": 7, "breakdown_time": 1.5e-3, "breakdown_x": 0.01, "breakdown_y": 0.002}
-    text = report.report(results.RunResult(oblique.folder, told, reused=False))
+    text = report.report(results.Record(oblique.folder, told, reused=False))
     assert "7 steps of points in a jump of the friction law" in text
     for line in (r"det F <= 0 from +1\.5 ms", r"there X = +10 mm", r"there Y = +2 mm"):
         assert re.search(line, text)

@@ -21,7 +21,7 @@ def peg(radius: float, kind: str = "circle", axes: int = 2) -> dict:
     return {"name": "peg", "kind": kind, "centre": [0, 0.015 - radius, 0][:axes], "radius": radius}
 
 
-def said(found: run.RunResult, name: str) -> list[str]:
+def said(found: run.Record, name: str) -> list[str]:
     return [one for one in found.summary["warnings"] if one.startswith(name + ": ")]
 
 

@@ -130,7 +130,7 @@ def test_body_between_two_snapshots(finished_folder):
 
 def test_frames_differ_in_time_and_nothing_else(finished_folder):
     """From frame to frame the time, the marks on both force curves and the diameter move; axes and colour scale stay."""
-    result = results.RunResult(finished_folder, {}, reused=True)
+    result = results.Record(finished_folder, {}, reused=True)
     history = result.history
     history["friction_force"] = -0.3 * history["normal_force"]
     motion = movie.Motion(finished_folder / "fields.pvd", half=True)

@@ -102,7 +102,7 @@ def test_every_export_and_every_command_is_in_the_reference():
     named = re.findall(
         r"^\.\. auto(?:class|function|exception):: ffimpact\.(\w+)$", text, re.MULTILINE
     )
-    assert sorted(named) == ffimpact.__all__
+    assert sorted(named) == sorted(ffimpact.__all__)
     commands = re.findall(
         r"^## `ffimpact (\S+)`$",
         (ROOT / "docs/reference/command-line.md").read_text(),

@@ -6,10 +6,13 @@ import re
 import pandas as pd
 import pytest
 
-from examples.paper import bodies as paper_bodies
-from examples.paper import judging as paper_judging
-from examples.paper import page as paper_page
-from examples.paper import paper, stick_slip
+from examples.paper import (
+    bodies as paper_bodies,
+    judging as paper_judging,
+    page as paper_page,
+    paper,
+    stick_slip,
+)
 from examples.paper.judging import AGREES, DIFFERS, OPEN, STATEMENTS, Finding
 from ffimpact import __version__, scene
 from ffimpact.__main__ import guarded

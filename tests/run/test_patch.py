@@ -10,7 +10,7 @@ import pytest
 
 from ffimpact import scene
 from ffimpact.output import vtu
-from ffimpact.output.results import RunResult, body_names
+from ffimpact.output.results import Record, body_names
 from ffimpact.report import bodies, contact, figures
 from ffimpact.running import run
 
@@ -24,7 +24,7 @@ def ran(tmp_path_factory):
     """ran(which): a coarse run with snapshots at all steps, once."""
     results = {}
 
-    def at(which: str) -> RunResult:
+    def at(which: str) -> Record:
         if which not in results:
             name, given = SCENES[which]
             results[which] = run.run(scene.load(name), {"accuracy": 0.4, "fields": 30} | given, tmp_path_factory.mktemp("run") / "out", estimate=False)
@@ -32,7 +32,7 @@ def ran(tmp_path_factory):
     return at
 
 
-def at_the_same_times(result: RunResult) -> list[tuple[pd.DataFrame, pd.Series]]:
+def at_the_same_times(result: Record) -> list[tuple[pd.DataFrame, pd.Series]]:
     """The points under load at an instant and the row of the history there."""
     history = pd.DataFrame(result.history)
     return [(points, history.iloc[(history.t - t).abs().argmin()]) for t, points in pd.DataFrame(contact.read(result.folder)).groupby("t")]

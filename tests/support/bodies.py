@@ -2,8 +2,7 @@
 
 import copy
 
-from ffimpact.scene import SCENES, Scene
-from ffimpact.scene import read as read_scene
+from ffimpact.scene import SCENES, Scene, read as read_scene
 from ffimpact.scenes.entries import set_entry
 
 DISC = {"name": "disc", "shape": "disc", "radius": 0.5, "position": [0, 1.5], "velocity": [0, -10]}

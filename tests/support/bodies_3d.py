@@ -5,8 +5,7 @@ import math
 import numpy as np
 
 from ffimpact.mesh import mesh, solid_mesh
-from ffimpact.scene import SCENES, Scene
-from ffimpact.scene import read as read_scene
+from ffimpact.scene import SCENES, Scene, read as read_scene
 
 BALL = {"name": "ball", "shape": "ball", "radius": 0.05, "position": [0, 0.051, 0], "velocity": [0, -8, 0]}
 BLOCK = {"name": "block", "shape": "box", "width": 0.24, "height": 0.08, "depth": 0.2, "position": [0, -0.04, 0]}

@@ -2,8 +2,7 @@
 
 import math
 
-from ffimpact.scene import SCENES, Scene
-from ffimpact.scene import read as read_scene
+from ffimpact.scene import SCENES, Scene, read as read_scene
 
 BALL = {"name": "ball", "shape": "ball", "radius": 0.5, "position": [0, 1.5], "velocity": -10}
 FLOOR = {"name": "floor", "kind": "plane", "point": [0, -1], "normal": [0, 1]}

@@ -6,8 +6,7 @@ import pandas as pd
 
 from ffimpact import scene
 from ffimpact.running import run
-from ffimpact.scene import Scene
-from ffimpact.scene import read as read_scene
+from ffimpact.scene import Scene, read as read_scene
 
 RUBBER = {"young": 7e6, "nu": 0.3, "density": 1722, "law": "neohookean", "accuracy": 0.1}
 DISC = {"shape": "disc", "radius": 0.05}
@@ -18,6 +17,6 @@ def read(*bodies: dict, obstacles: tuple = (), **more) -> Scene:
     return read_scene(RUBBER | more | {"body": [*bodies], "obstacle": [*obstacles]}, Path("."), "flights")
 
 
-def go(tmp_path: Path, given: scene.Scene, values: dict | None = None) -> tuple[pd.DataFrame, run.RunResult]:
+def go(tmp_path: Path, given: scene.Scene, values: dict | None = None) -> tuple[pd.DataFrame, run.Record]:
     found = run.run(given, values or {}, tmp_path / "out", estimate=False)
     return pd.read_csv(found.folder / "contacts.csv"), found

@@ -15,7 +15,7 @@ SIZE = 0.008                # of the elements of other shapes [m]
 SETTINGS = {"law": "neohookean", "penalty": 1e9, "speed": 4, "fields": 0, "dt": 4e-5}
 
 
-def go(out: Path, m: mesh.Mesh, **values) -> results.RunResult:
+def go(out: Path, m: mesh.Mesh, **values) -> results.Record:
     """A run of disc-normal with these values on this mesh; the file is beside the folder."""
     mesh.write(m, out.with_suffix(".msh"))
     return run.run(scene.load("disc-normal"), SETTINGS | values, out, mesh_file=out.with_suffix(".msh"), estimate=False)
@@ -35,7 +35,7 @@ def moved(m: mesh.Mesh, x: float, y: float) -> mesh.Mesh:
     return replace(m, points=m.points + (x, y))
 
 
-def agree(a: results.RunResult, b: results.RunResult, band: float,
+def agree(a: results.Record, b: results.Record, band: float,
           names=("normal_force", "kinetic", "elastic", "contact", "y", "vy", "contact_size", "max_penetration")) -> None:
     for name in names:
         assert abs(a.history[name] - b.history[name]).max() < band * abs(a.history[name]).max(), name

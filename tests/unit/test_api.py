@@ -37,6 +37,14 @@ def test_entries_are_set_by_dotted_names():
     assert changed != drop()
 
 
+def test_an_entry_set_to_none_is_left_to_the_program():
+    """Of a scene, of a body and of contact; a component of a vector cannot be."""
+    changed = drop(accuracy=0.02).set({"accuracy": None, "contact.friction_static": None})
+    assert changed.accuracy is None and changed.contact == ff.Contact()
+    with pytest.raises(ff.BadInput, match="body.1.velocity"):
+        drop().set({"body.1.velocity.2": None})
+
+
 def test_a_body_may_be_given_as_the_table_of_a_file():
     table = drop().table()
     made = ff.Scene(bodies=table["body"], obstacles=table["obstacle"], contact=drop().contact)

@@ -11,8 +11,7 @@ from ffimpact.failure import BadInput
 from ffimpact.geometry.outlines import ellipse_loop, polygon_loop, self_crossing
 from ffimpact.input.toml_text import to_toml
 from ffimpact.mesh import mesh
-from ffimpact.scene import load
-from ffimpact.scene import read as read_scene
+from ffimpact.scene import load, read as read_scene
 from ffimpact.scenes import assembly
 from ffimpact.scenes.entries import set_entry
 from tests.support.bodies import FLOOR, SCENE, SQUARE, changed, read, with_body

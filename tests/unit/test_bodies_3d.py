@@ -8,8 +8,7 @@ import pytest
 from ffimpact.failure import BadInput
 from ffimpact.geometry import tumbling
 from ffimpact.mesh import mesh, solid_mesh, solids
-from ffimpact.scene import SCENES
-from ffimpact.scene import read as read_scene
+from ffimpact.scene import SCENES, read as read_scene
 from ffimpact.scenes import approach, mirror
 from tests.support.bodies_3d import BALL, BLOCK, FLOOR, read
 

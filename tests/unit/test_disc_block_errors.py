@@ -3,8 +3,7 @@
 import pandas as pd
 import pytest
 
-from benchmarks import disc_block_errors as block
-from benchmarks import peers
+from benchmarks import disc_block_errors as block, peers
 from ffimpact.sweeps import study
 from tests.support.disc_block_errors import CASE, tables
 

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from benchmarks import __main__ as measurements
-from benchmarks import oblique_angles as angles
+from benchmarks import __main__ as measurements, oblique_angles as angles
 from ffimpact.__main__ import guarded
 from tests.support.oblique_angles import rows
 from verification.oblique_ball import NU

@@ -5,9 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from examples.paper import bodies as paper_bodies
-from examples.paper import friction as paper_friction
-from examples.paper import page as paper_page
+from examples.paper import bodies as paper_bodies, friction as paper_friction, page as paper_page
 from examples.paper.judging import DIFFERS, STATEMENTS, maxima
 from ffimpact import scene
 from ffimpact.input.parameters import ROOT

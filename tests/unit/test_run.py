@@ -1,6 +1,5 @@
 """The run contract: one scene, one run, one folder; what is kept, reused and refused."""
 
-import re
 
 import numpy as np
 import pytest
@@ -8,7 +7,6 @@ import pytest
 from ffimpact.failure import NotInstalled, Unreadable
 from ffimpact.freefem import freefem
 from ffimpact.output import folder, results
-from ffimpact.report import figures
 from ffimpact.running import run
 from tests.support.run import go
 
@@ -54,13 +52,6 @@ def test_killed_between_two_renames(tmp_path):
     (part / "summary.json").write_text('{"status": "ok", "provenance": {"code": "1"}}')
     with folder.staging(tmp_path / "out") as (stage, _):
         assert not any(stage.iterdir()) and (tmp_path / "out/summary.json").exists()
-
-
-def test_the_folder_knows_every_figure():
-    """What is drawn of a run is the program's, to be drawn anew: no figure's name is missing in the list of what it writes."""
-    text = "".join((run.PACKAGE / f"report/{name}.py").read_text() for name in ("drawing", "figures", "bodies"))
-    lines = "".join(line for line in text.splitlines() if re.search(r"\bdrawn\b", line))
-    assert set(re.findall(r'"([a-z]+)"(?=\]|:)', lines)) | set(figures.COLOURED) == set(folder.FIGURES)
 
 
 def test_what_decides_a_result_is_derived():

@@ -2,7 +2,6 @@
 
 import ast
 import tomllib
-from pathlib import Path
 
 import pytest
 
@@ -42,13 +41,6 @@ def test_a_room_imports_those_before_it(module):
     height = {name: k for k, line in enumerate(ORDER) for name in line}
     later = {"/".join(other) for other in imported(module) if height[other[0]] > height[module[0]] and other != ("__init__",)}
     assert not later
-
-
-@pytest.mark.parametrize("path", MODULES.values(), ids=lambda path: str(path.relative_to(PACKAGE)))
-def test_a_function_fits_a_screen(path: Path):
-    """At most 50 lines."""
-    functions = [node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.FunctionDef)]
-    assert not [f"{one.name}: {one.end_lineno - one.lineno + 1}" for one in functions if one.end_lineno - one.lineno >= 50]
 
 
 LINE = 140

@@ -1,9 +1,10 @@
 """Polylines with rounded corners as rigid obstacles: what is accepted, and their signed distance.
 
-A chain of vertices (n, 2) [m], open or closed, has its free side to the LEFT of the direction of travel and the solid to the right:
-clockwise and closed it is a block, counter-clockwise a container. Open, it goes straight on beyond both ends. Its surface lies at the
-distance `rounding` [m] from the chain on the free side: convex corners become arcs of that radius, concave ones stay corners
-(edp/core/contact/shapes.idp).
+A chain of vertices (n, 2) [m], open or closed, has its free side to the LEFT of the direction of
+travel and the solid to the right: clockwise and closed it is a block, counter-clockwise a
+container. Open, it goes straight on beyond both ends. Its surface lies at the distance `rounding`
+[m] from the chain on the free side: convex corners become arcs of that radius, concave ones stay
+corners (edp/core/contact/shapes.idp).
 """
 
 import math
@@ -16,13 +17,17 @@ from .outlines import cross
 
 __all__ = ["Sides", "check", "gap", "numbers", "radius_at", "sides_of"]
 
-CORNER = math.radians(30)    # what turns by less at a vertex is no corner (edp/core/contact/shapes.idp)
-NEAR = 1e-12                 # of the chain's size: what round-off cannot tell apart
+CORNER = math.radians(
+    30
+)  # what turns by less at a vertex is no corner (edp/core/contact/shapes.idp)
+NEAR = 1e-12  # of the chain's size: what round-off cannot tell apart
 
 
 @dataclass(frozen=True)
 class Sides:
-    """The m sides: first points (m, 2), unit directions of travel (m, 2), extents along them (m), infinite beyond open ends."""
+    """The m sides: first points (m, 2), unit directions of travel (m, 2), extents along them
+    (m), infinite beyond open ends.
+    """
 
     start: np.ndarray
     along: np.ndarray
@@ -32,28 +37,43 @@ class Sides:
 
 
 def check(path: str, vertices: np.ndarray, closed: bool) -> None:
-    """BadInput, naming path.key, unless the chain of two vertices or more is one that has two sides."""
+    """BadInput, naming path.key, unless the chain of two vertices or more is one that has two
+    sides.
+    """
     if closed and len(vertices) < 3:
-        raise BadInput(f"{path}.vertices: {len(vertices)} given (accepted: 3 or more points [x, y] of a closed chain)")
+        raise BadInput(
+            f"{path}.vertices: {len(vertices)} given (accepted: 3 or more points [x, y] of a closed chain)"
+        )
     size = np.ptp(vertices, axis=0).max()
-    steps = np.linalg.norm(np.diff(vertices, axis=0, append=vertices[:1] if closed else np.empty((0, 2))), axis=1)
+    steps = np.linalg.norm(
+        np.diff(vertices, axis=0, append=vertices[:1] if closed else np.empty((0, 2))), axis=1
+    )
     for k in np.flatnonzero(steps <= NEAR * size):
         if k == len(vertices) - 1:
-            raise BadInput(f"{path}.vertices.{k + 1}: {_text(vertices[k])} is the first vertex again (accepted: a closed chain without it)")
-        raise BadInput(f"{path}.vertices.{k + 2}: {_text(vertices[k + 1])} is the vertex before it again (accepted: each vertex once)")
+            raise BadInput(
+                f"{path}.vertices.{k + 1}: {_text(vertices[k])} is the first vertex again (accepted: a closed chain without it)"
+            )
+        raise BadInput(
+            f"{path}.vertices.{k + 2}: {_text(vertices[k + 1])} is the vertex before it again (accepted: each vertex once)"
+        )
     sides = _sides(vertices, closed)
     after = np.roll(sides.along, -1, axis=0)
     back = (np.sum(sides.along * after, axis=1) < 0) & (abs(cross(sides.along, after)) < 1e-9)
     for k in np.flatnonzero(back if closed else back[:-1]):
         j = (k + 1) % len(vertices)
-        raise BadInput(f"{path}.vertices.{j + 1}: the chain turns back on itself at {_text(vertices[j])} (accepted: corners of less than "
-                       f"180 degrees)")
+        raise BadInput(
+            f"{path}.vertices.{j + 1}: the chain turns back on itself at {_text(vertices[j])} (accepted: corners of less than "
+            f"180 degrees)"
+        )
     crossing = _crossing(sides, size)
     if crossing:
         i, j, point = crossing
-        raise BadInput(f"{path}.vertices: side {i + 1} and side {j + 1} meet at {_text(point)} (accepted: a chain that does not cross or "
-                       f"touch itself"
-                       + ("" if closed else "; an open one goes straight on beyond its ends") + ")")
+        raise BadInput(
+            f"{path}.vertices: side {i + 1} and side {j + 1} meet at {_text(point)} (accepted: a chain that does not cross or "
+            f"touch itself"
+            + ("" if closed else "; an open one goes straight on beyond its ends")
+            + ")"
+        )
 
 
 def numbers(vertices: np.ndarray, closed: bool, rounding: float) -> tuple[float, ...]:
@@ -62,18 +82,24 @@ def numbers(vertices: np.ndarray, closed: bool, rounding: float) -> tuple[float,
 
 
 def gap(points: np.ndarray, numbers: tuple[float, ...]) -> np.ndarray:
-    """Signed distances (n,) of points (n, 2) from the surface of the chain `numbers`, negative inside the solid."""
+    """Signed distances (n,) of points (n, 2) from the surface of the chain `numbers`, negative
+    inside the solid.
+    """
     sides = sides_of(numbers)
-    from_start = points[:, None] - sides.start                                       # (n, m, 2)
+    from_start = points[:, None] - sides.start  # (n, m, 2)
     at = np.sum(from_start * sides.along, axis=2)
-    away = from_start - np.clip(at, sides.low, sides.high)[..., None] * sides.along  # from the nearest point of each side
+    away = (
+        from_start - np.clip(at, sides.low, sides.high)[..., None] * sides.along
+    )  # from the nearest point of each side
     distance = np.linalg.norm(away, axis=2)
     row, nearest = np.arange(len(points)), distance.argmin(axis=1)
     at, away = at[row, nearest], away[row, nearest]
     # at a vertex the side of the sum of the normals of both sides, elsewhere that of the normal
     normal = np.column_stack([-sides.along[:, 1], sides.along[:, 0]])
     before, after = normal[nearest - 1], normal[(nearest + 1) % len(normal)]
-    beyond = (at > sides.high[nearest])[:, None] * after + (at < sides.low[nearest])[:, None] * before
+    beyond = (at > sides.high[nearest])[:, None] * after + (at < sides.low[nearest])[
+        :, None
+    ] * before
     side = np.sum(away * (normal[nearest] + beyond), axis=1)
     return np.where(side < 0, -1, 1) * distance[row, nearest] - numbers[1]
 
@@ -84,17 +110,30 @@ def sides_of(numbers: tuple[float, ...]) -> Sides:
 
 
 def radius_at(point: np.ndarray, within: float, numbers: tuple[float, ...]) -> float:
-    """The rounding [m] where a convex corner is as near to a point (2,) as any of the chain, or by `within` [m] less; else infinite."""
+    """The rounding [m] where a convex corner is as near to a point (2,) as any of the chain, or
+    by `within` [m] less; else infinite.
+    """
     sides = sides_of(numbers)
-    before, after = (np.roll(sides.along, 1, axis=0), sides.along) if sides.closed else (sides.along[:-1], sides.along[1:])
-    turn = np.arctan2(-cross(before, after), np.sum(before * after, axis=1))       # clockwise: the solid is to the right
+    before, after = (
+        (np.roll(sides.along, 1, axis=0), sides.along)
+        if sides.closed
+        else (sides.along[:-1], sides.along[1:])
+    )
+    turn = np.arctan2(
+        -cross(before, after), np.sum(before * after, axis=1)
+    )  # clockwise: the solid is to the right
     corners = (sides.start if sides.closed else sides.start[1:])[turn > CORNER]
-    near = np.linalg.norm(point - corners, axis=1) <= abs(gap(point[None], numbers)[0] + numbers[1]) + within
+    near = (
+        np.linalg.norm(point - corners, axis=1)
+        <= abs(gap(point[None], numbers)[0] + numbers[1]) + within
+    )
     return numbers[1] if near.any() else np.inf
 
 
 def _sides(vertices: np.ndarray, closed: bool) -> Sides:
-    start, end = (vertices, np.roll(vertices, -1, axis=0)) if closed else (vertices[:-1], vertices[1:])
+    start, end = (
+        (vertices, np.roll(vertices, -1, axis=0)) if closed else (vertices[:-1], vertices[1:])
+    )
     length = np.linalg.norm(end - start, axis=1)
     low, high = np.zeros(len(length)), length.copy()
     if not closed:
@@ -114,7 +153,12 @@ def _crossing(sides: Sides, size: float) -> tuple[int, int, np.ndarray] | None:
     parallel = abs(sine) < NEAR
     sine = np.where(parallel, 1, sine)
     s, u = cross(r, f) / sine, cross(r, e) / sine
-    meet = ((s >= sides.low[i] - near) & (s <= sides.high[i] + near) & (u >= sides.low[j] - near) & (u <= sides.high[j] + near))
+    meet = (
+        (s >= sides.low[i] - near)
+        & (s <= sides.high[i] + near)
+        & (u >= sides.low[j] - near)
+        & (u <= sides.high[j] + near)
+    )
     # on one line: from where to where j lies along i
     turned, offset = np.where(np.sum(e * f, axis=1) < 0, -1, 1), np.sum(r * e, axis=1)
     from_, to = np.sort([offset + turned * sides.low[j], offset + turned * sides.high[j]], axis=0)

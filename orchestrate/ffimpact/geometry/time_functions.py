@@ -19,17 +19,19 @@ from . import implicit
 
 __all__ = ["TimeFunction", "constant", "farthest", "functions", "of_csv", "of_entry", "of_table"]
 
-CLOSE = 1e-8                 # error of an expression's polynomials over its largest value
-STEEPEST = 1e30              # 1/s: a slope beyond is none
-ROUGH, BROKEN = 1e-6, 1e-2   # the same of what changes often; of what is not continuous
-FEWEST, MOST = 64, 2**17     # knots
-TESTED = 15                  # times between two knots at which an expression and its polynomial are compared
-SHORTEST_INTERVAL = 1e-12    # of end_time
+CLOSE = 1e-8  # error of an expression's polynomials over its largest value
+STEEPEST = 1e30  # 1/s: a slope beyond is none
+ROUGH, BROKEN = 1e-6, 1e-2  # the same of what changes often; of what is not continuous
+FEWEST, MOST = 64, 2**17  # knots
+TESTED = 15  # times between two knots at which an expression and its polynomial are compared
+SHORTEST_INTERVAL = 1e-12  # of end_time
 
 
 @dataclass(frozen=True)
 class TimeFunction:
-    """`knots` (n, 3): time [s], value, slope; before the first and behind the last it is constant."""
+    """`knots` (n, 3): time [s], value, slope; before the first and behind the last it is
+    constant.
+    """
 
     knots: np.ndarray
 
@@ -49,6 +51,7 @@ class TimeFunction:
         if len(times) == 1:
             return values[0] + 0 * np.asarray(t)
         from scipy.interpolate import CubicHermiteSpline  # most scenes need none
+
         return CubicHermiteSpline(times, values, slopes)(np.clip(t, times[0], times[-1]))
 
 
@@ -61,17 +64,24 @@ def of_entry(entry: str, given: object, end_time: float) -> TimeFunction:
     """A number, or an expression of t, which is used from 0 to end_time [s]. BadInput, naming the
     entry, where it is neither, or no number at some time."""
     if isinstance(given, bool) or not isinstance(given, int | float | str):
-        raise BadInput(f"{entry}: '{brief(given)}' is no function of time (accepted: a number, or an "
-                       f"expression of t in quotes)")
+        raise BadInput(
+            f"{entry}: '{brief(given)}' is no function of time (accepted: a number, or an "
+            f"expression of t in quotes)"
+        )
     if isinstance(given, int | float):
         return constant(_limited(entry, float(given)))
     program = implicit.program(entry, given, "t")
     value, _ = _evaluated(entry, given, program, np.zeros(1))
-    if not any(isinstance(node, ast.Name) and node.id == "t" for node in ast.walk(ast.parse(given.strip().replace("^", "**")))):
+    if not any(
+        isinstance(node, ast.Name) and node.id == "t"
+        for node in ast.walk(ast.parse(given.strip().replace("^", "**")))
+    ):
         return constant(float(value[0]))
     if end_time <= 0:
-        raise BadInput(f"{entry}: '{brief(given)}' is a function of time, and end_time is 0, the end "
-                       f"of the contact (accepted: a number here, or an end_time > 0)")
+        raise BadInput(
+            f"{entry}: '{brief(given)}' is a function of time, and end_time is 0, the end "
+            f"of the contact (accepted: a number here, or an end_time > 0)"
+        )
     return TimeFunction(_sampled(entry, given, program, end_time))
 
 
@@ -80,25 +90,32 @@ def of_table(entry: str, times: object, values: object) -> TimeFunction:
     columns = []
     for name, column in (("t", times), ("value", values)):
         if not isinstance(column, list) or not all(type(one) in (int, float) for one in column):
-            raise BadInput(f"{entry}: '{brief(column)}' of {name} is no list of numbers "
-                           f"(accepted: as many numbers as times, two or more)")
+            raise BadInput(
+                f"{entry}: '{brief(column)}' of {name} is no list of numbers "
+                f"(accepted: as many numbers as times, two or more)"
+            )
         columns.append(np.array([_limited(entry, float(one)) for one in column]))
     t, value = columns
     if len(t) != len(value) or len(t) < 2:
-        raise BadInput(f"{entry}: {len(t)} times and {len(value)} values (accepted: as many values as "
-                       f"times, two or more)")
+        raise BadInput(
+            f"{entry}: {len(t)} times and {len(value)} values (accepted: as many values as "
+            f"times, two or more)"
+        )
     if not (np.diff(t) > 0).all():
         where = int(np.argmin(np.diff(t) > 0)) + 1
-        raise BadInput(f"{entry}: the time {t[where]:g} s follows {t[where - 1]:g} s (accepted: times "
-                       f"that grow)")
+        raise BadInput(
+            f"{entry}: the time {t[where]:g} s follows {t[where - 1]:g} s (accepted: times "
+            f"that grow)"
+        )
     from scipy.interpolate import PchipInterpolator
 
     return TimeFunction(np.column_stack([t, value, PchipInterpolator(t, value).derivative()(t)]))
 
 
 def of_csv(entry: str, path: Path, columns: str) -> dict[str, list[float]]:
-    """The table in a CSV file as columns {"t": [...], "x": [...], ...}: its first line names t and the
-    `columns`, each a letter. BadInput, naming the entry."""
+    """The table in a CSV file as columns {"t": [...], "x": [...], ...}: its first line names t
+    and the `columns`, each a letter. BadInput, naming the entry.
+    """
     first = ",".join(["t", *columns])
     accepted = f"(accepted: a CSV file with the first line '{first}' and {len(columns) + 1} columns of numbers)"
     try:
@@ -106,7 +123,9 @@ def of_csv(entry: str, path: Path, columns: str) -> dict[str, list[float]]:
             rows = [[cell.strip() for cell in row] for row in csv.reader(file) if any(row)]
     except (OSError, UnicodeDecodeError, ValueError, csv.Error) as error:
         reason = getattr(error, "strerror", None) or error
-        raise BadInput(f"{entry}: '{brief(path.name)}' cannot be read: {reason} {accepted}") from None
+        raise BadInput(
+            f"{entry}: '{brief(path.name)}' cannot be read: {reason} {accepted}"
+        ) from None
     if not rows or sorted(rows[0]) != sorted(["t", *columns]):
         begins = ",".join(rows[0]) if rows else ""
         raise BadInput(f"{entry}: '{brief(path.name)}' begins with '{brief(begins)}' {accepted}")
@@ -115,8 +134,10 @@ def of_csv(entry: str, path: Path, columns: str) -> dict[str, list[float]]:
             if len([float(cell) for cell in row]) != len(rows[0]):
                 raise ValueError
         except ValueError:
-            raise BadInput(f"{entry}: line {number} of '{brief(path.name)}' is '{brief(','.join(row))}' "
-                           f"{accepted}") from None
+            raise BadInput(
+                f"{entry}: line {number} of '{brief(path.name)}' is '{brief(','.join(row))}' "
+                f"{accepted}"
+            ) from None
     return {name: [float(row[k]) for row in rows[1:]] for k, name in enumerate(rows[0])}
 
 
@@ -125,20 +146,27 @@ def functions(entry: str, given: object, names: str, end_time: float) -> tuple[T
     BadInput, naming the entry."""
     if isinstance(given, dict):
         if set(given) != {"t", *names}:
-            raise BadInput(f"{entry}: '{brief(given)}' is no table (accepted: t and {', '.join(names)})")
+            raise BadInput(
+                f"{entry}: '{brief(given)}' is no table (accepted: t and {', '.join(names)})"
+            )
         return tuple(of_table(f"{entry}.{name}", given["t"], given[name]) for name in names)
     if len(names) == 1 and not isinstance(given, list):
         given = [given]
     if not isinstance(given, list) or len(given) != len(names):
-        raise BadInput(f"{entry}: '{brief(given)}' is no [{', '.join(names)}] (accepted: {len(names)} numbers "
-                       f"or expressions of t, or a CSV file)")
-    return tuple(of_entry(f"{entry}.{k}" if len(names) > 1 else entry, one, end_time)
-                 for k, one in enumerate(given, 1))
+        raise BadInput(
+            f"{entry}: '{brief(given)}' is no [{', '.join(names)}] (accepted: {len(names)} numbers "
+            f"or expressions of t, or a CSV file)"
+        )
+    return tuple(
+        of_entry(f"{entry}.{k}" if len(names) > 1 else entry, one, end_time)
+        for k, one in enumerate(given, 1)
+    )
 
 
 def farthest(way: Sequence[TimeFunction], until: float = np.inf) -> tuple[np.ndarray, float]:
-    """How far (axes,) functions of the components have moved when that is farthest from their start, up
-    to a time [s], and when [s]."""
+    """How far (axes,) functions of the components have moved when that is farthest from their
+    start, up to a time [s], and when [s].
+    """
     times = np.unique(np.concatenate([one.knots[:, 0] for one in way]))
     times = times[(times >= 0) & (times <= until)]
     if not len(times):
@@ -164,25 +192,32 @@ def _sampled(entry: str, given: str, program: tuple[float, ...], end: float) -> 
         if off.max() <= (ROUGH * largest if too_many else CLOSE * largest) or not open_ones.any():
             break
         if too_many:
-            raise BadInput(f"{entry}: '{brief(given)}' changes too often up to end_time = {end:g} s "
-                           f"(accepted: what {MOST} cubic polynomials follow)")
+            raise BadInput(
+                f"{entry}: '{brief(given)}' changes too often up to end_time = {end:g} s "
+                f"(accepted: what {MOST} cubic polynomials follow)"
+            )
         t = np.sort(np.append(t, (t[:-1] + width / 2)[open_ones]))
     if off.max() > BROKEN * largest:
-        raise BadInput(f"{entry}: '{brief(given)}' jumps, or has no limit, at t = {t[off.argmax()]:.6g} s "
-                       f"(accepted: a continuous function)")
+        raise BadInput(
+            f"{entry}: '{brief(given)}' jumps, or has no limit, at t = {t[off.argmax()]:.6g} s "
+            f"(accepted: a continuous function)"
+        )
     return knots
 
 
-def _evaluated(entry: str, given: str, program: tuple[float, ...],
-               t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _evaluated(
+    entry: str, given: str, program: tuple[float, ...], t: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Values and slopes at times (n,)."""
     with np.errstate(all="ignore"):
         value, slope = implicit.run(program, t[:, None])
     value, slope = np.broadcast_to(value, t.shape), np.broadcast_to(slope[:, 0], t.shape)
     bad = ~((abs(value) <= LONGEST**2) & (abs(slope) <= STEEPEST))
     if bad.any():
-        raise BadInput(f"{entry}: '{brief(given)}' is {value[bad][0]:g}, its slope {slope[bad][0]:g}, at "
-                       f"t = {t[bad][0]:g} s (accepted: a number and a finite slope at all times)")
+        raise BadInput(
+            f"{entry}: '{brief(given)}' is {value[bad][0]:g}, its slope {slope[bad][0]:g}, at "
+            f"t = {t[bad][0]:g} s (accepted: a number and a finite slope at all times)"
+        )
     return value, slope
 
 

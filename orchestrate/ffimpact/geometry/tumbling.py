@@ -1,4 +1,6 @@
-"""How a free rigid body turns: Euler's equations, its angular momentum L constant in space, dR/dt = w x R with w = R J^-1 R^T L."""
+"""How a free rigid body turns: Euler's equations, its angular momentum L constant in space, dR/dt =
+w x R with w = R J^-1 R^T L.
+"""
 
 import math
 from functools import cached_property, lru_cache
@@ -7,12 +9,15 @@ import numpy as np
 
 __all__ = ["fastest", "rotation", "turned"]
 
-STEP = 0.05                  # rad: a step of Runge and Kutta's fourth order; its error is some 1e-9
-PRINCIPAL = 1e-9             # of spin and angular momentum, how far they may be from parallel for an axis to be principal
+STEP = 0.05  # rad: a step of Runge and Kutta's fourth order; its error is some 1e-9
+# of spin and angular momentum, how far they may be from parallel for an axis to be principal
+PRINCIPAL = 1e-9
 
 
 def turned(moments: np.ndarray, start: np.ndarray, spin: np.ndarray, t: float) -> np.ndarray:
-    """The matrix (3, 3) of a body at time t >= 0 [s], `start` and `spin` (3,) [rad/s] at 0; `moments` (3, 3): of inertia in its axes."""
+    """The matrix (3, 3) of a body at time t >= 0 [s], `start` and `spin` (3,) [rad/s] at 0;
+    `moments` (3, 3): of inertia in its axes.
+    """
     if _principal(moments, start, spin):
         return rotation(spin * t) @ start
     return _motion(moments.tobytes(), start.tobytes(), spin.tobytes()).at(t)
@@ -26,7 +31,9 @@ def fastest(moments: np.ndarray, start: np.ndarray, spin: np.ndarray) -> float:
 
 
 def rotation(turn: np.ndarray) -> np.ndarray:
-    """The matrix of a rotation vector [rad] (Rodrigues), exact at right angles about an axis of coordinates."""
+    """The matrix of a rotation vector [rad] (Rodrigues), exact at right angles about an axis of
+    coordinates.
+    """
     angle = float(np.linalg.norm(turn))
     if angle == 0:
         return np.eye(3)
@@ -44,16 +51,28 @@ def _cross(w: np.ndarray) -> np.ndarray:
 def _principal(moments: np.ndarray, start: np.ndarray, spin: np.ndarray) -> bool:
     """Whether it turns about a principal axis, or not at all, and so goes on."""
     momentum = start @ moments @ start.T @ spin
-    return bool(np.linalg.norm(np.cross(spin, momentum)) <= PRINCIPAL * np.linalg.norm(spin) * np.linalg.norm(momentum))
+    return bool(
+        np.linalg.norm(np.cross(spin, momentum))
+        <= PRINCIPAL * np.linalg.norm(spin) * np.linalg.norm(momentum)
+    )
 
 
 class _Motion:
-    """The matrices at multiples of a step of a period, as far as they were asked for. After a period the spin is the same to the body
-    again, which has turned as a whole about its angular momentum."""
+    """The matrices at multiples of a step of a period, as far as they were asked for. After a
+    period the spin is the same to the body again, which has turned as a whole about its angular
+    momentum.
+    """
 
     def __init__(self, moments: np.ndarray, start: np.ndarray, spin: np.ndarray):
-        self.inverse, self.momentum, self.found = np.linalg.inv(moments), start @ moments @ start.T @ spin, [start]
-        self.step, self.period = STEP / fastest(moments, start, spin), _period(moments, self.momentum, spin)
+        self.inverse, self.momentum, self.found = (
+            np.linalg.inv(moments),
+            start @ moments @ start.T @ spin,
+            [start],
+        )
+        self.step, self.period = (
+            STEP / fastest(moments, start, spin),
+            _period(moments, self.momentum, spin),
+        )
 
     def at(self, t: float) -> np.ndarray:
         periods = int(t / self.period)
@@ -63,8 +82,13 @@ class _Motion:
     @cached_property
     def _turn(self) -> np.ndarray:
         """The rotation vector of a period."""
-        axis, once = self.momentum / np.linalg.norm(self.momentum), self._within(self.period) @ self.found[0].T
-        sine = axis @ [once[2, 1] - once[1, 2], once[0, 2] - once[2, 0], once[1, 0] - once[0, 1]] / 2
+        axis, once = (
+            self.momentum / np.linalg.norm(self.momentum),
+            self._within(self.period) @ self.found[0].T,
+        )
+        sine = (
+            axis @ [once[2, 1] - once[1, 2], once[0, 2] - once[2, 0], once[1, 0] - once[0, 1]] / 2
+        )
         return math.atan2(sine, (np.trace(once) - 1) / 2) * axis
 
     def _within(self, t: float) -> np.ndarray:
@@ -79,15 +103,21 @@ class _Motion:
         c = self._rate(R + dt / 2 * b)
         d = self._rate(R + dt * c)
         left, _, right = np.linalg.svd(R + dt / 6 * (a + 2 * b + 2 * c + d))
-        return left @ right                      # the nearest rotation
+        return left @ right  # the nearest rotation
 
     def _rate(self, R: np.ndarray) -> np.ndarray:
         return _cross(R @ self.inverse @ R.T @ self.momentum) @ R
 
 
 def _period(moments: np.ndarray, momentum: np.ndarray, spin: np.ndarray) -> float:
-    """Seconds, 4 K(m) / p, of Jacobi's functions (Landau and Lifshitz, Mechanics, 37), K by the arithmetic-geometric mean."""
-    (least, middle, most), square, energy = np.linalg.eigvalsh(moments), momentum @ momentum, spin @ momentum
+    """Seconds, 4 K(m) / p, of Jacobi's functions (Landau and Lifshitz, Mechanics, 37), K by the
+    arithmetic-geometric mean.
+    """
+    (least, middle, most), square, energy = (
+        np.linalg.eigvalsh(moments),
+        momentum @ momentum,
+        spin @ momentum,
+    )
     if square < energy * middle:
         least, most = most, least
     rate = (most - middle) * (square - energy * least)

@@ -1,5 +1,6 @@
-"""The tables of a scene as models: bodies by shape, materials by law, supports, loads, obstacles by kind, contact, pairs, and what
-stands at the top. A TOML file, --set, the Python interface and the JSON schema go through them.
+"""The tables of a scene as models: bodies by shape, materials by law, supports, loads, obstacles by
+kind, contact, pairs, and what stands at the top. A TOML file, --set, the Python interface and the
+JSON schema go through them.
 
 An entry that is None is left open: the program chooses it. Units are SI.
 """
@@ -39,12 +40,55 @@ from .rules import (
 from .table import PARAMETERS
 
 __all__ = [
-    "BODIES", "Ball", "Body", "Bowl", "Box", "CONTACT", "Circle", "Contact", "Cylinder", "Disc",
-    "Ellipse", "Ellipsoid", "Entries", "Gas", "Implicit", "Incompressible", "LAWS", "Load",
-    "MATERIAL", "MOST_PRESSURE", "Material", "Mesh", "MooneyRivlin", "NeoHookean", "OBSTACLES",
-    "OWN", "Obstacle", "Ogden", "Pair", "Plane", "Polygon", "Polyline", "Rectangle", "Ring",
-    "SaintVenantKirchhoff", "Shell", "Sphere", "Support", "Surface", "Tables", "Top", "Torus",
-    "Tube", "listed", "of_table", "read", "several", "shared", "tables",
+    "BODIES",
+    "Ball",
+    "Body",
+    "Bowl",
+    "Box",
+    "CONTACT",
+    "Circle",
+    "Contact",
+    "Cylinder",
+    "Disc",
+    "Ellipse",
+    "Ellipsoid",
+    "Entries",
+    "Gas",
+    "Implicit",
+    "Incompressible",
+    "LAWS",
+    "Load",
+    "MATERIAL",
+    "MOST_PRESSURE",
+    "Material",
+    "Mesh",
+    "MooneyRivlin",
+    "NeoHookean",
+    "OBSTACLES",
+    "OWN",
+    "Obstacle",
+    "Ogden",
+    "Pair",
+    "Plane",
+    "Polygon",
+    "Polyline",
+    "Rectangle",
+    "Ring",
+    "SaintVenantKirchhoff",
+    "Shell",
+    "Sphere",
+    "Support",
+    "Surface",
+    "Tables",
+    "Top",
+    "Torus",
+    "Tube",
+    "listed",
+    "of_table",
+    "read",
+    "several",
+    "shared",
+    "tables",
 ]
 
 MOST_PRESSURE = 1e15  # Pa
@@ -117,7 +161,9 @@ class Entries(BaseModel, metaclass=_Made):
 
     @classmethod
     def names(cls, of: Dimension | None) -> list[str]:
-        """The entries that there are in a dimension, its own before those of what it is a kind of."""
+        """The entries that there are in a dimension, its own before those of what it is a
+        kind of.
+        """
         general = cls.__mro__[1]
         common = (
             general.model_fields if issubclass(general, Entries) and general is not Entries else {}
@@ -132,7 +178,9 @@ class Entries(BaseModel, metaclass=_Made):
 
     @classmethod
     def read(cls, entry: str, given: Any, of: Dimension | None) -> Self:
-        """The model of the table `entry` of a scene; BadInput with a line for each thing that is wrong in it."""
+        """The model of the table `entry` of a scene; BadInput with a line for each thing
+        that is wrong in it.
+        """
         if not isinstance(given, dict):
             raise BadInput(
                 f"{entry}: '{brief(given)}' is no table (accepted: a table with {', '.join(cls.names(of))})"
@@ -186,7 +234,9 @@ MOST_LINES = 20  # of one table
 def _lines(
     model: type[Entries], error: ValidationError, entry: str, between: str, of: Dimension | None
 ) -> list[str]:
-    """What pydantic refuses, a line each: entry, value, what is accepted. `between` stands behind the name of the table."""
+    """What pydantic refuses, a line each: entry, value, what is accepted. `between` stands
+    behind the name of the table.
+    """
     found = []
     every = error.errors()
     misspelt = [str(one["loc"][-1]) for one in every if one["type"] == "extra_forbidden"]
@@ -232,10 +282,12 @@ def _refusal(holder: type[Entries], one: Any, name: str, table: str, of: Dimensi
 
 
 class Material(Entries):
-    """What a body is made of. `law` is a constitutive law of edp/core/law; the classes below are those laws.
+    """What a body is made of. `law` is a constitutive law of edp/core/law; the classes below
+    are those laws.
 
-    Damping beside it: `viscosity` and `bulk_viscosity` [Pa s] of Kelvin and Voigt's kind, or `loss`, the loss factor at the
-    first mode; a Maxwell branch of `relaxation_modulus` [Pa] and `relaxation_time` [s].
+    Damping beside it: `viscosity` and `bulk_viscosity` [Pa s] of Kelvin and Voigt's kind, or
+    `loss`, the loss factor at the first mode; a Maxwell branch of `relaxation_modulus` [Pa] and
+    `relaxation_time` [s].
     """
 
     law: Annotated[str, shared("law")]
@@ -270,13 +322,17 @@ class Incompressible(Material):
 
 
 class MooneyRivlin(Material):
-    """Mooney and Rivlin's law; law_parameters = "s", the share of the second invariant in the shear modulus."""
+    """Mooney and Rivlin's law; law_parameters = "s", the share of the second invariant in the
+    shear modulus.
+    """
 
     law: Annotated[str, shared("law")] = "mooney-rivlin"
 
 
 class Ogden(Material):
-    """Ogden's law of one to three terms; law_parameters = "alpha_1, s_1, alpha_2, s_2 ...", exponents and shares."""
+    """Ogden's law of one to three terms; law_parameters = "alpha_1, s_1, alpha_2, s_2 ...",
+    exponents and shares.
+    """
 
     law: Annotated[str, shared("law")] = "ogden"
 
@@ -338,8 +394,10 @@ class Load(Entries):
 
 
 class Body(Entries):
-    """What bodies of all shapes have; the shapes are the classes below. `material` gives law, young, nu, density and damping
-    at once. Rigid ones need none of it but a density or a mass."""
+    """What bodies of all shapes have; the shapes are the classes below. `material` gives law,
+    young, nu, density and damping at once. Rigid ones need none of it but a density or a
+    mass.
+    """
 
     shape: ClassVar[str]
     heading = ("shape",)
@@ -465,7 +523,9 @@ class Ring(Body):
 
 
 class Polygon(Body):
-    """A polygon in plane strain; of revolution its section, from the axis to the axis or beside it."""
+    """A polygon in plane strain; of revolution its section, from the axis to the axis or beside
+    it.
+    """
 
     shape = "polygon"
     dimensions = (PLANE_STRAIN, AXISYMMETRIC)
@@ -684,7 +744,9 @@ OBSTACLES: dict[str, type[Obstacle]] = {
 
 
 class Pair(Entries):
-    """What differs between two partners, by their names; between a body and an obstacle, or two bodies."""
+    """What differs between two partners, by their names; between a body and an obstacle, or two
+    bodies.
+    """
 
     bodies: Annotated[Any, Partners("two names")] = None
     penalty: Annotated[float | str | None, shared("penalty")] = None
@@ -727,7 +789,9 @@ CONTACT = tuple(name for name in Contact.model_fields if name not in ("self_cont
 
 
 def _of_all(name: str, value: Any) -> str:
-    """What a message says of an entry that is of the contact of the whole scene; empty of others."""
+    """What a message says of an entry that is of the contact of the whole scene; empty of
+    others.
+    """
     if name not in CONTACT:
         return ""
     return f": '{brief(value)}' holds for the whole scene (accepted: in [contact]; here {', '.join(OWN)})"
@@ -737,7 +801,9 @@ def _of_all(name: str, value: Any) -> str:
 
 
 class Top(Entries):
-    """What stands at the top: how the run is to be made, and the material and mesh sizes of bodies without their own."""
+    """What stands at the top: how the run is to be made, and the material and mesh sizes of
+    bodies without their own.
+    """
 
     title: Annotated[str | None, Text("a line about it")] = None
     script: Annotated[str | None, Text("script of edp/")] = None
@@ -831,7 +897,9 @@ def tables(given: dict[str, Any], key: str, of: Dimension) -> list[Any]:
 
 
 def of_table(entry: str, given: dict[str, Any], key: str, of: Dimension | None = None) -> Any:
-    """The body or obstacle of a table, by its shape or kind; where the dimension is not known, of any."""
+    """The body or obstacle of a table, by its shape or kind; where the dimension is not known,
+    of any.
+    """
     word, models = KINDS[key]
     accepted = [name for name, one in models.items() if of is None or of in one.dimensions]
     name = given.get(word)

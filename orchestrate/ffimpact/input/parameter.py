@@ -53,8 +53,10 @@ class Rule:
     meaning: str = ""
 
     def checked(self, given: Any, of: Dimension | None) -> Any:
-        """The value as the program uses it. BadInput where it is not accepted, with what follows the entry's name:
-        ": 'x' is not a number (accepted: ...)", or ".2: ..." of a component. `of`: the scene's dimension, where it is known."""
+        """The value as the program uses it. BadInput where it is not accepted, with what
+        follows the entry's name: ": 'x' is not a number (accepted: ...)", or ".2: ..." of a
+        component. `of`: the scene's dimension, where it is known.
+        """
         raise NotImplementedError
 
     def accepted_in(self, of: Dimension | None) -> str:
@@ -93,8 +95,10 @@ def plain(value: Any) -> Any:
 
 @dataclass(frozen=True)
 class Parameter(Rule):
-    """One entry. `kind` is real, int, word or numbers (text, separated by commas); `low`/`high` bound numbers, `words`
-    lists the words that are accepted, beside numbers too (auto); `scripts` those that take it."""
+    """One entry. `kind` is real, int, word or numbers (text, separated by commas); `low`/`high`
+    bound numbers, `words` lists the words that are accepted, beside numbers too (auto);
+    `scripts` those that take it.
+    """
 
     name: str
     kind: str
@@ -139,7 +143,9 @@ class Parameter(Rule):
         )
 
     def check(self, given: Any) -> Value:
-        """`given` (text, a TOML value or a number of numpy) as float, int or word; BadInput where it is not accepted."""
+        """`given` (text, a TOML value or a number of numpy) as float, int or word; BadInput
+        where it is not accepted.
+        """
         given = plain(given)
         if isinstance(given, str) and given in self.words:
             return given
@@ -179,8 +185,10 @@ class Parameter(Rule):
 
 
 def with_unit(text: str, unit: str) -> str:
-    """What is wrong with a number that has a unit, where an entry in `unit` is wanted: the number to give, if a prefix makes the
-    difference; empty where the text is no number with a unit."""
+    """What is wrong with a number that has a unit, where an entry in `unit` is wanted: the
+    number to give, if a prefix makes the difference; empty where the text is no number with a
+    unit.
+    """
     if not (found := _QUANTITY.fullmatch(text)):
         return ""
     given = found[found.lastindex or 0].translate(POWERS)

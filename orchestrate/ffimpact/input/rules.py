@@ -1,5 +1,7 @@
-"""What entries of bodies, obstacles, supports and loads accept beside the parameters of a run (parameter.py): points, lists of
-points, words of one's own, functions of time, parts of a boundary. All in SI units."""
+"""What entries of bodies, obstacles, supports and loads accept beside the parameters of a run
+(parameter.py): points, lists of points, words of one's own, functions of time, parts of a boundary.
+All in SI units.
+"""
 
 from __future__ import annotations
 
@@ -264,7 +266,9 @@ class Partners(Rule):
 
 @dataclass(frozen=True)
 class Function(Rule):
-    """Functions of time of the components, `single` of one quantity; time_functions.py checks them."""
+    """Functions of time of the components, `single` of one quantity; time_functions.py checks
+    them.
+    """
 
     meaning: str = ""
     single: bool = False
@@ -280,7 +284,9 @@ class Function(Rule):
 
 @dataclass(frozen=True)
 class Where(Rule):
-    """A part of a body's boundary: a side, a group of its file, or a region of space, {kind = "half-space", point, normal} say."""
+    """A part of a body's boundary: a side, a group of its file, or a region of space, {kind =
+    "half-space", point, normal} say.
+    """
 
     sides: tuple[str, ...] = ()
     meaning: str = "a side, the name of a group of its file, or a region"

@@ -11,8 +11,10 @@ __all__ = ["to_toml"]
 
 
 def to_toml(table: dict) -> str:
-    """The tables, lists of tables and values of `table` as the text of a TOML file, numbers with all their digits. Reading the text gives
-    the same table. BadInput where a text in it is not UTF-8, as the bytes of a path may be."""
+    """The tables, lists of tables and values of `table` as the text of a TOML file, numbers
+    with all their digits. Reading the text gives the same table. BadInput where a text in it is
+    not UTF-8, as the bytes of a path may be.
+    """
     return tomli_w.dumps(_plain(table))
 
 
@@ -23,5 +25,7 @@ def _plain(value):
     if isinstance(value, list | tuple):
         return [_plain(one) for one in value]
     if isinstance(value, str) and re.search("[\ud800-\udfff]", value):
-        raise BadInput(f"'{brief(value)}': is no text in UTF-8, in which scenes are written down (accepted: names and paths that are)")
+        raise BadInput(
+            f"'{brief(value)}': is no text in UTF-8, in which scenes are written down (accepted: names and paths that are)"
+        )
     return value.tolist() if isinstance(value, np.ndarray | np.generic) else value

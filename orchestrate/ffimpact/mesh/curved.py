@@ -1,8 +1,10 @@
-"""Which faces of a mesh of tetrahedra lie on spheres and cylinders: the rule that outline.idp has in the plane, for meshes of files.
+"""Which faces of a mesh of tetrahedra lie on spheres and cylinders: the rule that outline.idp has
+in the plane, for meshes of files.
 
-Faces that meet at 30 degrees or less are one surface. It is a sphere or a cylinder where all its corners lie on that, to 1e-9 of the
-radius, every edge spans at most 30 degrees, and the normal of every face is within 30 degrees of that of the sphere or cylinder at its
-middle; where it bends by less than 30 degrees in all, and everywhere else, faces are flat.
+Faces that meet at 30 degrees or less are one surface. It is a sphere or a cylinder where all its
+corners lie on that, to 1e-9 of the radius, every edge spans at most 30 degrees, and the normal of
+every face is within 30 degrees of that of the sphere or cylinder at its middle; where it bends by
+less than 30 degrees in all, and everywhere else, faces are flat.
 """
 
 import math
@@ -14,14 +16,18 @@ from .solid_mesh import Curved
 
 __all__ = ["surfaces"]
 
-WIDEST = math.radians(30)    # what two faces that meet, an edge, a normal may differ by; what a surface bends by at least
-ON = 1e-9                    # of the radius
-PLACES = 5                   # around the axis of a cylinder at least
-CORRECTIONS = 20             # of a cylinder's axis
+WIDEST = math.radians(
+    30
+)  # what two faces that meet, an edge, a normal may differ by; what a surface bends by at least
+ON = 1e-9  # of the radius
+PLACES = 5  # around the axis of a cylinder at least
+CORRECTIONS = 20  # of a cylinder's axis
 
 
 def surfaces(points: np.ndarray, faces: np.ndarray) -> list[tuple[Curved, np.ndarray]]:
-    """The spheres and cylinders, each with the numbers of its faces (f, 3), which are seen counter-clockwise from outside."""
+    """The spheres and cylinders, each with the numbers of its faces (f, 3), which are seen
+    counter-clockwise from outside.
+    """
     a, b, c = points[faces].transpose(1, 0, 2)
     normals = np.cross(b - a, c - a)
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
@@ -31,7 +37,9 @@ def surfaces(points: np.ndarray, faces: np.ndarray) -> list[tuple[Curved, np.nda
         own = np.flatnonzero(patch == k)
         if not _bends(normals[own]):
             continue
-        inner = np.setdiff1d(faces[own], faces[patch != k])       # a strip along a rim lies on spheres and cylinders alike
+        inner = np.setdiff1d(
+            faces[own], faces[patch != k]
+        )  # a strip along a rim lies on spheres and cylinders alike
         corners = points[np.unique(faces[own])]
         one = _sphere(corners) if len(inner) else None
         one = one or _cylinder(corners, normals[own])
@@ -64,24 +72,34 @@ def _agrees(one: Curved, corners: np.ndarray, normals: np.ndarray) -> bool:
     chords = np.linalg.norm(arms - np.roll(arms, 1, axis=1), axis=2).max()
     middle = arms.sum(axis=1)
     turned = (middle * normals).sum(axis=1) / np.linalg.norm(middle, axis=1)
-    return bool(chords <= 2 * one.radius * math.sin(WIDEST / 2) * (1 + ON)
-                and min(abs(turned.sum()) / len(turned), abs(turned).min()) >= math.cos(WIDEST))
+    return bool(
+        chords <= 2 * one.radius * math.sin(WIDEST / 2) * (1 + ON)
+        and min(abs(turned.sum()) / len(turned), abs(turned).min()) >= math.cos(WIDEST)
+    )
 
 
 def _sphere(points: np.ndarray) -> Curved | None:
     """That through the points, by least squares."""
     middle, scale = points.mean(axis=0), np.ptp(points, axis=0).max()
     local = (points - middle) / scale
-    found, *_ = np.linalg.lstsq(np.column_stack([2 * local, np.ones(len(local))]), (local**2).sum(axis=1), rcond=None)
-    radius = math.sqrt(max(found[3] + (found[:3]**2).sum(), 0.0))      # r^2 - 2 r c + c^2 = R^2
+    found, *_ = np.linalg.lstsq(
+        np.column_stack([2 * local, np.ones(len(local))]), (local**2).sum(axis=1), rcond=None
+    )
+    radius = math.sqrt(max(found[3] + (found[:3] ** 2).sum(), 0.0))  # r^2 - 2 r c + c^2 = R^2
     on = abs(np.linalg.norm(local - found[:3], axis=1) - radius).max() <= ON * radius
     return Curved(middle + scale * found[:3], np.array([]), scale * radius) if on else None
 
 
 def _cylinder(points: np.ndarray, normals: np.ndarray) -> Curved | None:
-    """That through the points, by least squares (Gauss and Newton) from the direction that is across the normals."""
+    """That through the points, by least squares (Gauss and Newton) from the direction that is
+    across the normals.
+    """
     middle, scale = points.mean(axis=0), np.ptp(points, axis=0).max()
-    local, centre, axis = (points - middle) / scale, np.zeros(3), np.linalg.svd(normals, full_matrices=False)[2][2]
+    local, centre, axis = (
+        (points - middle) / scale,
+        np.zeros(3),
+        np.linalg.svd(normals, full_matrices=False)[2][2],
+    )
     for _ in range(CORRECTIONS):
         away = local - centre
         along = away @ axis
@@ -91,7 +109,9 @@ def _cylinder(points: np.ndarray, normals: np.ndarray) -> Curved | None:
             return None
         first, second = np.linalg.svd(axis[None])[2][1:]
         a, b = arms @ first / size, arms @ second / size
-        x, *_ = np.linalg.lstsq(np.column_stack([along * a, along * b, a, b, np.ones(len(a))]), size, rcond=None)
+        x, *_ = np.linalg.lstsq(
+            np.column_stack([along * a, along * b, a, b, np.ones(len(a))]), size, rcond=None
+        )
         axis = axis + x[0] * first + x[1] * second
         axis /= np.linalg.norm(axis)
         centre = centre + x[2] * first + x[3] * second
@@ -100,4 +120,8 @@ def _cylinder(points: np.ndarray, normals: np.ndarray) -> Curved | None:
     if abs(np.linalg.norm(arms, axis=1) - found.radius).max() > ON * abs(found.radius):
         return None
     turn = np.arctan2(arms @ np.cross(axis, arms[0]), arms @ arms[0])
-    return Curved(middle + scale * centre, axis, scale * found.radius) if len(np.unique(np.round(turn, 6))) >= PLACES else None
+    return (
+        Curved(middle + scale * centre, axis, scale * found.radius)
+        if len(np.unique(np.round(turn, 6))) >= PLACES
+        else None
+    )

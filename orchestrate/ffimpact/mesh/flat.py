@@ -1,4 +1,6 @@
-"""Shapes of bodies in the plane: [[body]] tables as outlines (or meshes of files) about their centres of area, SI units."""
+"""Shapes of bodies in the plane: [[body]] tables as outlines (or meshes of files) about their
+centres of area, SI units.
+"""
 
 import math
 import tempfile
@@ -23,9 +25,12 @@ from . import gmsh_file, mesh
 
 __all__ = ["check_simple", "mesh_file", "mesh_outline", "motion", "shape"]
 
-LOOPS = {"disc": lambda radius: (circle_loop(radius),), "ring": lambda radius, inner: (circle_loop(radius), circle_loop(inner)),
-         "ellipse": lambda semi_axes: (ellipse_loop(*semi_axes),),
-         "rectangle": lambda *sides: (Loop(np.array(sides) / 2 * [[-1, -1], [1, -1], [1, 1], [-1, 1]]),)}
+LOOPS = {
+    "disc": lambda radius: (circle_loop(radius),),
+    "ring": lambda radius, inner: (circle_loop(radius), circle_loop(inner)),
+    "ellipse": lambda semi_axes: (ellipse_loop(*semi_axes),),
+    "rectangle": lambda *sides: (Loop(np.array(sides) / 2 * [[-1, -1], [1, -1], [1, 1], [-1, 1]]),),
+}
 
 
 def shape(body: Body, folder: Path) -> tuple[Outline, mesh.Mesh | None]:
@@ -37,19 +42,29 @@ def shape(body: Body, folder: Path) -> tuple[Outline, mesh.Mesh | None]:
 
 
 def motion(body: Body) -> dict:
-    """Where a body is at the start and how it moves: position [m], angle [rad], velocity [m/s], spin [rad/s]."""
-    return {"position": np.array(body.position), "angle": math.radians(body.angle or 0.0), "velocity": _velocity(body),
-            "spin": body.spin or 0.0}
+    """Where a body is at the start and how it moves: position [m], angle [rad], velocity [m/s],
+    spin [rad/s].
+    """
+    return {
+        "position": np.array(body.position),
+        "angle": math.radians(body.angle or 0.0),
+        "velocity": _velocity(body),
+        "spin": body.spin or 0.0,
+    }
 
 
 def _velocity(body: Body) -> np.ndarray:
     speed, degrees = body.speed, body.direction
     if body.velocity is not None and (speed is not None or degrees is not None):
-        raise BadInput(f"{body.at('velocity')}: '{body.given('velocity')}' stands beside speed or direction (accepted: velocity, "
-                       f"or speed with direction)")
+        raise BadInput(
+            f"{body.at('velocity')}: '{body.given('velocity')}' stands beside speed or direction (accepted: velocity, "
+            f"or speed with direction)"
+        )
     if (speed is None) != (degrees is None):
         missing = "direction" if degrees is None else "speed"
-        raise BadInput(f"{body.at(missing)}: is missing (accepted: speed [m/s] with direction [deg], counter-clockwise from x)")
+        raise BadInput(
+            f"{body.at(missing)}: is missing (accepted: speed [m/s] with direction [deg], counter-clockwise from x)"
+        )
     if speed is None or degrees is None:
         return np.array(body.velocity or [0.0, 0.0])
     return speed * np.array([_sin(degrees + 90), _sin(degrees)])
@@ -57,54 +72,83 @@ def _velocity(body: Body) -> np.ndarray:
 
 def _sin(degrees: float) -> float:
     """The sine, exact at multiples of a right angle."""
-    return (0.0, 1.0, 0.0, -1.0)[int(degrees // 90) % 4] if degrees % 90 == 0 else math.sin(math.radians(degrees))
+    return (
+        (0.0, 1.0, 0.0, -1.0)[int(degrees // 90) % 4]
+        if degrees % 90 == 0
+        else math.sin(math.radians(degrees))
+    )
 
 
 # ---- shapes
+
 
 def _outline(body: Body) -> Outline:
     if isinstance(body, Polygon):
         return _polygon(body)
     if isinstance(body, Ring) and body.inner_radius >= body.radius:
-        raise BadInput(f"{body.at('inner_radius')}: {body.inner_radius:g} is not less than the radius {body.radius:g}")
+        raise BadInput(
+            f"{body.at('inner_radius')}: {body.inner_radius:g} is not less than the radius {body.radius:g}"
+        )
     return Outline(LOOPS[body.shape](*body.sizes))
 
 
 def _polygon(body: Polygon) -> Outline:
-    """The polygon with its holes; BadInput where it crosses itself, or a hole is not inside it and apart from the others."""
+    """The polygon with its holes; BadInput where it crosses itself, or a hole is not inside it
+    and apart from the others.
+    """
     import shapely  # here: other bodies need none
+
     outer, holes = np.array(body.vertices), [np.array(one) for one in body.holes or []]
-    named = [(body.at("vertices"), outer), *((f"{body.at('holes')}.{k}", hole) for k, hole in enumerate(holes, 1))]
+    named = [
+        (body.at("vertices"), outer),
+        *((f"{body.at('holes')}.{k}", hole) for k, hole in enumerate(holes, 1)),
+    ]
     for path, corners in named:
         check_simple(path, corners)
     areas = [shapely.Polygon(corners) for _, corners in named]
     for k, (path, _) in enumerate(named[1:], 1):
         if not areas[0].contains_properly(areas[k]):
-            raise BadInput(f"{path}: is not inside {named[0][0]} (accepted: holes that neither cross nor touch the outline)")
+            raise BadInput(
+                f"{path}: is not inside {named[0][0]} (accepted: holes that neither cross nor touch the outline)"
+            )
         for other in range(1, k):
             if areas[k].intersects(areas[other]):
-                raise BadInput(f"{path}: overlaps {named[other][0]} (accepted: holes apart from each other)")
+                raise BadInput(
+                    f"{path}: overlaps {named[other][0]} (accepted: holes apart from each other)"
+                )
     return Outline(tuple(polygon_loop(corners) for _, corners in named))
 
 
 def check_simple(path: str, corners: np.ndarray) -> None:
-    n, same = len(corners), np.argwhere((corners == np.roll(corners, -1, axis=0)).all(axis=1)).ravel()
+    n, same = (
+        len(corners),
+        np.argwhere((corners == np.roll(corners, -1, axis=0)).all(axis=1)).ravel(),
+    )
     if len(same):
-        raise BadInput(f"{path}: vertices {same[0] + 1} and {(same[0] + 1) % n + 1} coincide (accepted: each vertex once, the polygon "
-                       f"closes itself)")
+        raise BadInput(
+            f"{path}: vertices {same[0] + 1} and {(same[0] + 1) % n + 1} coincide (accepted: each vertex once, the polygon "
+            f"closes itself)"
+        )
     if sides := self_crossing(corners):
         first, second = (f"from vertex {k + 1} to {(k + 1) % n + 1}" for k in sides)
-        raise BadInput(f"{path}: the side {first} meets the side {second} (accepted: a polygon that does not cross or touch itself)")
+        raise BadInput(
+            f"{path}: the side {first} meets the side {second} (accepted: a polygon that does not cross or touch itself)"
+        )
 
 
 # ---- mesh files
 
+
 def mesh_file(body: Mesh, folder: Path, script: str) -> mesh.Mesh:
-    """The mesh of a body's file, checked as any mesh file of edp/<script>.edp is, which also says what lies on circles: a whole body in the
-    plane, or half a meridian plane, or what of it is to the right of an axis that it does not reach."""
+    """The mesh of a body's file, checked as any mesh file of edp/<script>.edp is, which also
+    says what lies on circles: a whole body in the plane, or half a meridian plane, or what of
+    it is to the right of an axis that it does not reach.
+    """
     name, file = body.file or "", None
     if "\0" in name or not _may_be_read(folder / name):
-        raise BadInput(f"{body.at('file')}: {brief(repr(name))} is no file (accepted: FreeFEM's or gmsh's .msh)")
+        raise BadInput(
+            f"{body.at('file')}: {brief(repr(name))} is no file (accepted: FreeFEM's or gmsh's .msh)"
+        )
     try:
         text = gmsh_file.load(folder / name)
         with tempfile.NamedTemporaryFile(suffix=".msh") as file:
@@ -112,21 +156,31 @@ def mesh_file(body: Mesh, folder: Path, script: str) -> mesh.Mesh:
             file.flush()
             found = mesh.read(Path(file.name))
             if script == "ball-axisymmetric" and not (found.labels == mesh.AXIS).any():
-                script = "disc-plane"                       # of a tube: a whole outline
+                script = "disc-plane"  # of a tube: a whole outline
             elif script == "disc-plane" and (found.labels == mesh.AXIS).any():
-                raise BadInput(f"mesh: '{brief(name)}' has edges with the label {mesh.AXIS} of a symmetry axis (accepted: whole bodies, "
-                               f"labels {mesh.FREE}: may touch, 3 and more: never touch)")
+                raise BadInput(
+                    f"mesh: '{brief(name)}' has edges with the label {mesh.AXIS} of a symmetry axis (accepted: whole bodies, "
+                    f"labels {mesh.FREE}: may touch, 3 and more: never touch)"
+                )
             size = float(np.ptp(found.points, axis=0).max()) if len(found.points) else 0.0
             if size and not (found.labels == mesh.FREE).any():
-                raise BadInput(f"mesh: {file.name}: no boundary edge has the label {mesh.FREE} of what "
-                               f"may touch, but labels from {found.labels.min()} to "
-                               f"{found.labels.max()}")
-            # as if all of it may touch: that script has a plane below, which this scene may not have
+                raise BadInput(
+                    f"mesh: {file.name}: no boundary edge has the label {mesh.FREE} of what "
+                    f"may touch, but labels from {found.labels.min()} to "
+                    f"{found.labels.max()}"
+                )
+            # as if all of it may touch: that script has a plane below, which this scene may not
+            # have
             labels = np.where(found.labels > mesh.AXIS, mesh.FREE, found.labels)
             mesh.write(replace(found, labels=labels), Path(file.name))
-            said = describe({"mesh": file.name, "radius": size / 2 if SHORTEST < size < LONGEST else 1.0}, script)
+            said = describe(
+                {"mesh": file.name, "radius": size / 2 if SHORTEST < size < LONGEST else 1.0},
+                script,
+            )
     except BadInput as error:
-        raise BadInput(f"{body.at('file')}: {str(error).removeprefix('mesh: ').replace(file.name if file else name, name)}") from None
+        raise BadInput(
+            f"{body.at('file')}: {str(error).removeprefix('mesh: ').replace(file.name if file else name, name)}"
+        ) from None
     hubs = np.array([*said["circles"], [math.nan] * 3])[said["circle_of"], :2]
     return replace(found, hubs=hubs).scaled(body.scale or 1.0)
 
@@ -135,12 +189,14 @@ def _may_be_read(path: Path) -> bool:
     """Not a folder, and not a pipe or device, which would be waited for."""
     try:
         return path.is_file() or not path.exists()
-    except OSError:                 # too long a name, a folder that may not be entered: said where it is opened
+    except OSError:  # too long a name, a folder that may not be entered: said where it is opened
         return True
 
 
 def mesh_outline(found: mesh.Mesh) -> Outline:
-    """The boundary of a mesh as loops, that of the largest area first; edges on circles are arcs, a loop on one circle is that circle."""
+    """The boundary of a mesh as loops, that of the largest area first; edges on circles are
+    arcs, a loop on one circle is that circle.
+    """
     hub = {tuple(sorted(edge)): at for edge, at in zip(found.edges.tolist(), found.hubs)}
     following = dict(mesh.boundary(found.triangles).tolist())
     loops = []
@@ -149,7 +205,12 @@ def mesh_outline(found: mesh.Mesh) -> Outline:
         while v != first:
             v = following.pop(v)
             chain.append(v)
-        loops.append(_loop(found.points[chain[:-1]], np.array([hub[tuple(sorted(edge))] for edge in zip(chain, chain[1:])])))
+        loops.append(
+            _loop(
+                found.points[chain[:-1]],
+                np.array([hub[tuple(sorted(edge))] for edge in zip(chain, chain[1:])]),
+            )
+        )
     return Outline(tuple(sorted(loops, key=lambda loop: -loop.area)))
 
 

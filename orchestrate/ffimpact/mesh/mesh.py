@@ -1,7 +1,9 @@
-"""Meshes by gmsh: a disc (or half of it) graded towards its contact arc, and what is inside closed curves, written as FreeFEM's own .msh.
+"""Meshes by gmsh: a disc (or half of it) graded towards its contact arc, and what is inside closed
+curves, written as FreeFEM's own .msh.
 
-Boundary labels: 1 = the free outer boundary, 2 = the symmetry axis x = 0. The triangles are straight; the FreeFEM side curves the
-boundary. The lowest point of the disc touches the plane y = 0.
+Boundary labels: 1 = the free outer boundary, 2 = the symmetry axis x = 0. The triangles are
+straight; the FreeFEM side curves the boundary. The lowest point of the disc touches the plane y =
+0.
 """
 
 import atexit
@@ -30,28 +32,56 @@ from ..failure import BadInput, NotInstalled
 from ..places import INSTALLED, PACKAGE
 
 __all__ = [
-    "AXIS", "Curve", "DIGITS", "FREE", "GROWTH", "Mesh", "Sizes", "boundary", "counter_clockwise",
-    "disc", "elements_of", "gmsh_session", "graded", "in_own_process", "inner_outlines",
-    "mesh_body", "nearest", "nodes_on", "pieces", "read", "start_gmsh", "without_inner", "write",
+    "AXIS",
+    "Curve",
+    "DIGITS",
+    "FREE",
+    "GROWTH",
+    "Mesh",
+    "Sizes",
+    "boundary",
+    "counter_clockwise",
+    "disc",
+    "elements_of",
+    "gmsh_session",
+    "graded",
+    "in_own_process",
+    "inner_outlines",
+    "mesh_body",
+    "nearest",
+    "nodes_on",
+    "pieces",
+    "read",
+    "start_gmsh",
+    "without_inner",
+    "write",
 ]
 
-FREE, AXIS = 1, 2          # boundary labels
+FREE, AXIS = 1, 2  # boundary labels
 # of a triangle; of a tetrahedron, seen from outside
-SIDES = {3: np.array([[0, 1], [1, 2], [2, 0]]), 4: np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])}
-LIBRARIES = "apt-get install libglu1-mesa libxcursor1 libxft2 libxinerama1 libgomp1"   # that gmsh's wheel needs, with what they need
-SAMPLED = 0.25             # a step between points at which an element size is asked for, over that size
-GROWTH = 0.3               # element size gained per length of distance from the contact arc
-# decimals of what gmsh is given, in sizes of the body: round-off settles ties, and the mesh would depend on the unit of length
+SIDES = {
+    3: np.array([[0, 1], [1, 2], [2, 0]]),
+    4: np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]]),
+}
+# that gmsh's wheel needs, with what they need
+LIBRARIES = "apt-get install libglu1-mesa libxcursor1 libxft2 libxinerama1 libgomp1"
+SAMPLED = 0.25  # a step between points at which an element size is asked for, over that size
+GROWTH = 0.3  # element size gained per length of distance from the contact arc
+# decimals of what gmsh is given, in sizes of the body: round-off settles ties, and the mesh would
+# depend on the unit of length
 DIGITS = 10
-# the region of the triangles of our own discs, whose outline is a circle however long its edges are (edp/core/input/mesh-file.idp)
+# the region of the triangles of our own discs, whose outline is a circle however long its edges are
+# (edp/core/input/mesh-file.idp)
 OWN = 360
-Curve = Callable[[np.ndarray], np.ndarray]   # points (n, 2) [m] at parameters (n,) in [0, 1]
+Curve = Callable[[np.ndarray], np.ndarray]  # points (n, 2) [m] at parameters (n,) in [0, 1]
 
 
 @dataclass(frozen=True)
 class Mesh:
-    """points (n, 2) in m, triangles (t, 3) counter-clockwise, edges (e, 2) of the boundary, their labels (e,); `hubs` (e, 2) are the
-    centres of the circles that the edges of a file lie on, nan of straight ones; `region` is that of all triangles."""
+    """points (n, 2) in m, triangles (t, 3) counter-clockwise, edges (e, 2) of the boundary,
+    their labels (e,); `hubs` (e, 2) are the centres of the circles that the edges of a file lie
+    on, nan of straight ones; `region` is that of all triangles.
+    """
 
     points: np.ndarray
     triangles: np.ndarray
@@ -59,7 +89,7 @@ class Mesh:
     labels: np.ndarray
     hubs: np.ndarray | None = None
     region: int = 0
-    NEVER: ClassVar[int] = 3       # the label of edges that may not touch
+    NEVER: ClassVar[int] = 3  # the label of edges that may not touch
 
     @property
     def sides(self) -> np.ndarray:
@@ -67,7 +97,9 @@ class Mesh:
 
     def moved(self, by: np.ndarray) -> "Mesh":
         """The same mesh, `by` [m] elsewhere."""
-        return replace(self, points=self.points + by, hubs=None if self.hubs is None else self.hubs + by)
+        return replace(
+            self, points=self.points + by, hubs=None if self.hubs is None else self.hubs + by
+        )
 
     def scaled(self, factor: float) -> "Mesh":
         """The same mesh, `factor` times as large."""
@@ -75,17 +107,19 @@ class Mesh:
         return replace(self, points=self.points * factor, hubs=hubs)
 
 
-MOST_ON_CURVE = 50_000      # samples of a curve: more than any run could follow
+MOST_ON_CURVE = 50_000  # samples of a curve: more than any run could follow
 
 
 @dataclass(frozen=True)
 class Sizes:
-    """Element sizes of a body [m]: in the bulk, and within `near` (its points, as it is in its mesh) on the outline, to `slack`."""
+    """Element sizes of a body [m]: in the bulk, and within `near` (its points, as it is in its
+    mesh) on the outline, to `slack`.
+    """
 
     bulk: float
     contact: float
     near: np.ndarray
-    slack: float                # half the distance of points on the outline
+    slack: float  # half the distance of points on the outline
 
     def at(self, points: np.ndarray) -> np.ndarray:
         """Element sizes (n,): growing linearly with the distance from where the body touches."""
@@ -100,21 +134,39 @@ def nearest(points: np.ndarray, others: np.ndarray) -> np.ndarray:
     return cKDTree(others).query(points)[0]
 
 
-def disc(radius: float, mesh_size: float, contact_mesh_size: float, half: bool, contact_arc: float = math.pi / 4) -> Mesh:
+def disc(
+    radius: float,
+    mesh_size: float,
+    contact_mesh_size: float,
+    half: bool,
+    contact_arc: float = math.pi / 4,
+) -> Mesh:
     """A disc, or its half x >= 0, centre (0, radius), all lengths in m.
 
-    The size is contact_mesh_size along the lowest arc of +-contact_arc radians (seen from the centre) and grows
-    linearly to mesh_size away from it. Vertices of the circle and of the axis lie on them to rounding.
+    The size is contact_mesh_size along the lowest arc of +-contact_arc radians (seen from the
+    centre) and grows linearly to mesh_size away from it. Vertices of the circle and of the axis
+    lie on them to rounding.
     """
     # gmsh's tolerances are absolute
-    bulk, contact, arc = (round(size, DIGITS) for size in (mesh_size / radius, contact_mesh_size / radius, contact_arc))
+    bulk, contact, arc = (
+        round(size, DIGITS)
+        for size in (mesh_size / radius, contact_mesh_size / radius, contact_arc)
+    )
     with gmsh_session() as gmsh:
         arcs, axis = _outline(gmsh.model.geo, half, min(arc, 0.99 * math.pi))
         contact_arcs = arcs[:1] if half else [arcs[0], arcs[-1]]
-        points, triangles, used = _filled(gmsh, [arcs + axis], lambda field: graded(field, "CurvesList", contact_arcs, (contact, bulk),
-                                                                                    math.ceil(2 * arc / contact)))
-        pieces = [(label, gmsh.model.mesh.getElementsByType(1, curve)[1].reshape(-1, 2))
-                  for label, curves in ((FREE, arcs), (AXIS, axis)) for curve in curves]
+        points, triangles, used = _filled(
+            gmsh,
+            [arcs + axis],
+            lambda field: graded(
+                field, "CurvesList", contact_arcs, (contact, bulk), math.ceil(2 * arc / contact)
+            ),
+        )
+        pieces = [
+            (label, gmsh.model.mesh.getElementsByType(1, curve)[1].reshape(-1, 2))
+            for label, curves in ((FREE, arcs), (AXIS, axis))
+            for curve in curves
+        ]
 
     points = points[:, :2]
     edges = np.searchsorted(used, np.vstack([nodes for _, nodes in pieces]))
@@ -128,8 +180,11 @@ def disc(radius: float, mesh_size: float, contact_mesh_size: float, half: bool, 
 
 
 def _outline(geo, half: bool, contact_arc: float) -> tuple[list[int], list[int]]:
-    """Arcs of the unit circle, counter-clockwise from its lowest point, and the axis; as curves of gmsh."""
-    def point(angle):   # measured from the lowest point
+    """Arcs of the unit circle, counter-clockwise from its lowest point, and the axis; as curves
+    of gmsh.
+    """
+
+    def point(angle):  # measured from the lowest point
         return geo.addPoint(math.sin(angle), -math.cos(angle), 0)
 
     centre, bottom, top = geo.addPoint(0, 0, 0), point(0.0), point(math.pi)
@@ -141,18 +196,32 @@ def _outline(geo, half: bool, contact_arc: float) -> tuple[list[int], list[int]]
 
 
 def mesh_body(boundary: list[list[tuple[Curve, float, int]]], sizes: Sizes, scale: float) -> Mesh:
-    """The mesh inside closed curves, of a body about as large as `scale` [m]: the ends of their pieces are vertices, and all vertices of
-    the boundary lie on them to rounding; boundary edges have the body to their left, and the label of their piece."""
+    """The mesh inside closed curves, of a body about as large as `scale` [m]: the ends of their
+    pieces are vertices, and all vertices of the boundary lie on them to rounding; boundary
+    edges have the body to their left, and the label of their piece.
+    """
     pieces = [[nodes_on(curve, largest, sizes) for curve, largest, _ in loop] for loop in boundary]
-    labels = [np.repeat([label for *_, label in loop], [len(nodes) for nodes in each]) for loop, each in zip(boundary, pieces)]
+    labels = [
+        np.repeat([label for *_, label in loop], [len(nodes) for nodes in each])
+        for loop, each in zip(boundary, pieces)
+    ]
     loops = [np.vstack(each) for each in pieces]
-    loops = [nodes if k == 0 else nodes[::-1] for k, nodes in enumerate(loops)]     # a hole has one label
+    loops = [
+        nodes if k == 0 else nodes[::-1] for k, nodes in enumerate(loops)
+    ]  # a hole has one label
     # gmsh's tolerances are absolute
-    bulk, inside = round(sizes.bulk / scale, DIGITS), [np.round(nodes / scale, DIGITS) for nodes in loops]
+    bulk, inside = (
+        round(sizes.bulk / scale, DIGITS),
+        [np.round(nodes / scale, DIGITS) for nodes in loops],
+    )
     with gmsh_session() as gmsh:
         tags, curves = zip(*(_loop(gmsh.model, nodes) for nodes in inside))
-        points, triangles, used = _filled(gmsh, curves, lambda field: _grade(field, inside, curves, bulk))
-        corners = np.searchsorted(used, [gmsh.model.mesh.getNodes(0, tag)[0][0] for tag in np.concatenate(tags)])
+        points, triangles, used = _filled(
+            gmsh, curves, lambda field: _grade(field, inside, curves, bulk)
+        )
+        corners = np.searchsorted(
+            used, [gmsh.model.mesh.getNodes(0, tag)[0][0] for tag in np.concatenate(tags)]
+        )
     points = points[:, :2] * scale
     points[corners] = np.vstack(loops)
     triangles = counter_clockwise(points, triangles)
@@ -162,16 +231,22 @@ def mesh_body(boundary: list[list[tuple[Curve, float, int]]], sizes: Sizes, scal
 
 
 def nodes_on(curve: Curve, largest: float, sizes: Sizes) -> np.ndarray:
-    """Vertices (n, 2) on a curve from its first end on, without its last, in steps ds with the integral of ds / size constant."""
+    """Vertices (n, 2) on a curve from its first end on, without its last, in steps ds with the
+    integral of ds / size constant.
+    """
     s, size = np.array([0.0, 1.0]), np.array([])
-    while len(size) < len(s):                    # halved until the size, which is Lipschitz, is known between points too
+    while len(size) < len(
+        s
+    ):  # halved until the size, which is Lipschitz, is known between points too
         size = np.minimum(sizes.at(curve(s)), largest)
         step = np.linalg.norm(np.diff(curve(s), axis=0), axis=1)
         coarse = step > SAMPLED * np.minimum(size[1:], size[:-1])
         s = np.sort(np.concatenate([s, (s[1:] + s[:-1])[coarse] / 2]))
         if len(s) > MOST_ON_CURVE:
-            raise BadInput(f"mesh_size: {min(sizes.contact, sizes.bulk):.3g} m is too small for an outline of "
-                           f"{step.sum():.3g} m (accepted: larger ones, or a body that is less thin)")
+            raise BadInput(
+                f"mesh_size: {min(sizes.contact, sizes.bulk):.3g} m is too small for an outline of "
+                f"{step.sum():.3g} m (accepted: larger ones, or a body that is less thin)"
+            )
     passed = np.concatenate([[0.0], np.cumsum(step * (1 / size[1:] + 1 / size[:-1]) / 2)])
     count = max(1, round(passed[-1]))
     return curve(np.interp(passed[-1] * np.arange(count) / count, passed, s))
@@ -187,23 +262,34 @@ def _loop(model, nodes: np.ndarray) -> tuple[list[int], list[int]]:
 
 
 def _grade(field, loops: list[np.ndarray], curves: tuple[list[int], ...], bulk: float) -> int:
-    """A field of element sizes inside: those of the edges on the outline, growing linearly with the distance from them up to the bulk's.
-    Edges of about one length are one source."""
-    length = np.concatenate([np.linalg.norm(np.roll(nodes, -1, axis=0) - nodes, axis=1) for nodes in loops])
-    fineness = np.ceil(2 * np.log2(np.maximum(bulk / length, 1)) - 1e-9).astype(int)     # from bulk down in steps of sqrt(1/2)
+    """A field of element sizes inside: those of the edges on the outline, growing linearly with
+    the distance from them up to the bulk's. Edges of about one length are one source.
+    """
+    length = np.concatenate(
+        [np.linalg.norm(np.roll(nodes, -1, axis=0) - nodes, axis=1) for nodes in loops]
+    )
+    fineness = np.ceil(2 * np.log2(np.maximum(bulk / length, 1)) - 1e-9).astype(
+        int
+    )  # from bulk down in steps of sqrt(1/2)
     lines, sources = np.concatenate(curves), []
     for level in np.unique(fineness):
-        size = bulk * np.sqrt(0.5)**level
+        size = bulk * np.sqrt(0.5) ** level
         # points on a line; of 2 gmsh makes none
-        sources.append(graded(field, "CurvesList", lines[fineness == level], (size, bulk), sampling=5))
+        sources.append(
+            graded(field, "CurvesList", lines[fineness == level], (size, bulk), sampling=5)
+        )
     least = field.add("Min")
     field.setNumbers(least, "FieldsList", sources)
     return least
 
 
-def _filled(gmsh, loops: Sequence[Sequence[int]], sizes: Callable) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """elements_of() the triangles inside loops of curves of gmsh, the outer first, with `sizes` a field that is made of its fields."""
-    gmsh.option.setNumber("Mesh.Algorithm", 6)   # frontal Delaunay: the best triangles
+def _filled(
+    gmsh, loops: Sequence[Sequence[int]], sizes: Callable
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """elements_of() the triangles inside loops of curves of gmsh, the outer first, with `sizes`
+    a field that is made of its fields.
+    """
+    gmsh.option.setNumber("Mesh.Algorithm", 6)  # frontal Delaunay: the best triangles
     for source in ("FromPoints", "FromCurvature", "ExtendFromBoundary"):
         gmsh.option.setNumber(f"Mesh.MeshSize{source}", 0)
     gmsh.model.geo.addPlaneSurface([gmsh.model.geo.addCurveLoop(list(lines)) for lines in loops])
@@ -211,16 +297,20 @@ def _filled(gmsh, loops: Sequence[Sequence[int]], sizes: Callable) -> tuple[np.n
     field = gmsh.model.mesh.field
     field.setAsBackgroundMesh(sizes(field))
     gmsh.model.mesh.generate(2)
-    return elements_of(gmsh.model, (2,), {2: 3}, "triangle", "triangles")     # gmsh also keeps centres of arcs
+    return elements_of(
+        gmsh.model, (2,), {2: 3}, "triangle", "triangles"
+    )  # gmsh also keeps centres of arcs
 
 
 # ---- gmsh
 
-_alone = threading.RLock()     # gmsh has one model, and serves one thread at a time
+_alone = threading.RLock()  # gmsh has one model, and serves one thread at a time
 
 
 def start_gmsh() -> ModuleType:
-    """The module gmsh, started once in the life of this program; NotInstalled where a system library is missing."""
+    """The module gmsh, started once in the life of this program; NotInstalled where a system
+    library is missing.
+    """
     with _alone:
         return _started()
 
@@ -229,14 +319,19 @@ def start_gmsh() -> ModuleType:
 def _started() -> ModuleType:
     """The same, for the first thread that asks.
 
-    For a moment gmsh sets signal handlers back to their defaults: a run starts it before it makes anything that a signal could leave
-    behind.
+    For a moment gmsh sets signal handlers back to their defaults: a run starts it before it
+    makes anything that a signal could leave behind.
     """
     try:
         import gmsh
     except OSError as error:
-        raise NotInstalled(f"gmsh does not load ({error}); run: {LIBRARIES if INSTALLED else 'make setup'}") from None
-    handlers = {number: signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGPIPE)}
+        raise NotInstalled(
+            f"gmsh does not load ({error}); run: {LIBRARIES if INSTALLED else 'make setup'}"
+        ) from None
+    handlers = {
+        number: signal.getsignal(number)
+        for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGPIPE)
+    }
     gmsh.initialize([], readConfigFiles=False, interruptible=False)
     if threading.current_thread() is threading.main_thread():
         for number, handler in handlers.items():
@@ -246,20 +341,29 @@ def _started() -> ModuleType:
 
 
 def in_own_process(read: Callable, path: Path, *given):
-    """read(path, *given) in a process of its own, where gmsh reads the file: some broken files kill it. BadInput as there, or with how it
-    ended."""
+    """read(path, *given) in a process of its own, where gmsh reads the file: some broken files
+    kill it. BadInput as there, or with how it ended.
+    """
     modules = os.pathsep.join([str(PACKAGE.parent), *filter(None, [os.environ.get("PYTHONPATH")])])
     command = [sys.executable, "-P", "-c", f"from {__name__} import _answer; _answer()"]
-    with tempfile.NamedTemporaryFile() as answer:     # in this working folder: relative paths stay
-        child = subprocess.run([*command, answer.name], env=os.environ | {"PYTHONPATH": modules},
-                               input=pickle.dumps((read, path, *given)), stdout=subprocess.DEVNULL,
-                               stderr=subprocess.DEVNULL)
-        if child.returncode == 0 and (said := answer.read()):     # a script in a geometry may end gmsh
+    with tempfile.NamedTemporaryFile() as answer:  # in this working folder: relative paths stay
+        child = subprocess.run(
+            [*command, answer.name],
+            env=os.environ | {"PYTHONPATH": modules},
+            input=pickle.dumps((read, path, *given)),
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+        if child.returncode == 0 and (said := answer.read()):  # a script in a geometry may end gmsh
             found = pickle.loads(said)
             if isinstance(found, BadInput):
                 raise BadInput(str(found).replace(str(path), path.name))
             return found
-    how = signal.Signals(-child.returncode).name if child.returncode < 0 else f"exit code {child.returncode}"
+    how = (
+        signal.Signals(-child.returncode).name
+        if child.returncode < 0
+        else f"exit code {child.returncode}"
+    )
     raise BadInput(f"gmsh broke down over it ({how})")
 
 
@@ -280,39 +384,59 @@ def gmsh_session() -> Iterator[ModuleType]:
         gmsh = start_gmsh()
         gmsh.option.restoreDefaults()
         gmsh.option.setNumber("General.Terminal", 0)
-        gmsh.option.setNumber("General.AbortOnError", 2)   # exceptions, as after initialize()
+        gmsh.option.setNumber("General.AbortOnError", 2)  # exceptions, as after initialize()
         try:
             yield gmsh
         finally:
             gmsh.clear()
 
 
-def graded(field, kind: str, sources: Sequence[int], sizes: tuple[float, float], sampling: int = 0, flat: float = 0.0) -> int:
-    """A field of gmsh: the first of the sizes up to the distance `flat` from the sources (of a kind: PointsList, CurvesList), growing
-    linearly with it to the other. `sampling`: points on a curve."""
+def graded(
+    field,
+    kind: str,
+    sources: Sequence[int],
+    sizes: tuple[float, float],
+    sampling: int = 0,
+    flat: float = 0.0,
+) -> int:
+    """A field of gmsh: the first of the sizes up to the distance `flat` from the sources (of a
+    kind: PointsList, CurvesList), growing linearly with it to the other. `sampling`: points on
+    a curve.
+    """
     distance, size = field.add("Distance"), field.add("Threshold")
     field.setNumbers(distance, kind, sources)
     if sampling:
         field.setNumber(distance, "Sampling", sampling)
     least, most = sizes
-    for name, value in dict(InField=distance, SizeMin=least, SizeMax=most, DistMin=flat,
-                            DistMax=flat + max(most - least, 1e-9 * most) / GROWTH).items():
+    for name, value in dict(
+        InField=distance,
+        SizeMin=least,
+        SizeMax=most,
+        DistMin=flat,
+        DistMax=flat + max(most - least, 1e-9 * most) / GROWTH,
+    ).items():
         field.setNumber(size, name, value)
     return size
 
 
-def elements_of(model, dimensions: Sequence[int], nodes: dict[int, int], one: str, many: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Vertices (n, 3) and elements (t, corners) of a model of gmsh, those of `nodes` (gmsh's types: how many, corners first), and gmsh's
-    numbers of the vertices; BadInput where there are none, or others."""
+def elements_of(
+    model, dimensions: Sequence[int], nodes: dict[int, int], one: str, many: str
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Vertices (n, 3) and elements (t, corners) of a model of gmsh, those of `nodes` (gmsh's
+    types: how many, corners first), and gmsh's numbers of the vertices; BadInput where there
+    are none, or others.
+    """
     kinds = [kind for dimension in dimensions for kind in model.mesh.getElementTypes(dimension)]
     for kind in kinds:
         if kind not in nodes:
-            raise BadInput(f"it has elements '{model.mesh.getElementProperties(kind)[0]}' (accepted: {many} of "
-                           f"{' or '.join(map(str, nodes.values()))} nodes)")
+            raise BadInput(
+                f"it has elements '{model.mesh.getElementProperties(kind)[0]}' (accepted: {many} of "
+                f"{' or '.join(map(str, nodes.values()))} nodes)"
+            )
     if not kinds:
         raise BadInput(f"it has no {many}")
     found = [model.mesh.getElementsByType(kind)[1].reshape(-1, nodes[kind]) for kind in kinds]
-    corners = np.vstack([each[:, :min(nodes.values())] for each in found])
+    corners = np.vstack([each[:, : min(nodes.values())] for each in found])
     # gmsh 2.2 writes an element once for each physical group that it belongs to
     once = np.unique(np.sort(corners, axis=1), axis=0, return_index=True)[1]
     used, elements = np.unique(corners[np.sort(once)], return_inverse=True)
@@ -327,22 +451,31 @@ def elements_of(model, dimensions: Sequence[int], nodes: dict[int, int], one: st
 def counter_clockwise(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """The triangles (t, 3), those that are clockwise turned over."""
     a, b, c = (points[triangles[:, k]] for k in range(3))
-    clockwise = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) < (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+    clockwise = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) < (b[:, 1] - a[:, 1]) * (
+        c[:, 0] - a[:, 0]
+    )
     return np.where(clockwise[:, None], triangles[:, [0, 2, 1]], triangles)
 
 
 def boundary(cells: np.ndarray) -> np.ndarray:
-    """The sides (e, 2) of triangles or faces (f, 3) of tetrahedra that belong to one cell, which is to their left, or seen
-    counter-clockwise from outside."""
+    """The sides (e, 2) of triangles or faces (f, 3) of tetrahedra that belong to one cell,
+    which is to their left, or seen counter-clockwise from outside.
+    """
     sides = cells[:, SIDES[cells.shape[1]]].reshape(-1, cells.shape[1] - 1)
-    _, first, count = np.unique(np.sort(sides, axis=1), axis=0, return_index=True, return_counts=True)
+    _, first, count = np.unique(
+        np.sort(sides, axis=1), axis=0, return_index=True, return_counts=True
+    )
     return sides[np.sort(first[count == 1])]
 
 
 def pieces(points: int, elements: np.ndarray) -> np.ndarray:
-    """The number (points,) of the piece that each point belongs to: elements (n, corners) hang together by common points."""
+    """The number (points,) of the piece that each point belongs to: elements (n, corners) hang
+    together by common points.
+    """
     links = elements[:, :-1].ravel(), elements[:, 1:].ravel()
-    return connected_components(coo_array((np.ones(len(links[0])), links), (points, points)), directed=False)[1]
+    return connected_components(
+        coo_array((np.ones(len(links[0])), links), (points, points)), directed=False
+    )[1]
 
 
 def inner_outlines(points: np.ndarray, sides: np.ndarray) -> list[np.ndarray]:
@@ -365,15 +498,21 @@ def without_inner(made, keeps: Callable[[np.ndarray, np.ndarray], bool] = lambda
 
 
 def write(mesh: Mesh, path: Path, regions: np.ndarray | None = None) -> None:
-    """Writes FreeFEM's 2D .msh: counts; x y label; v1 v2 v3 region; v1 v2 label; vertices count from 1. `regions` (t,): if several."""
+    """Writes FreeFEM's 2D .msh: counts; x y label; v1 v2 v3 region; v1 v2 label; vertices count
+    from 1. `regions` (t,): if several.
+    """
     point_labels = np.zeros(len(mesh.points), dtype=int)
-    for label in np.unique(mesh.labels)[::-1]:     # where two meet, the contact's
+    for label in np.unique(mesh.labels)[::-1]:  # where two meet, the contact's
         point_labels[mesh.edges[mesh.labels == label]] = label
     regions = np.full(len(mesh.triangles), mesh.region) if regions is None else regions
     with open(path, "w") as file:
         file.write(f"{len(mesh.points)} {len(mesh.triangles)} {len(mesh.edges)}\n")
-        file.writelines(f"{x:.17g} {y:.17g} {label}\n" for (x, y), label in zip(mesh.points, point_labels))
-        file.writelines(f"{a} {b} {c} {region}\n" for (a, b, c), region in zip(mesh.triangles + 1, regions))
+        file.writelines(
+            f"{x:.17g} {y:.17g} {label}\n" for (x, y), label in zip(mesh.points, point_labels)
+        )
+        file.writelines(
+            f"{a} {b} {c} {region}\n" for (a, b, c), region in zip(mesh.triangles + 1, regions)
+        )
         file.writelines(f"{a} {b} {label}\n" for (a, b), label in zip(mesh.edges + 1, mesh.labels))
 
 
@@ -382,12 +521,25 @@ def read(path: Path) -> Mesh:
     try:
         words = path.read_text().split()
         n, t, e = map(int, words[:3])
-        points, triangles, edges = np.split(np.array(words[3:], dtype=float), [3 * n, 3 * n + 4 * t])
-        points, triangles, edges = points.reshape(n, 3), triangles.reshape(t, 4), edges.reshape(e, 3)
+        points, triangles, edges = np.split(
+            np.array(words[3:], dtype=float), [3 * n, 3 * n + 4 * t]
+        )
+        points, triangles, edges = (
+            points.reshape(n, 3),
+            triangles.reshape(t, 4),
+            edges.reshape(e, 3),
+        )
     except OSError as error:
         raise BadInput(f"mesh: {path} cannot be read: {error.strerror}") from None
     except ValueError:
-        raise BadInput(f"mesh: {path} is no mesh (accepted: a 2D mesh as FreeFEM's savemesh or gmsh writes it, .msh)") from None
+        raise BadInput(
+            f"mesh: {path} is no mesh (accepted: a 2D mesh as FreeFEM's savemesh or gmsh writes it, .msh)"
+        ) from None
     regions = np.unique(triangles[:, 3]).astype(int)
-    return Mesh(points[:, :2], triangles[:, :3].astype(int) - 1, edges[:, :2].astype(int) - 1, edges[:, 2].astype(int),
-                region=int(regions[0]) if len(regions) == 1 else 0)
+    return Mesh(
+        points[:, :2],
+        triangles[:, :3].astype(int) - 1,
+        edges[:, :2].astype(int) - 1,
+        edges[:, 2].astype(int),
+        region=int(regions[0]) if len(regions) == 1 else 0,
+    )

@@ -1,7 +1,8 @@
-"""Bodies of revolution about the axis x = 0: [[body]] tables (docs: scenes) as their section with a plane through the axis, SI units.
+"""Bodies of revolution about the axis x = 0: [[body]] tables (docs: scenes) as their section with
+a plane through the axis, SI units.
 
-x is the radius, y the axis. The section is symmetric about x = 0: an Outline about the centre of volume, of which the half x >= 0 is
-meshed.
+x is the radius, y the axis. The section is symmetric about x = 0: an Outline about the centre of
+volume, of which the half x >= 0 is meshed.
 """
 
 from collections.abc import Callable
@@ -24,20 +25,36 @@ from ..input.models import Body, Mesh, Polygon, Shell, Torus, Tube
 from . import flat, mesh
 
 __all__ = [
-    "boundary", "closed_over_axis", "image", "mirrored", "motion", "right_half", "shape", "whole",
+    "boundary",
+    "closed_over_axis",
+    "image",
+    "mirrored",
+    "motion",
+    "right_half",
+    "shape",
+    "whole",
 ]
 
-LOOPS = {"ball": circle_loop, "ellipsoid": lambda semi_axes: ellipse_loop(*semi_axes),
-         "cylinder": lambda r, height: Loop(np.array([r, height / 2]) * [[0, -1], [1, -1], [1, 1], [0, 1], [-1, 1], [-1, -1]])}
+LOOPS = {
+    "ball": circle_loop,
+    "ellipsoid": lambda semi_axes: ellipse_loop(*semi_axes),
+    "cylinder": lambda r, height: Loop(
+        np.array([r, height / 2]) * [[0, -1], [1, -1], [1, 1], [0, 1], [-1, 1], [-1, -1]]
+    ),
+}
 
 
 def shape(body: Body, folder: Path) -> tuple[Outline, mesh.Mesh | None]:
-    """The section of a body, and the mesh of its half x >= 0 where a file brings it, both about the centre of volume."""
+    """The section of a body, and the mesh of its half x >= 0 where a file brings it, both about
+    the centre of volume.
+    """
     if isinstance(body, Mesh):
         half = flat.mesh_file(body, folder, "ball-axisymmetric")
         if not (half.labels == mesh.AXIS).any():
             return _tube_mesh(body, half)
-        half.points[np.unique(half.edges[half.labels == mesh.AXIS]), 0] = 0.0      # what a file has of the axis to round-off
+        half.points[np.unique(half.edges[half.labels == mesh.AXIS]), 0] = (
+            0.0  # what a file has of the axis to round-off
+        )
         centre = np.array([0.0, _centre_of_volume(half.points[half.triangles])])
         half = half.moved(-centre)
         return flat.mesh_outline(whole(half)), half
@@ -53,7 +70,12 @@ def shape(body: Body, folder: Path) -> tuple[Outline, mesh.Mesh | None]:
 
 def motion(body: Body) -> dict:
     """Where a body is at the start and how it moves along the axis."""
-    return {"position": np.array(body.position), "angle": 0.0, "velocity": np.array(body.velocity or [0.0, 0.0]), "spin": 0.0}
+    return {
+        "position": np.array(body.position),
+        "angle": 0.0,
+        "velocity": np.array(body.velocity or [0.0, 0.0]),
+        "spin": 0.0,
+    }
 
 
 def _loop(body: Body) -> Loop:
@@ -66,14 +88,20 @@ def _loop(body: Body) -> Loop:
 def _check_radii(body: Shell | Tube) -> None:
     """BadInput where a hollow body has no wall."""
     if not body.inner_radius < body.radius:
-        raise BadInput(f"{body.at('inner_radius')}: {body.inner_radius:g} m is no smaller than radius (accepted: below {body.radius:g} m)")
+        raise BadInput(
+            f"{body.at('inner_radius')}: {body.inner_radius:g} m is no smaller than radius (accepted: below {body.radius:g} m)"
+        )
 
 
 def _tube_loop(body: Body) -> Loop | None:
-    """The loop of a section to the right of the axis, that does not reach it; None of another body."""
+    """The loop of a section to the right of the axis, that does not reach it; None of another
+    body.
+    """
     if isinstance(body, Torus):
         if not body.section < body.radius:
-            raise BadInput(f"{body.at('section')}: {body.section:g} m reaches the axis (accepted: below radius, {body.radius:g} m)")
+            raise BadInput(
+                f"{body.at('section')}: {body.section:g} m reaches the axis (accepted: below radius, {body.radius:g} m)"
+            )
         return circle_loop(body.section).placed(np.array([body.radius, 0.0]), 0.0)
     if isinstance(body, Tube):
         _check_radii(body)
@@ -95,39 +123,57 @@ def image(loop: Loop) -> Loop:
 def _tube_mesh(body: Mesh, half: mesh.Mesh) -> tuple[TubeOutline, mesh.Mesh]:
     """The section and the mesh of a body from a file that does not reach the axis."""
     if half.points[:, 0].min() <= 0:
-        raise BadInput(f"{body.at('file')}: it lies down to x = {half.points[:, 0].min():g} m (accepted: to the right of the axis, "
-                       f"or with edges of the label {mesh.AXIS} on it)")
+        raise BadInput(
+            f"{body.at('file')}: it lies down to x = {half.points[:, 0].min():g} m (accepted: to the right of the axis, "
+            f"or with edges of the label {mesh.AXIS} on it)"
+        )
     half = half.moved(-np.array([0.0, _centre_of_volume(half.points[half.triangles])]))
     outline = flat.mesh_outline(half)
     if len(outline.loops) > 1:
-        raise BadInput(f"{body.at('file')}: a section that does not reach the axis and has a hole (accepted: without holes)")
+        raise BadInput(
+            f"{body.at('file')}: a section that does not reach the axis and has a hole (accepted: without holes)"
+        )
     return TubeOutline((outline.loops[0], flat.mesh_outline(_mirror(half)).loops[0])), half
 
 
 def _mirror(half: mesh.Mesh) -> mesh.Mesh:
     """The mirror image of a mesh across the axis."""
-    return mesh.Mesh(half.points * [-1, 1], half.triangles[:, ::-1], half.edges[:, ::-1], half.labels, half.hubs * [-1, 1])
+    return mesh.Mesh(
+        half.points * [-1, 1],
+        half.triangles[:, ::-1],
+        half.edges[:, ::-1],
+        half.labels,
+        half.hubs * [-1, 1],
+    )
 
 
 def closed_over_axis(path: str, right: np.ndarray) -> np.ndarray:
-    """The polygon, counter-clockwise, of a chain (n, 2) from the axis to the axis and its mirror image."""
+    """The polygon, counter-clockwise, of a chain (n, 2) from the axis to the axis and its
+    mirror image.
+    """
     if right[0, 0] != 0 or right[-1, 0] != 0 or (right[1:-1, 0] <= 0).any():
-        raise BadInput(f"{path}: do not go from the axis to the axis on its right (accepted: x = 0 for the first and the last, x > 0 "
-                       f"between)")
+        raise BadInput(
+            f"{path}: do not go from the axis to the axis on its right (accepted: x = 0 for the first and the last, x > 0 "
+            f"between)"
+        )
     corners = np.vstack([right, right[-2:0:-1] * [-1, 1]])
     flat.check_simple(path, corners)
     return corners if right[-1, 1] > right[0, 1] else np.roll(corners[::-1], 1, axis=0)
 
 
 def right_half(loop: Loop) -> list[int]:
-    """The pieces of a section's loop to the right of the axis, from its lower end on; pieces lead from corner to corner."""
+    """The pieces of a section's loop to the right of the axis, from its lower end on; pieces
+    lead from corner to corner.
+    """
     lower, upper = sorted(np.flatnonzero(loop.corners[:, 0] == 0), key=lambda k: loop.corners[k, 1])
     return [(lower + k) % len(loop.corners) for k in range((upper - lower) % len(loop.corners))]
 
 
 def boundary(outline: Outline) -> list[tuple[Callable[[np.ndarray], np.ndarray], Loop | None]]:
-    """The boundary of the half x >= 0, counter-clockwise, as curves over [0, 1], each with the loop that it is part of, None on the
-    axis: the outer surface upwards, down the axis, where there is a cavity down its surface, and down the axis."""
+    """The boundary of the half x >= 0, counter-clockwise, as curves over [0, 1], each with the
+    loop that it is part of, None on the axis: the outer surface upwards, down the axis, where
+    there is a cavity down its surface, and down the axis.
+    """
     curves, ends = [], []
     for k, loop in enumerate(outline.loops):
         pieces = right_half(loop)
@@ -137,7 +183,10 @@ def boundary(outline: Outline) -> list[tuple[Callable[[np.ndarray], np.ndarray],
             ends = [lower, upper]
         else:
             curves += [(_straight(ends[1], upper), None)]
-            curves += [((lambda s, loop=loop, piece=piece: loop.at(piece, 1 - s)), loop) for piece in pieces[::-1]]
+            curves += [
+                ((lambda s, loop=loop, piece=piece: loop.at(piece, 1 - s)), loop)
+                for piece in pieces[::-1]
+            ]
             ends[1] = lower
     return [*curves, (_straight(ends[1], ends[0]), None)]
 
@@ -152,14 +201,25 @@ def _loop_centre(loop: Loop) -> float:
         return float(loop.centre[1])
     if loop.corners[:, 0].min() > 0:
         corners = loop.corners
-        return _centre_of_volume(np.stack([np.broadcast_to(corners[0], (len(corners) - 2, 2)), corners[1:-1], corners[2:]], axis=1))
+        return _centre_of_volume(
+            np.stack(
+                [np.broadcast_to(corners[0], (len(corners) - 2, 2)), corners[1:-1], corners[2:]],
+                axis=1,
+            )
+        )
     first, *pieces = right_half(loop)
     corners = loop.corners[[first, *pieces, (pieces[-1] + 1) % len(loop.corners)]]
-    return _centre_of_volume(np.stack([np.broadcast_to(corners[0], (len(corners) - 2, 2)), corners[1:-1], corners[2:]], axis=1))
+    return _centre_of_volume(
+        np.stack(
+            [np.broadcast_to(corners[0], (len(corners) - 2, 2)), corners[1:-1], corners[2:]], axis=1
+        )
+    )
 
 
 def _centre_of_volume(triangles: np.ndarray) -> float:
-    """y of the centre of what triangles (t, 3, 2), areas signed, make about the axis: the integral of x y over that of x."""
+    """y of the centre of what triangles (t, 3, 2), areas signed, make about the axis: the
+    integral of x y over that of x.
+    """
     areas = cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]) / 2
     x, y = triangles[..., 0], triangles[..., 1]
     moments = areas / 12 * (x.sum(axis=1) * y.sum(axis=1) + (x * y).sum(axis=1))
@@ -171,18 +231,26 @@ def whole(half: mesh.Mesh) -> mesh.Mesh:
     n, off = len(half.points), half.points[:, 0] != 0
     mirrored = np.where(off, n + np.cumsum(off) - 1, np.arange(n))
     outer = half.labels != mesh.AXIS
-    return mesh.Mesh(np.vstack([half.points, half.points[off] * [-1, 1]]), np.vstack([half.triangles, mirrored[half.triangles][:, ::-1]]),
-                     np.vstack([half.edges[outer], mirrored[half.edges[outer]][:, ::-1]]), np.tile(half.labels[outer], 2),
-                     np.vstack([half.hubs[outer], half.hubs[outer] * [-1, 1]]))
+    return mesh.Mesh(
+        np.vstack([half.points, half.points[off] * [-1, 1]]),
+        np.vstack([half.triangles, mirrored[half.triangles][:, ::-1]]),
+        np.vstack([half.edges[outer], mirrored[half.edges[outer]][:, ::-1]]),
+        np.tile(half.labels[outer], 2),
+        np.vstack([half.hubs[outer], half.hubs[outer] * [-1, 1]]),
+    )
 
 
 def mirrored(path: str, chain: np.ndarray) -> tuple[np.ndarray, bool]:
-    """The vertices of a rigid chain (n, 2) that begins or ends on the axis with those of its mirror image, in one direction of travel, and
-    whether they close: the mirror image of what is to the left of a chain is to the left of its mirror image travelled backwards."""
+    """The vertices of a rigid chain (n, 2) that begins or ends on the axis with those of its
+    mirror image, in one direction of travel, and whether they close: the mirror image of what
+    is to the left of a chain is to the left of its mirror image travelled backwards.
+    """
     begins, ends = bool(chain[0, 0] == 0), bool(chain[-1, 0] == 0)
-    if not (begins or ends) or (chain[begins:len(chain) - ends, 0] <= 0).any():
-        raise BadInput(f"{path}: is no section of a surface of revolution (accepted: x = 0 for the first or the last vertex, x > 0 for "
-                       f"the others)")
+    if not (begins or ends) or (chain[begins : len(chain) - ends, 0] <= 0).any():
+        raise BadInput(
+            f"{path}: is no section of a surface of revolution (accepted: x = 0 for the first or the last vertex, x > 0 for "
+            f"the others)"
+        )
     image = chain[::-1] * [-1, 1]
     if begins and ends:
         return np.vstack([chain, image[1:-1]]), True

@@ -1,5 +1,5 @@
-"""Element sizes on the curved surfaces of a geometry: its fillets, holes and round ends, as fields of
-gmsh.
+"""Element sizes on the curved surfaces of a geometry: its fillets, holes and round ends, as fields
+of gmsh.
 
 A surface whose radius r is at least the element size, in the bulk or next to the contact, is
 resolved: it gets TURN elements a full turn. A smaller one, such as a fillet away from contact, gets
@@ -17,15 +17,16 @@ from .mesh import GROWTH, Sizes
 
 __all__ = ["Rounding", "TURN", "fields", "roundings"]
 
-TURN = 20                          # elements on a full turn of a curved surface that they resolve
-GRID = 7                           # points along each parameter at which a surface is evaluated
-FINER = 1.1                        # ratio of one size that is tried to the next smaller one
+TURN = 20  # elements on a full turn of a curved surface that they resolve
+GRID = 7  # points along each parameter at which a surface is evaluated
+FINER = 1.1  # ratio of one size that is tried to the next smaller one
 
 
 @dataclass(frozen=True)
 class Rounding:
-    """A curved surface in a model of gmsh: its number, the median of its radii [m] and its area [m2],
-    untrimmed."""
+    """A curved surface in a model of gmsh: its number, the median of its radii [m] and its area
+    [m2], untrimmed.
+    """
 
     tag: int
     radius: float
@@ -43,16 +44,17 @@ class Rounding:
 
     def cut(self, size: float) -> float:
         """The volume [m3] between it and flat elements of a size."""
-        depth = max(size, self.fine)**2 / (12 * self.radius)
+        depth = max(size, self.fine) ** 2 / (12 * self.radius)
         return self.area * min(depth, (1 - 2 / math.pi) / 2 * self.radius)
 
 
 def fields(gmsh, sizes: Sizes, sources: list[int], bulk: float, cut: float) -> list[int]:
-    """Fields of gmsh with the element sizes on curved surfaces, of a body with elements of the size
-    `bulk` that touches next to the points `sources`; flat elements on surfaces that are not resolved
-    `cut` no more than this share of the body's box."""
+    """Fields of gmsh with the element sizes on curved surfaces, of a body with elements of the
+    size `bulk` that touches next to the points `sources`; flat elements on surfaces that are
+    not resolved `cut` no more than this share of the body's box.
+    """
     low, high = np.reshape(gmsh.model.getBoundingBox(-1, -1), (2, 3))
-    found = roundings(gmsh.model, bulk * TURN / (2 * math.pi))       # on others the bulk's size is finer
+    found = roundings(gmsh.model, bulk * TURN / (2 * math.pi))  # on others the bulk's size is finer
     small = [one for one in found if one.radius < bulk]
     size = _size(small, bulk, cut * float(np.prod(high - low)))
     field, made = gmsh.model.mesh.field, []
@@ -85,7 +87,9 @@ def roundings(model, largest: float) -> list[Rounding]:
 
 
 def _size(small: list[Rounding], bulk: float, cut: float) -> float:
-    """The largest element size [m] with which all of them together cut no more than that, if any."""
+    """The largest element size [m] with which all of them together cut no more than that, if
+    any.
+    """
     size = bulk
     while sum(one.cut(size) for one in small) > cut and any(size > one.fine for one in small):
         size /= FINER

@@ -1,6 +1,8 @@
-"""A solid in a file: a mesh of tetrahedra (gmsh's .msh, Medit's .mesh) or a geometry that gmsh meshes (.geo, .step, .stp), lengths in m.
+"""A solid in a file: a mesh of tetrahedra (gmsh's .msh, Medit's .mesh) or a geometry that gmsh
+meshes (.geo, .step, .stp), lengths in m.
 
-Faces of a physical surface named `contact` may touch, others never; without physical surfaces all may, those of cavities, too.
+Faces of a physical surface named `contact` may touch, others never; without physical surfaces all
+may, those of cavities, too.
 """
 
 import re
@@ -18,13 +20,16 @@ from .solid_mesh import SolidMesh, cell_volumes, cells_of, generate
 __all__ = ["GEOMETRIES", "Geometry", "MESHES", "is_geometry", "meshed", "read", "takes_in_others"]
 
 MESHES, GEOMETRIES = (".msh", ".mesh"), (".geo", ".step", ".stp")
-OTHERS = re.compile(r"\b(Merge|Include|ShapeFromFile)\b")       # in a .geo: takes in another file
+OTHERS = re.compile(r"\b(Merge|Include|ShapeFromFile)\b")  # in a .geo: takes in another file
 CONTACT = "contact"
 HEADER = b"$MeshFormat"
-TRIANGLES = {2: 3, 9: 6}         # gmsh's types of element: their nodes, of which the first three are the corners
-COARSE = 15                      # elements along the largest extent where only the shape of a geometry is wanted
+TRIANGLES = {
+    2: 3,
+    9: 6,
+}  # gmsh's types of element: their nodes, of which the first three are the corners
+COARSE = 15  # elements along the largest extent where only the shape of a geometry is wanted
 
-SHAPE_CUT = 1e-3                 # likewise: what flat elements cut off its box at most (rounding.py)
+SHAPE_CUT = 1e-3  # likewise: what flat elements cut off its box at most (rounding.py)
 
 
 def is_geometry(path: Path) -> bool:
@@ -34,8 +39,9 @@ def is_geometry(path: Path) -> bool:
 
 @dataclass(frozen=True)
 class Geometry:
-    """A geometry in a file: metres per unit of the file, the centre of its volume in it [m], and about
-    that centre a mesh that is good for its shape only."""
+    """A geometry in a file: metres per unit of the file, the centre of its volume in it [m],
+    and about that centre a mesh that is good for its shape only.
+    """
 
     path: Path
     scale: float
@@ -56,21 +62,28 @@ def takes_in_others(path: Path) -> bool:
 
 
 def read(path: Path) -> SolidMesh:
-    """The mesh in a file; of a geometry one that is good for its shape only. BadInput, by the file's name, where it cannot be used."""
+    """The mesh in a file; of a geometry one that is good for its shape only. BadInput, by the
+    file's name, where it cannot be used.
+    """
     if path.suffix.lower() not in MESHES + GEOMETRIES:
-        raise BadInput(f"{path.name!r} is no mesh or geometry (accepted: {', '.join(MESHES + GEOMETRIES)})")
+        raise BadInput(
+            f"{path.name!r} is no mesh or geometry (accepted: {', '.join(MESHES + GEOMETRIES)})"
+        )
     try:
         if not path.is_file():
             raise BadInput(f"{path.name!r} is no file (accepted: {', '.join(MESHES + GEOMETRIES)})")
         stamp = path.stat()
     except (OSError, ValueError) as error:
-        raise BadInput(f"{path.name!r} cannot be read: {getattr(error, 'strerror', None) or error}") from None
+        raise BadInput(
+            f"{path.name!r} cannot be read: {getattr(error, 'strerror', None) or error}"
+        ) from None
     return _read(path.resolve(), stamp.st_mtime_ns)
 
 
 def meshed(path: Path, sizes: Sizes | None = None, cut: float = SHAPE_CUT) -> SolidMesh:
-    """The mesh in a file, that of a geometry with element sizes, which are of the coordinates in the
-    file, and a cut (rounding.py)."""
+    """The mesh in a file, that of a geometry with element sizes, which are of the coordinates
+    in the file, and a cut (rounding.py).
+    """
     try:
         return in_own_process(_taken, path, sizes, cut)
     except BadInput as error:
@@ -84,20 +97,23 @@ def _read(path: Path, changed: int) -> SolidMesh:
 
 # ---- in the process of its own
 
+
 def _taken(path: Path, sizes: Sizes | None, cut: float) -> SolidMesh:
     try:
         if is_geometry(path):
             return _meshed(path, sizes, cut)
-        if path.suffix.lower() == ".msh":              # what gmsh does not know it runs as a script
+        if path.suffix.lower() == ".msh":  # what gmsh does not know it runs as a script
             with open(path, "rb") as file:
                 if not file.read(len(HEADER)) == HEADER:
-                    raise BadInput(f"it does not begin with {HEADER.decode()} (accepted: gmsh's .msh)")
+                    raise BadInput(
+                        f"it does not begin with {HEADER.decode()} (accepted: gmsh's .msh)"
+                    )
         with mesh.gmsh_session() as gmsh:
             gmsh.open(str(path))
             return _labelled(gmsh.model)
     except BadInput:
         raise
-    except Exception as error:   # gmsh knows no other
+    except Exception as error:  # gmsh knows no other
         raise BadInput(f"gmsh cannot read or mesh it: {error}") from None
 
 
@@ -118,20 +134,26 @@ def _labelled(model) -> SolidMesh:
     """The mesh in a model of gmsh, with the labels of boundary faces from its physical surfaces."""
     points, cells = cells_of(model)
     volumes = cell_volumes(points, cells)
-    if not (volumes > 1e-12 * np.ptp(points, axis=0).max()**3 / len(cells)).all():
-        raise BadInput(f"a tetrahedron is flat: its volume is {np.nanmin(volumes):.3g} m3, or it has a corner that is no number")
+    if not (volumes > 1e-12 * np.ptp(points, axis=0).max() ** 3 / len(cells)).all():
+        raise BadInput(
+            f"a tetrahedron is flat: its volume is {np.nanmin(volumes):.3g} m3, or it has a corner that is no number"
+        )
     count = len(np.unique(pieces(len(points), cells)[cells[:, 0]]))
     if count > 1:
-        raise BadInput(f"its tetrahedra are {count} pieces that hang together nowhere (accepted: one, a [[body]] table and a file a piece)")
+        raise BadInput(
+            f"its tetrahedra are {count} pieces that hang together nowhere (accepted: one, a [[body]] table and a file a piece)"
+        )
     faces = boundary(cells)
     _check_surface(points, faces)
     named = _contact_triangles(model)
     if named is None:
         return SolidMesh(points, cells, faces, np.full(len(faces), FREE))
     scale = np.ptp(points, axis=0).max()
+
     def keys(corners: np.ndarray) -> list[tuple]:
         """Triangles by their corners, to a billionth of the size."""
         return [tuple(sorted(map(tuple, one))) for one in np.round(corners / scale, 9).tolist()]
+
     wanted = set(keys(named))
     labels = np.array([FREE if key in wanted else SolidMesh.NEVER for key in keys(points[faces])])
     if not (labels == FREE).any():
@@ -140,37 +162,65 @@ def _labelled(model) -> SolidMesh:
 
 
 def _check_surface(points: np.ndarray, faces: np.ndarray) -> None:
-    """BadInput where the body hangs together by an edge or a point alone: a side of boundary faces belongs to two of them, and around a
-    point of the boundary they follow each other in one turn."""
+    """BadInput where the body hangs together by an edge or a point alone: a side of boundary
+    faces belongs to two of them, and around a point of the boundary they follow each other in
+    one turn.
+    """
     corners = np.arange(3 * len(faces)).reshape(-1, 3)
     sides, ends = (of[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2) for of in (faces, corners))
     ends = np.where((sides[:, 0] > sides[:, 1])[:, None], ends[:, ::-1], ends)
-    found, which, count = np.unique(np.sort(sides, axis=1), axis=0, return_inverse=True, return_counts=True)
+    found, which, count = np.unique(
+        np.sort(sides, axis=1), axis=0, return_inverse=True, return_counts=True
+    )
+
     def place(point: int) -> str:
         return "({:g}, {:g}, {:g})".format(*points[point])
+
     if (count != 2).any():
         a, b = found[np.argmax(count != 2)]
-        raise BadInput(f"it hangs together by an edge alone, from {place(a)} to {place(b)} (accepted: tetrahedra that hang together "
-                       f"by faces)")
-    first, second = ends[np.argsort(which.ravel(), kind="stable")].reshape(-1, 2, 2).transpose(1, 0, 2)
-    turns = np.unique(np.column_stack([faces.ravel(), pieces(corners.size, np.column_stack([first.ravel(), second.ravel()]))]),
-                      axis=0)[:, 0]
+        raise BadInput(
+            f"it hangs together by an edge alone, from {place(a)} to {place(b)} (accepted: tetrahedra that hang together "
+            f"by faces)"
+        )
+    first, second = (
+        ends[np.argsort(which.ravel(), kind="stable")].reshape(-1, 2, 2).transpose(1, 0, 2)
+    )
+    turns = np.unique(
+        np.column_stack(
+            [faces.ravel(), pieces(corners.size, np.column_stack([first.ravel(), second.ravel()]))]
+        ),
+        axis=0,
+    )[:, 0]
     if len(twice := turns[1:][turns[1:] == turns[:-1]]):
-        raise BadInput(f"it hangs together by a point alone, {place(twice[0])} (accepted: tetrahedra that hang together by faces)")
+        raise BadInput(
+            f"it hangs together by a point alone, {place(twice[0])} (accepted: tetrahedra that hang together by faces)"
+        )
 
 
 def _contact_triangles(model) -> np.ndarray | None:
-    """Corners (t, 3, 3) of the triangles in the physical surfaces named `contact`; None where no physical surface has a name."""
-    names = {number: model.getPhysicalName(2, number).strip().lower() for _, number in model.getPhysicalGroups(2)}
+    """Corners (t, 3, 3) of the triangles in the physical surfaces named `contact`; None where
+    no physical surface has a name.
+    """
+    names = {
+        number: model.getPhysicalName(2, number).strip().lower()
+        for _, number in model.getPhysicalGroups(2)
+    }
     if not any(names.values()):
         return None
     if CONTACT not in names.values():
-        raise BadInput(f"none of its physical surfaces ({', '.join(filter(None, names.values()))}) has the name '{CONTACT}' (accepted: "
-                       f"such a one, or none with a name)")
+        raise BadInput(
+            f"none of its physical surfaces ({', '.join(filter(None, names.values()))}) has the name '{CONTACT}' (accepted: "
+            f"such a one, or none with a name)"
+        )
     tags, coordinates, _ = model.mesh.getNodes()
     row = np.zeros(int(tags.max()) + 1, dtype=int)
     row[tags] = np.arange(len(tags))
-    corners = [row[np.reshape(nodes, (-1, TRIANGLES[kind]))[:, :3]] for number, name in names.items() if name == CONTACT
-               for surface in model.getEntitiesForPhysicalGroup(2, number) for kind, _, nodes in zip(*model.mesh.getElements(2, surface))
-               if kind in TRIANGLES]
+    corners = [
+        row[np.reshape(nodes, (-1, TRIANGLES[kind]))[:, :3]]
+        for number, name in names.items()
+        if name == CONTACT
+        for surface in model.getEntitiesForPhysicalGroup(2, number)
+        for kind, _, nodes in zip(*model.mesh.getElements(2, surface))
+        if kind in TRIANGLES
+    ]
     return coordinates.reshape(-1, 3)[np.vstack(corners or [np.empty((0, 3), dtype=int)])]

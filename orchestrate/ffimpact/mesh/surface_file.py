@@ -13,14 +13,16 @@ from .mesh import boundary, elements_of, in_own_process
 __all__ = ["read"]
 
 FILES = (".stl", ".msh", ".mesh")
-TRIANGLES, TETRAHEDRA = {2: 3, 9: 6}, {4: 4, 11: 10}      # gmsh's types: their nodes, corners first
-SAME = 1e-7                  # of the size: vertices as near to each other are one
-MOST = 200_000               # triangles
+TRIANGLES, TETRAHEDRA = {2: 3, 9: 6}, {4: 4, 11: 10}  # gmsh's types: their nodes, corners first
+SAME = 1e-7  # of the size: vertices as near to each other are one
+MOST = 200_000  # triangles
 
 
 def read(path: Path) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices (n, 3), in the file's units, and triangles (t, 3) of vertices, counter-clockwise from
-    outside. BadInput, by the file's name, where there is no such surface, or it is not closed."""
+    """Vertices (n, 3), in the file's units, and triangles (t, 3) of vertices, counter-clockwise
+    from outside. BadInput, by the file's name, where there is no such surface, or it is not
+    closed.
+    """
     if path.suffix.lower() not in FILES:
         raise BadInput(f"'{path.name}' is no surface (accepted: {', '.join(FILES)})")
     try:
@@ -28,7 +30,9 @@ def read(path: Path) -> tuple[np.ndarray, np.ndarray]:
         if not path.is_file():
             raise BadInput(f"'{path.name}' is no file (accepted: {', '.join(FILES)})")
     except (OSError, ValueError) as error:
-        raise BadInput(f"'{path.name}' cannot be read: {getattr(error, 'strerror', None) or error}") from None
+        raise BadInput(
+            f"'{path.name}' cannot be read: {getattr(error, 'strerror', None) or error}"
+        ) from None
     return _read(path.resolve(), stamp)
 
 
@@ -45,10 +49,12 @@ def _taken(path: Path) -> tuple[np.ndarray, np.ndarray]:
     with mesh.gmsh_session() as gmsh:
         try:
             gmsh.open(str(path))
-        except Exception as error:                         # gmsh knows no other
+        except Exception as error:  # gmsh knows no other
             raise BadInput(f"gmsh cannot read it: {error}") from None
         if gmsh.model.mesh.getElementTypes(3).size:
-            points, cells, _ = elements_of(gmsh.model, (3,), TETRAHEDRA, "tetrahedron", "tetrahedra")
+            points, cells, _ = elements_of(
+                gmsh.model, (3,), TETRAHEDRA, "tetrahedron", "tetrahedra"
+            )
             triangles = boundary(cells)
         else:
             points, triangles, _ = elements_of(gmsh.model, (2,), TRIANGLES, "triangle", "triangles")
@@ -62,7 +68,9 @@ def _merged(points: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.n
     size = np.ptp(points, axis=0).max()
     if not size > 0:
         raise BadInput("all of its vertices are at one place")
-    _, first, which = np.unique(np.round(points / (SAME * size)), axis=0, return_index=True, return_inverse=True)
+    _, first, which = np.unique(
+        np.round(points / (SAME * size)), axis=0, return_index=True, return_inverse=True
+    )
     triangles = which.ravel()[triangles]
     a, b, c = triangles.T
     triangles = triangles[(a != b) & (b != c) & (c != a)]
@@ -75,10 +83,14 @@ def _closed(points: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.n
     sides = triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
     _, count = np.unique(np.sort(sides, axis=1), axis=0, return_counts=True)
     if (count != 2).any():
-        raise BadInput(f"it is not closed: {int((count != 2).sum())} edges do not belong to two triangles "
-                       f"(accepted: the closed surface of a solid)")
+        raise BadInput(
+            f"it is not closed: {int((count != 2).sum())} edges do not belong to two triangles "
+            f"(accepted: the closed surface of a solid)"
+        )
     if len(np.unique(sides, axis=0)) < len(sides):
-        raise BadInput("its triangles are not all turned alike (accepted: counter-clockwise from outside)")
+        raise BadInput(
+            "its triangles are not all turned alike (accepted: counter-clockwise from outside)"
+        )
     a, b, c = points[triangles].transpose(1, 0, 2)
     volume = (a * np.cross(b, c)).sum()
     return points, triangles if volume > 0 else triangles[:, ::-1]

@@ -1,8 +1,11 @@
-"""The folder of a run: made beside its place, locked while it is made, gone on with from its checkpoint, put in its place by rename.
+"""The folder of a run: made beside its place, locked while it is made, gone on with from its
+checkpoint, put in its place by rename.
 
-A run happens in the folder DIR.part. Finished, it takes DIR's place, complete: a folder with summary.json is a finished run.
-Interrupted, it leaves nothing, or DIR.part where it has made a checkpoint: there the same scene and code go on. What a run finds in its
-place stays as DIR.1 (.2 ...), unless it is of the same scene: then what the program wrote goes, and what else is there moves over.
+A run happens in the folder DIR.part. Finished, it takes DIR's place, complete: a folder with
+summary.json is a finished run. Interrupted, it leaves nothing, or DIR.part where it has made a
+checkpoint: there the same scene and code go on. What a run finds in its place stays as DIR.1 (.2
+...), unless it is of the same scene: then what the program wrote goes, and what else is there moves
+over.
 """
 
 import fcntl
@@ -20,27 +23,79 @@ from ..places import shown
 from .results import read_summary, why
 
 __all__ = [
-    "FIGURES", "checkpoints", "clear", "failed_beside", "finished_in", "replace", "result_folder",
-    "staging", "unfinished",
+    "FIGURES",
+    "checkpoints",
+    "clear",
+    "failed_beside",
+    "finished_in",
+    "replace",
+    "result_folder",
+    "staging",
+    "unfinished",
 ]
 
-# what the program writes into a folder: what a run leaves, what it needs on its way, and its pictures
+# what the program writes into a folder: what a run leaves, what it needs on its way, and its
+# pictures
 RECORDS = ("scene.toml", "history.csv", "contacts.csv", "modes.csv", "summary.json")
-FIELDS = [f"fields/{name}" for name in ("[0-9][0-9][0-9][0-9].vtu", "contact.csv", "contact.pvd", "contact-[0-9][0-9][0-9][0-9].vtp")]
-FIGURES = ("energies", "velocity", "force", "rolling", "shapes", "pressure", "flight", "contact", "bounces", "height", "vibration", "solid")
-OWN = (*RECORDS, "unfinished/*", "failure.json", "log.txt", "mesh.msh", "mesh.mesh", "scene.dat", "summary.json.part", "checkpoint",
-       "checkpoint.json", "body-files/*", "fields.pvd", *FIELDS, *(f"figures/{name}.png" for name in FIGURES))
-OURS = {"scene.toml", "failure.json", "unfinished", "checkpoint.json"}   # a folder with one of these is the program's
+FIELDS = [
+    f"fields/{name}"
+    for name in (
+        "[0-9][0-9][0-9][0-9].vtu",
+        "contact.csv",
+        "contact.pvd",
+        "contact-[0-9][0-9][0-9][0-9].vtp",
+    )
+]
+FIGURES = (
+    "energies",
+    "velocity",
+    "force",
+    "rolling",
+    "shapes",
+    "pressure",
+    "flight",
+    "contact",
+    "bounces",
+    "height",
+    "vibration",
+    "solid",
+)
+OWN = (
+    *RECORDS,
+    "unfinished/*",
+    "failure.json",
+    "log.txt",
+    "mesh.msh",
+    "mesh.mesh",
+    "scene.dat",
+    "summary.json.part",
+    "checkpoint",
+    "checkpoint.json",
+    "body-files/*",
+    "fields.pvd",
+    *FIELDS,
+    *(f"figures/{name}.png" for name in FIGURES),
+)
+OURS = {
+    "scene.toml",
+    "failure.json",
+    "unfinished",
+    "checkpoint.json",
+}  # a folder with one of these is the program's
 
 
 def result_folder(out: Path) -> Path:
     """The path of a result folder without links; Unreadable where there cannot be one."""
     try:
         folder = out.resolve()
-    except (OSError, RuntimeError) as error:   # a loop of links
-        raise Unreadable(f"{out} cannot be made: {getattr(error, 'strerror', None) or error}; choose another --out") from None
+    except (OSError, RuntimeError) as error:  # a loop of links
+        raise Unreadable(
+            f"{out} cannot be made: {getattr(error, 'strerror', None) or error}; choose another --out"
+        ) from None
     if "unfinished" in folder.parts:
-        raise Unreadable(f"{out} is in a folder unfinished, which runs write and take away; choose another --out")
+        raise Unreadable(
+            f"{out} is in a folder unfinished, which runs write and take away; choose another --out"
+        )
     if not folder.name:
         raise Unreadable(f"{out} cannot be the folder of a run; choose another --out")
     return folder
@@ -52,14 +107,20 @@ def failed_beside(folder: Path) -> Path:
 
 
 def finished_in(folder: Path, force: bool) -> dict | None:
-    """The summary of the finished run in `folder`, None if there is none; Unreadable if the folder is not ours."""
+    """The summary of the finished run in `folder`, None if there is none; Unreadable if the
+    folder is not ours.
+    """
     for path in (folder, failed_beside(folder)):
         if path.exists() and not path.is_dir():
             raise Unreadable(f"{path} is a file; choose another --out")
         if path.exists() and any(path.iterdir()) and not OURS & set(os.listdir(path)):
-            raise Unreadable(f"{path} has files of others in it and no scene.toml; choose another --out")
+            raise Unreadable(
+                f"{path} has files of others in it and no scene.toml; choose another --out"
+            )
     if folder.is_mount():
-        raise Unreadable(f"{folder} is a mount point, which cannot be put aside; choose another --out, such as a folder in it")
+        raise Unreadable(
+            f"{folder} is a mount point, which cannot be put aside; choose another --out, such as a folder in it"
+        )
     if not (folder / "summary.json").exists():
         return None
     try:
@@ -72,26 +133,36 @@ def finished_in(folder: Path, force: bool) -> dict | None:
 
 # ---- made beside its place
 
+
 @contextmanager
 def staging(folder: Path) -> Iterator[tuple[Path, int]]:
-    """The folder DIR.part and its lock, against a second run. Gone in the end, unless it has the checkpoint of a run that is not
-    finished. What is in it at first was left by a run that was killed."""
+    """The folder DIR.part and its lock, against a second run. Gone in the end, unless it has
+    the checkpoint of a run that is not finished. What is in it at first was left by a run that
+    was killed.
+    """
     stage = folder.with_name(folder.name + ".part")
     with ExitStack() as leaving:
-        leaving.callback(_take_away, [made for made in (stage, *stage.parents) if not made.exists()])   # a signal may come at any moment
+        leaving.callback(
+            _take_away, [made for made in (stage, *stage.parents) if not made.exists()]
+        )  # a signal may come at any moment
         leaving.callback(os.close, lock := _lock(stage, folder))
-        if not folder.exists() and _is_complete(stage):   # killed between the two renames of replace
-            os.rename(stage, folder)              # with its lock, which stays
+        if not folder.exists() and _is_complete(stage):  # killed between the two renames of replace
+            os.rename(stage, folder)  # with its lock, which stays
             leaving.callback(os.close, lock := _lock(stage, folder))
         elif folder.exists():
-            leaving.callback(os.close, _hold(folder, folder))   # against a run without Python
-        # what a run makes has checkpoint.json from the first to the last moment; a folder of that name that lacks it is somebody's
+            leaving.callback(os.close, _hold(folder, folder))  # against a run without Python
+        # what a run makes has checkpoint.json from the first to the last moment; a folder of that
+        # name that lacks it is somebody's
         if os.listdir(stage) and not (stage / "checkpoint.json").exists():
-            raise Unreadable(f"{stage}, where the run would be made, has files of others in it; choose another --out")
+            raise Unreadable(
+                f"{stage}, where the run would be made, has files of others in it; choose another --out"
+            )
         try:
             yield stage, lock
         finally:
-            if _holds(lock, stage) and not checkpoints(stage):   # once in its place, that name may already be another run's
+            if _holds(lock, stage) and not checkpoints(
+                stage
+            ):  # once in its place, that name may already be another run's
                 with suppress(OSError):
                     clear(stage)
                     stage.rmdir()
@@ -106,7 +177,9 @@ def _take_away(folders: list[Path]) -> None:
 
 def _is_complete(stage: Path) -> bool:
     try:
-        return (stage / "checkpoint.json").exists() and "code" in read_summary(stage).get("provenance", {})   # the last that _finish writes
+        return (stage / "checkpoint.json").exists() and "code" in read_summary(stage).get(
+            "provenance", {}
+        )  # the last that _finish writes
     except Unreadable:
         return False
 
@@ -117,12 +190,14 @@ def _lock(stage: Path, folder: Path) -> int:
         try:
             stage.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise Unreadable(f"{stage} cannot be made: {error.strerror}; choose another --out") from None
+            raise Unreadable(
+                f"{stage} cannot be made: {error.strerror}; choose another --out"
+            ) from None
         try:
             lock = _hold(stage, folder)
-        except FileNotFoundError:   # its run has just put it in its place
+        except FileNotFoundError:  # its run has just put it in its place
             continue
-        if _holds(lock, stage):     # not likewise, while we locked it
+        if _holds(lock, stage):  # not likewise, while we locked it
             return lock
         os.close(lock)
 
@@ -138,24 +213,30 @@ def _holds(lock: int, path: Path) -> bool:
 def _hold(path: Path, folder: Path) -> int:
     """The folder `path` opened and locked; Busy where a run in `folder` holds it.
 
-    The lock is flock() on the folder itself. The scripts without Python lock their folder in the same way (edp/core/run/folder.idp),
-    FreeFem++ shares the open folder and so the lock, and no lock file is left.
+    The lock is flock() on the folder itself. The scripts without Python lock their folder in
+    the same way (edp/core/run/folder.idp), FreeFem++ shares the open folder and so the lock,
+    and no lock file is left.
     """
     lock = os.open(path, os.O_RDONLY)
     try:
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
         os.close(lock)
-        raise Busy(f"{folder} is being written by another run; wait, or choose another --out") from None
+        raise Busy(
+            f"{folder} is being written by another run; wait, or choose another --out"
+        ) from None
     return lock
 
 
 # ---- a run that was killed
 
+
 def clear(stage: Path) -> None:
-    for checkpoint in checkpoints(stage):   # first: without the rest they are of no use
+    for checkpoint in checkpoints(stage):  # first: without the rest they are of no use
         checkpoint.unlink()
-    for left_over in sorted(stage.iterdir(), key=lambda path: path.name == "checkpoint.json"):   # last: what makes the folder ours
+    for left_over in sorted(
+        stage.iterdir(), key=lambda path: path.name == "checkpoint.json"
+    ):  # last: what makes the folder ours
         shutil.rmtree(left_over) if left_over.is_dir() else left_over.unlink()
 
 
@@ -165,27 +246,36 @@ def checkpoints(stage: Path) -> list[Path]:
 
 
 def unfinished(stage: Path) -> dict | None:
-    """What the run was asked for whose checkpoint is in `stage`, None if there is none; Unreadable if it does not say."""
+    """What the run was asked for whose checkpoint is in `stage`, None if there is none;
+    Unreadable if it does not say.
+    """
     if not checkpoints(stage):
         return None
     try:
         return json.loads((stage / "checkpoint.json").read_text())
     except (OSError, ValueError) as error:
-        raise Unreadable(f"{stage / 'checkpoint.json'} cannot be read: {why(error)}; delete {shown(stage)} to start from the "
-                         "beginning, or run with --force") from None
+        raise Unreadable(
+            f"{stage / 'checkpoint.json'} cannot be read: {why(error)}; delete {shown(stage)} to start from the "
+            "beginning, or run with --force"
+        ) from None
 
 
 # ---- put in its place
 
+
 def replace(stage: Path, folder: Path, same: bool) -> None:
     """Puts `stage` in the place of `folder`, complete or not at all.
 
-    What was there stays as DIR.1 (.2 ...); where it is of the `same` scene, what the program wrote there goes, and what else is there moves
-    over.
+    What was there stays as DIR.1 (.2 ...); where it is of the `same` scene, what the program
+    wrote there goes, and what else is there moves over.
     """
     earlier = None
     if folder.exists() and any(folder.iterdir()):
-        earlier = next(place for n in itertools.count(1) if not os.path.lexists(place := folder.with_name(f"{folder.name}.{n}")))
+        earlier = next(
+            place
+            for n in itertools.count(1)
+            if not os.path.lexists(place := folder.with_name(f"{folder.name}.{n}"))
+        )
         os.rename(folder, earlier)
     os.rename(stage, folder)
     (folder / "checkpoint.json").unlink(missing_ok=True)
@@ -194,9 +284,11 @@ def replace(stage: Path, folder: Path, same: bool) -> None:
 
 
 def _merge(earlier: Path, folder: Path) -> bool:
-    """Takes away what the program wrote in `earlier`, moves the rest to `folder`; False where something is in the way there."""
-    (earlier / "summary.json").unlink(missing_ok=True)        # first: no longer a finished run
-    for path in sorted(earlier.rglob("*"), reverse=True):     # what is in a folder, then the folder
+    """Takes away what the program wrote in `earlier`, moves the rest to `folder`; False where
+    something is in the way there.
+    """
+    (earlier / "summary.json").unlink(missing_ok=True)  # first: no longer a finished run
+    for path in sorted(earlier.rglob("*"), reverse=True):  # what is in a folder, then the folder
         name = path.relative_to(earlier).as_posix()
         if path.is_dir() and not path.is_symlink():
             if not any(path.iterdir()):

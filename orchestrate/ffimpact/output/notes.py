@@ -1,9 +1,9 @@
 """Warnings and notes of a run: sentences `name: what is so: what it means: what to do`.
 
-They are made in edp/core/run/warnings.idp and estimate.py. A warning is something that may make an answer
-wrong. A note is the footnote of a number: what is always so of that number in such a scene, or what stands
-behind a warning that says that the answers are no good. The summary has the sentences, the screen a line
-of each.
+They are made in edp/core/run/warnings.idp and estimate.py. A warning is something that may make an
+answer wrong. A note is the footnote of a number: what is always so of that number in such a scene,
+or what stands behind a warning that says that the answers are no good. The summary has the
+sentences, the screen a line of each.
 """
 
 from collections.abc import Iterable
@@ -12,20 +12,33 @@ from ..failure import shortened
 
 __all__ = ["BEHIND", "WIDEST", "line", "name", "number", "settled"]
 
-WIDEST = 100                # columns of a printed line
-# Warnings about the accuracy of an answer. An answer has none where the law has no answer, or a body
-# passes through itself.
-CAUSES = ("contact points", "steps")        # of errors that are estimated
+WIDEST = 100  # columns of a printed line
+# Warnings about the accuracy of an answer. An answer has none where the law has no answer, or a
+# body passes through itself.
+CAUSES = ("contact points", "steps")  # of errors that are estimated
 OF_ACCURACY = ("penalty", "locking", "corner", "touches", "estimated errors", *CAUSES)
-# What a warning of this name makes notes of. Estimated errors that are too large have the effect of their
-# causes in them. Where the mesh decides how often bodies touch, the penalty does, too.
-BEHIND = {"overlap": OF_ACCURACY, "ellipticity": OF_ACCURACY,
-          "breakdown": ("ellipticity", *OF_ACCURACY), "touches": ("penalty", *CAUSES), "estimated errors": CAUSES}
+# What a warning of this name makes notes of. Estimated errors that are too large have the effect of
+# their causes in them. Where the mesh decides how often bodies touch, the penalty does, too.
+BEHIND = {
+    "overlap": OF_ACCURACY,
+    "ellipticity": OF_ACCURACY,
+    "breakdown": ("ellipticity", *OF_ACCURACY),
+    "touches": ("penalty", *CAUSES),
+    "estimated errors": CAUSES,
+}
 # the key of the number that a note is about, where the name of the note is not that of the number
-NUMBERS = {"penalty": "max_penetration", "locking": "peak_force", "corner": "min_stretch",
-           "contact points": "peak_force", "steps": "contact_time", "touches": "contact_intervals",
-           "estimated errors": "estimated_error", "mesh of the file": "estimated_error",
-           "ellipticity": "ellipticity_lost_time", "touches again": "contact_intervals"}
+NUMBERS = {
+    "penalty": "max_penetration",
+    "locking": "peak_force",
+    "corner": "min_stretch",
+    "contact points": "peak_force",
+    "steps": "contact_time",
+    "touches": "contact_intervals",
+    "estimated errors": "estimated_error",
+    "mesh of the file": "estimated_error",
+    "ellipticity": "ellipticity_lost_time",
+    "touches again": "contact_intervals",
+}
 
 
 def name(sentence: str) -> str:
@@ -47,5 +60,7 @@ def settled(warnings: Iterable[str], notes: Iterable[str]) -> dict[str, list[str
     """Both lists, with warnings that stand behind others (BEHIND) among the notes."""
     warnings = list(warnings)
     behind = {each for one in warnings for each in BEHIND.get(name(one), ())}
-    return {"warnings": [one for one in warnings if name(one) not in behind],
-            "notes": [*notes, *(one for one in warnings if name(one) in behind)]}
+    return {
+        "warnings": [one for one in warnings if name(one) not in behind],
+        "notes": [*notes, *(one for one in warnings if name(one) in behind)],
+    }

@@ -1,4 +1,6 @@
-"""Reads the field snapshots of a run: .vtu files of triangles or tetrahedra, and the .pvd list of their times."""
+"""Reads the field snapshots of a run: .vtu files of triangles or tetrahedra, and the .pvd list of
+their times.
+"""
 
 import xml.etree.ElementTree as xml
 from collections.abc import Sequence
@@ -12,27 +14,51 @@ import numpy as np
 from .results import Contents, content, reading
 
 __all__ = [
-    "FACES", "Skin", "Snapshot", "Solid", "between", "lattice", "read", "read_solid", "series",
+    "FACES",
+    "Skin",
+    "Snapshot",
+    "Solid",
+    "between",
+    "lattice",
+    "read",
+    "read_solid",
+    "series",
     "split",
 ]
 
 KINDS = TRIANGLE, QUADRATIC_TRIANGLE, QUADRATIC_TETRAHEDRON = "triangle", "triangle6", "tetra10"
-FINEST, MOST = 6, 2_000      # straight triangles along a side of a quadratic one, at most; and of all, where that is more than two a side
+FINEST, MOST = (
+    6,
+    2_000,
+)  # straight triangles along a side of a quadratic one, at most; and of all, where that is more than two a side
 # a quadratic tetrahedron as its corners and the four about the diagonal 4-9
-EIGHT = [[0, 4, 6, 7], [4, 1, 5, 8], [6, 5, 2, 9], [7, 8, 9, 3],
-         [4, 9, 5, 6], [4, 9, 6, 7], [4, 9, 7, 8], [4, 9, 8, 5]]
+EIGHT = [
+    [0, 4, 6, 7],
+    [4, 1, 5, 8],
+    [6, 5, 2, 9],
+    [7, 8, 9, 3],
+    [4, 9, 5, 6],
+    [4, 9, 6, 7],
+    [4, 9, 7, 8],
+    [4, 9, 8, 5],
+]
 
 # edges of a tetrahedron between its first so many corners and the others, three a triangle
-CUTS = {1: [[[0, 1], [0, 2], [0, 3]]], 2: [[[0, 2], [0, 3], [1, 3]], [[0, 2], [1, 3], [1, 2]]],
-        3: [[[0, 3], [1, 3], [2, 3]]]}
+CUTS = {
+    1: [[[0, 1], [0, 2], [0, 3]]],
+    2: [[[0, 2], [0, 3], [1, 3]], [[0, 2], [1, 3], [1, 2]]],
+    3: [[[0, 3], [1, 3], [2, 3]]],
+}
 # of a quadratic tetrahedron, as quadratic triangles
 FACES = [[0, 1, 2, 4, 5, 6], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [0, 2, 3, 6, 9, 7]]
 
 
 @dataclass(frozen=True)
 class Snapshot:
-    """points (n, 2) reference coordinates in m; triangles (t, 3) straight; fields by name, SI units: (n,), (n, 3) for vectors, (n, 6) for
-    the Cauchy stress (xx yy zz xy yz xz). Of a body in three dimensions its cut with the plane z = 0 of the reference configuration."""
+    """points (n, 2) reference coordinates in m; triangles (t, 3) straight; fields by name, SI
+    units: (n,), (n, 3) for vectors, (n, 6) for the Cauchy stress (xx yy zz xy yz xz). Of a body
+    in three dimensions its cut with the plane z = 0 of the reference configuration.
+    """
 
     points: np.ndarray
     triangles: np.ndarray
@@ -41,7 +67,9 @@ class Snapshot:
 
 @dataclass(frozen=True)
 class Solid:
-    """A body in three dimensions: points (n, 3) reference coordinates in m; tetrahedra (t, 10) quadratic; fields as of a Snapshot."""
+    """A body in three dimensions: points (n, 3) reference coordinates in m; tetrahedra (t, 10)
+    quadratic; fields as of a Snapshot.
+    """
 
     points: np.ndarray
     tetrahedra: np.ndarray
@@ -50,8 +78,9 @@ class Solid:
 
 @dataclass(frozen=True)
 class Skin:
-    """Quadratic triangles as straight ones (t, 3) between vertices, each of them `shape` (m, 6) of the nodes (m, 6) of a quadratic one:
-    corners, then the middles of 01, 12, 20."""
+    """Quadratic triangles as straight ones (t, 3) between vertices, each of them `shape` (m, 6)
+    of the nodes (m, 6) of a quadratic one: corners, then the middles of 01, 12, 20.
+    """
 
     nodes: np.ndarray
     shape: np.ndarray
@@ -63,9 +92,10 @@ class Skin:
 
 
 def read(path: Path) -> Snapshot:
-    """One snapshot; quadratic triangles, and the faces of quadratic tetrahedra in the plane z = 0, are split into straight ones, so many
-    that curved sides look it. Where a body in three dimensions has no such faces, it is cut there. Unreadable where it is not such a
-    file."""
+    """One snapshot; quadratic triangles, and the faces of quadratic tetrahedra in the plane z =
+    0, are split into straight ones, so many that curved sides look it. Where a body in three
+    dimensions has no such faces, it is cut there. Unreadable where it is not such a file.
+    """
     points, kind, cells, fields = _parts(path)
     on_plane = np.ones(len(points), dtype=bool)
     if kind == QUADRATIC_TETRAHEDRON:
@@ -74,10 +104,18 @@ def read(path: Path) -> Snapshot:
         if not len(cells):
             return _cut(Solid(points, solid, fields), on_plane)
     row = np.cumsum(on_plane) - 1
-    points, cells, fields = points[on_plane, :2], row[cells], {name: field[on_plane] for name, field in fields.items()}
+    points, cells, fields = (
+        points[on_plane, :2],
+        row[cells],
+        {name: field[on_plane] for name, field in fields.items()},
+    )
     if kind != TRIANGLE:
         curved = split(cells.tobytes(), int(np.clip(np.sqrt(MOST / max(1, len(cells))), 2, FINEST)))
-        points, cells, fields = curved.at(points), curved.triangles, {name: curved.at(field) for name, field in fields.items()}
+        points, cells, fields = (
+            curved.at(points),
+            curved.triangles,
+            {name: curved.at(field) for name, field in fields.items()},
+        )
     return Snapshot(points, cells, Contents(fields, path))
 
 
@@ -88,12 +126,17 @@ def read_solid(path: Path) -> Solid | None:
 
 
 def _parts(path: Path) -> tuple[np.ndarray, str, np.ndarray, dict[str, np.ndarray]]:
-    """Points, the type of all cells, their nodes (cells, nodes) and the fields. Unreadable where it is not such a file."""
+    """Points, the type of all cells, their nodes (cells, nodes) and the fields. Unreadable
+    where it is not such a file.
+    """
     import meshio  # takes longer to load than a run
-    content(path)                # it is as the run has written it
+
+    content(path)  # it is as the run has written it
     with reading(path):
         try:
-            with redirect_stderr(None):              # its warnings: a field that it leaves out is missed where it is wanted
+            with redirect_stderr(
+                None
+            ):  # its warnings: a field that it leaves out is missed where it is wanted
                 mesh = meshio.vtu.read(path)
         except meshio.ReadError as error:
             raise ValueError(str(error) or "it is no VTU file") from None
@@ -106,34 +149,50 @@ def _parts(path: Path) -> tuple[np.ndarray, str, np.ndarray, dict[str, np.ndarra
         return mesh.points, kinds.pop(), nodes, Contents(mesh.point_data, path)
 
 
-@lru_cache(1)          # snapshots of a run have the same triangles
+@lru_cache(1)  # snapshots of a run have the same triangles
 def split(cells: bytes, n: int) -> Skin:
-    """Quadratic triangles (t, 6) as n * n straight ones each; a vertex where they meet is one: known by its corners and their shares."""
+    """Quadratic triangles (t, 6) as n * n straight ones each; a vertex where they meet is one:
+    known by its corners and their shares.
+    """
     nodes = np.frombuffer(cells, dtype=int).reshape(-1, 6)
     places, values, triangles = lattice(n)
-    shares = np.rint(n * places).astype(int)[None].repeat(len(nodes), axis=0)                          # (cells, points, 3)
+    shares = np.rint(n * places).astype(int)[None].repeat(len(nodes), axis=0)  # (cells, points, 3)
     owners = np.where(shares > 0, nodes[:, None, :3], -1)
     order = np.argsort(owners, axis=2)
-    known = np.concatenate([np.take_along_axis(each, order, axis=2) for each in (owners, shares)], axis=2).reshape(-1, 6)
+    known = np.concatenate(
+        [np.take_along_axis(each, order, axis=2) for each in (owners, shares)], axis=2
+    ).reshape(-1, 6)
     _, first, which = np.unique(known, axis=0, return_index=True, return_inverse=True)
-    return Skin(nodes[first // len(values)], values[first % len(values)], which.reshape(len(nodes), -1)[:, triangles].reshape(-1, 3))
+    return Skin(
+        nodes[first // len(values)],
+        values[first % len(values)],
+        which.reshape(len(nodes), -1)[:, triangles].reshape(-1, 3),
+    )
 
 
 def lattice(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """A triangle as n * n straight ones: their corners (points, 3), as shares of its own, the values (points, 6) there of the quadratic
-    functions of its corners and the middles of 01, 12, 20, and the triangles (n * n, 3)."""
+    """A triangle as n * n straight ones: their corners (points, 3), as shares of its own, the
+    values (points, 6) there of the quadratic functions of its corners and the middles of 01,
+    12, 20, and the triangles (n * n, 3).
+    """
     points = [(i, j) for j in range(n + 1) for i in range(n + 1 - j)]
     place = {each: k for k, each in enumerate(points)}
     b, c = np.array(points).T / n
     a = 1 - b - c
-    values = np.stack([a * (2 * a - 1), b * (2 * b - 1), c * (2 * c - 1), 4 * a * b, 4 * b * c, 4 * c * a], axis=1)
+    values = np.stack(
+        [a * (2 * a - 1), b * (2 * b - 1), c * (2 * c - 1), 4 * a * b, 4 * b * c, 4 * c * a], axis=1
+    )
     up = [(place[i, j], place[i + 1, j], place[i, j + 1]) for i, j in points if i + j < n]
-    down = [(place[i + 1, j], place[i + 1, j + 1], place[i, j + 1]) for i, j in points if i + j < n - 1]
+    down = [
+        (place[i + 1, j], place[i + 1, j + 1], place[i, j + 1]) for i, j in points if i + j < n - 1
+    ]
     return np.stack([a, b, c], axis=1), values, np.array(up + down)
 
 
 def _in_plane(tetrahedra: np.ndarray, on_plane: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """The faces (f, 6) of quadratic tetrahedra (t, 10) of which all nodes are marked in `on_plane`, each once, counter-clockwise."""
+    """The faces (f, 6) of quadratic tetrahedra (t, 10) of which all nodes are marked in
+    `on_plane`, each once, counter-clockwise.
+    """
     faces = tetrahedra[:, FACES].reshape(-1, 6)
     faces = faces[on_plane[faces].all(axis=1)]
     faces = faces[np.unique(np.sort(faces[:, :3], axis=1), axis=0, return_index=True)[1]]
@@ -143,27 +202,43 @@ def _in_plane(tetrahedra: np.ndarray, on_plane: np.ndarray, points: np.ndarray) 
 
 
 def _cut(solid: Solid, on_plane: np.ndarray) -> Snapshot:
-    """The body's cut with the plane z = 0, on which nodes are where marked: every edge that crosses it has a point there, the fields linear
-    along it."""
+    """The body's cut with the plane z = 0, on which nodes are where marked: every edge that
+    crosses it has a point there, the fields linear along it.
+    """
     z = np.where(on_plane, 0.0, solid.points[:, 2])
     parts = solid.tetrahedra[:, EIGHT].reshape(-1, 4)
-    parts = np.take_along_axis(parts, np.argsort(z[parts] <= 0, axis=1, kind="stable"), axis=1)        # first the corners above
+    parts = np.take_along_axis(
+        parts, np.argsort(z[parts] <= 0, axis=1, kind="stable"), axis=1
+    )  # first the corners above
     above = (z[parts] > 0).sum(axis=1)
-    edges = np.concatenate([parts[above == count][:, three].reshape(-1, 2) for count, cuts in CUTS.items() for three in cuts])
-    edges[on_plane[edges[:, 1]], 0] = edges[on_plane[edges[:, 1]], 1]       # through a node itself
+    edges = np.concatenate(
+        [
+            parts[above == count][:, three].reshape(-1, 2)
+            for count, cuts in CUTS.items()
+            for three in cuts
+        ]
+    )
+    edges[on_plane[edges[:, 1]], 0] = edges[on_plane[edges[:, 1]], 1]  # through a node itself
     different, which = np.unique(edges, axis=0, return_inverse=True)
     (first, second), triangles = different.T, which.reshape(-1, 3)
-    share = np.divide(z[first], z[first] - z[second], out=np.zeros(len(first)), where=first != second)
-    at = lambda field: (field[first].T * (1 - share) + field[second].T * share).T   # noqa: E731
+    share = np.divide(
+        z[first], z[first] - z[second], out=np.zeros(len(first)), where=first != second
+    )
+    at = lambda field: (field[first].T * (1 - share) + field[second].T * share).T  # noqa: E731
     (ax, ay), (bx, by), (cx, cy) = (at(solid.points)[triangles[:, k], :2].T for k in range(3))
     area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
     triangles = np.where((area < 0)[:, None], triangles[:, ::-1], triangles)[area != 0]
-    return Snapshot(at(solid.points)[:, :2], triangles,
-                    Contents({name: at(field) for name, field in solid.fields.items()}, solid.fields.path))
+    return Snapshot(
+        at(solid.points)[:, :2],
+        triangles,
+        Contents({name: at(field) for name, field in solid.fields.items()}, solid.fields.path),
+    )
 
 
 def series(pvd: Path) -> list[tuple[float, Path]]:
-    """(time in s, file) of every snapshot, in the order of time; empty where there is no such list."""
+    """(time in s, file) of every snapshot, in the order of time; empty where there is no such
+    list.
+    """
     if not pvd.exists():
         return []
     text = content(pvd)
@@ -173,7 +248,9 @@ def series(pvd: Path) -> list[tuple[float, Path]]:
 
 
 def between(times: np.ndarray, values: Sequence[np.ndarray], t: float) -> np.ndarray:
-    """What is at t, of values at times: linear between them, beyond the ends the first and the last."""
+    """What is at t, of values at times: linear between them, beyond the ends the first and the
+    last.
+    """
     place = np.interp(t, times, np.arange(len(times)))
     low, share = int(place), place % 1
     return (1 - share) * values[low] + share * values[min(low + 1, len(values) - 1)]

@@ -1,1 +1,3 @@
-"""What finished runs are told and shown in: key figures, pictures, films, the page beside the paper."""
+"""What finished runs are told and shown in: key figures, pictures, films, the page beside the
+paper.
+"""

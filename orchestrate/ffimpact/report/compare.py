@@ -1,4 +1,6 @@
-"""Runs of several scenes side by side: their reports, and one figure of their forces, energies and velocities."""
+"""Runs of several scenes side by side: their reports, and one figure of their forces, energies and
+velocities.
+"""
 
 import argparse
 from pathlib import Path
@@ -10,7 +12,7 @@ from .. import progress, scene
 from ..failure import BadInput, Failure
 from ..input.parameters import overrides
 from ..output.folder import result_folder
-from ..output.results import RunResult, body_names, mechanical_energy, suffixes
+from ..output.results import Record, body_names, mechanical_energy, suffixes
 from ..places import RESULTS, shown
 from ..running.run import run
 from . import report
@@ -33,11 +35,28 @@ __all__ = ["draw", "main"]
 
 
 def main(argv: list[str]) -> int:
-    """Runs or reuses every scene, prints the reports, draws DIR/<names>.png. A scene that fails does not keep the others."""
+    """Runs or reuses every scene, prints the reports, draws DIR/<names>.png. A scene that fails
+    does not keep the others.
+    """
     parser = argparse.ArgumentParser(prog="ffimpact compare", description=__doc__)
-    parser.add_argument("scenes", metavar="SCENE", nargs="+", help="two or more built-in scenes or TOML files")
-    parser.add_argument("--set", metavar="NAME=VALUE", nargs="+", action="extend", default=[], help="set a parameter in all of them")
-    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS, help="a folder for a folder of each scene")
+    parser.add_argument(
+        "scenes", metavar="SCENE", nargs="+", help="two or more built-in scenes or TOML files"
+    )
+    parser.add_argument(
+        "--set",
+        metavar="NAME=VALUE",
+        nargs="+",
+        action="extend",
+        default=[],
+        help="set a parameter in all of them",
+    )
+    parser.add_argument(
+        "--out",
+        metavar="DIR",
+        type=Path,
+        default=RESULTS,
+        help="a folder for a folder of each scene",
+    )
     options = parser.parse_args(argv)
     scenes, folder = [scene.load(name) for name in options.scenes], result_folder(options.out)
     if len({each.name for each in scenes}) < max(2, len(scenes)):
@@ -61,43 +80,88 @@ def main(argv: list[str]) -> int:
     return 0
 
 
-def draw(results: dict[str, RunResult], path: Path) -> None:
-    """Normal force, friction force, total energy and velocities (of each body) over time, a colour a run; friction only where there is any.
+def draw(results: dict[str, Record], path: Path) -> None:
+    """Normal force, friction force, total energy and velocities (of each body) over time, a
+    colour a run; friction only where there is any.
 
-    Totals, which often lie on one another, are dashes of the runs in turn. Of discs, per metre, and balls together: the acceleration of the
-    centre of mass (figure 11), of several bodies the first one's, for the force, energies over that at the start.
+    Totals, which often lie on one another, are dashes of the runs in turn. Of discs, per metre,
+    and balls together: the acceleration of the centre of mass (figure 11), of several bodies
+    the first one's, for the force, energies over that at the start.
     """
     mixed = len({per_metre(result.scene) for result in results.values()}) > 1
     rubs = any(result.history["friction_force"].any() for result in results.values())
     with plt.rc_context(STYLE):
         figure, grid = plt.subplots(2, 2, figsize=(8.2, 5.6), sharex=True, layout="constrained")
         (force, drag), (energy, velocity) = grid
-        for k, ((name, result), colour) in enumerate(zip(results.items(), (BLUE, ORANGE, GREEN, PURPLE) * len(results))):
+        for k, ((name, result), colour) in enumerate(
+            zip(results.items(), (BLUE, ORANGE, GREEN, PURPLE) * len(results))
+        ):
             h, used = result.history, result.scene
             t, per = 1e3 * h["t"], per_metre(used)
-            heavy, start = (_mass(result), result.summary["energy_initial"]) if mixed else (1.0, 1.0)
-            force.plot(t, 1e-3 * (_push(h) if mixed else h["normal_force"]) / heavy, color=colour,
-                       label=f"{name}: {_material(used)}{result.summary['dofs']} dofs")
+            heavy, start = (
+                (_mass(result), result.summary["energy_initial"]) if mixed else (1.0, 1.0)
+            )
+            force.plot(
+                t,
+                1e-3 * (_push(h) if mixed else h["normal_force"]) / heavy,
+                color=colour,
+                label=f"{name}: {_material(used)}{result.summary['dofs']} dofs",
+            )
             _contact(force, result, colour)
-            drag.plot(t, 1e-3 * h["friction_force"] / heavy if rubs else h["max_penetration"] * 1e3, color=colour)
-            energy.plot(t, mechanical_energy(h) / start, color=colour, linewidth=2.4,
-                        linestyle=(2 * k, (2, 2 * len(results) - 2)))
+            drag.plot(
+                t,
+                1e-3 * h["friction_force"] / heavy if rubs else h["max_penetration"] * 1e3,
+                color=colour,
+            )
+            energy.plot(
+                t,
+                mechanical_energy(h) / start,
+                color=colour,
+                linewidth=2.4,
+                linestyle=(2 * k, (2, 2 * len(results) - 2)),
+            )
             energy.plot(t, h["elastic"] / start, color=colour, linewidth=0.9)
             for of, body in zip(suffixes(h), body_names(used)):
-                if of and colour == BLUE:                            # once
-                    velocity.annotate(body, (t[-1], h[f"vy{of}"][-1]), xytext=(-4, 4), textcoords="offset points", ha="right")
+                if of and colour == BLUE:  # once
+                    velocity.annotate(
+                        body,
+                        (t[-1], h[f"vy{of}"][-1]),
+                        xytext=(-4, 4),
+                        textcoords="offset points",
+                        ha="right",
+                    )
                 velocity.plot(t, h[f"vy{of}"], color=colour, linestyle="--")
                 if np.any(h[f"vx{of}"]):
                     velocity.plot(t, h[f"vx{of}"], color=colour)
-                    velocity.plot(t, -result.summary[f"reach{of}"] * h[f"spin{of}"], color=colour, linestyle=":")
+                    velocity.plot(
+                        t,
+                        -result.summary[f"reach{of}"] * h[f"spin{of}"],
+                        color=colour,
+                        linestyle=":",
+                    )
         for axes in (drag, velocity):
             axes.axhline(0, color=GREY, linewidth=0.6)
-        force.set(ylabel="normal acceleration [10³ m/s²]" if mixed else f"normal force [kN{per}]", ylim=(0, None))
-        drag.set_ylabel(("acceleration by friction [10³ m/s²]" if mixed else f"friction force [kN{per}]") if rubs
-                        else "largest penetration [mm]")
-        energy.set(ylabel="energy over that at the start" if mixed else f"energy [J{per}]", ylim=(0, None), xlabel="time [ms]")
+        force.set(
+            ylabel="normal acceleration [10³ m/s²]" if mixed else f"normal force [kN{per}]",
+            ylim=(0, None),
+        )
+        drag.set_ylabel(
+            ("acceleration by friction [10³ m/s²]" if mixed else f"friction force [kN{per}]")
+            if rubs
+            else "largest penetration [mm]"
+        )
+        energy.set(
+            ylabel="energy over that at the start" if mixed else f"energy [J{per}]",
+            ylim=(0, None),
+            xlabel="time [ms]",
+        )
         stated = any(numbers_of_the_paper(each.scene, "contact_time") for each in results.values())
-        _key(force, {"end of the contact": ":", "by the paper": "-."} if stated else {"end of the contact": ":"})
+        _key(
+            force,
+            {"end of the contact": ":", "by the paper": "-."}
+            if stated
+            else {"end of the contact": ":"},
+        )
         _key(energy, {"total": "--", "elastic": "-"})
         velocity.set(ylabel="velocity [m/s]", xlabel="time [ms]")
         _key(velocity, {"along x": "-", "along y": "--", "−ωR": ":"} if rubs else {"along y": "--"})
@@ -106,8 +170,10 @@ def draw(results: dict[str, RunResult], path: Path) -> None:
         save(figure, path)
 
 
-def _contact(axes: plt.Axes, result: RunResult, colour: str) -> None:
-    """The end of the contact, and when it would be by the contact time that the paper states of that impact with that law."""
+def _contact(axes: plt.Axes, result: Record, colour: str) -> None:
+    """The end of the contact, and when it would be by the contact time that the paper states of
+    that impact with that law.
+    """
     if not (when := touched(result.summary)):
         return
     axes.axvline(1e3 * when[1], color=colour, linestyle=":", linewidth=0.9)
@@ -116,12 +182,16 @@ def _contact(axes: plt.Axes, result: RunResult, colour: str) -> None:
 
 
 def _push(history: dict[str, np.ndarray]) -> np.ndarray:
-    """Force on the body by its contacts: normal to the plane; of several bodies the size of all that acts on the first."""
-    on_first = [history[name] for name in ("force_x_1", "force_y_1", "force_z_1") if name in history]
+    """Force on the body by its contacts: normal to the plane; of several bodies the size of all
+    that acts on the first.
+    """
+    on_first = [
+        history[name] for name in ("force_x_1", "force_y_1", "force_z_1") if name in history
+    ]
     return np.linalg.norm(on_first, axis=0) if on_first else history["normal_force"]
 
 
-def _mass(result: RunResult) -> float:
+def _mass(result: Record) -> float:
     """Of the body, of several the first [kg, in plane strain kg/m]."""
     if "mass_1" in result.summary:
         return result.summary["mass_1"]
@@ -131,10 +201,17 @@ def _mass(result: RunResult) -> float:
 
 def _material(used: dict) -> str:
     """Law, nu and penalty, where the scene has one of them."""
-    return f"{LAWS.get(used['law'], used['law'])}, ν = {used['nu']:g}, k = {report.stiffness(used)}, " if "law" in used else ""
+    return (
+        f"{LAWS.get(used['law'], used['law'])}, ν = {used['nu']:g}, k = {report.stiffness(used)}, "
+        if "law" in used
+        else ""
+    )
 
 
 def _key(axes: plt.Axes, lines: dict[str, str]) -> None:
     """What the kinds of line mean, above the panel."""
-    handles = [plt.Line2D([], [], color="black", linestyle=line, label=label) for label, line in lines.items()]
+    handles = [
+        plt.Line2D([], [], color="black", linestyle=line, label=label)
+        for label, line in lines.items()
+    ]
     axes.legend(handles=handles, **ABOVE | {"handlelength": 2.4}, ncols=len(lines))

@@ -1,4 +1,5 @@
-"""The contact of a run along the outlines of its bodies: pressure at instants and over time, with friction where it sticks and slides.
+"""The contact of a run along the outlines of its bodies: pressure at instants and over time, with
+friction where it sticks and slides.
 
 The pressure of every panel is the projected one (projected_pressure of fields/contact.csv).
 """
@@ -15,68 +16,133 @@ from .figures import BLACK, BLUE, ORANGE, STICKS, evenly, legend, plt
 
 __all__ = ["PRESSURE", "SLIDES", "draw", "hertz", "read"]
 
-INSTANTS = 6                     # profiles at most
-SLOW = 0.03                      # speed over sqrt(E/rho) up to which the pressure of a ball is shown beside Hertz'
-MOST_BODIES = 4                  # those with the largest pressure
+INSTANTS = 6  # profiles at most
+SLOW = 0.03  # speed over sqrt(E/rho) up to which the pressure of a ball is shown beside Hertz'
+MOST_BODIES = 4  # those with the largest pressure
 PRESSURE = "contact pressure [MPa]"
-SLIP = {"slides back": BLUE, "sticks": STICKS, "slides forward": ORANGE}    # v_T < 0, > 0: on the plane along x
-RADIAL = {"slides inwards": BLUE, "sticks": STICKS, "slides outwards": ORANGE}    # from the axis
+SLIP = {
+    "slides back": BLUE,
+    "sticks": STICKS,
+    "slides forward": ORANGE,
+}  # v_T < 0, > 0: on the plane along x
+RADIAL = {"slides inwards": BLUE, "sticks": STICKS, "slides outwards": ORANGE}  # from the axis
 SLIDES = {"sticks": STICKS, "slides": ORANGE}
-FAR = 3                          # usual distances of points between two contacts
-MAPS = 5                         # instants at most
+FAR = 3  # usual distances of points between two contacts
+MAPS = 5  # instants at most
 ALONG = "along the outline"
-ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 1), "ncols": 3, "fontsize": 6.5, "handlelength": 1.0, "columnspacing": 0.8}
-COLUMNS = ["t", "body", "partner", "s", "X", "Y", "x", "y", "weight", "pressure", "shear", "slip_velocity", "slides", "projected_pressure"]
+ABOVE = {
+    "loc": "lower center",
+    "bbox_to_anchor": (0.5, 1),
+    "ncols": 3,
+    "fontsize": 6.5,
+    "handlelength": 1.0,
+    "columnspacing": 0.8,
+}
+COLUMNS = [
+    "t",
+    "body",
+    "partner",
+    "s",
+    "X",
+    "Y",
+    "x",
+    "y",
+    "weight",
+    "pressure",
+    "shear",
+    "slip_velocity",
+    "slides",
+    "projected_pressure",
+]
 
 
 def read(folder: Path) -> np.recarray:
-    """fields/contact.csv of the run in `folder`: a row for every point of an outline that bears load, at the instants of the snapshots.
+    """fields/contact.csv of the run in `folder`: a row for every point of an outline that bears
+    load, at the instants of the snapshots.
 
-    Columns and units: docs/reference/results.md; in three dimensions weight is in m2. Unreadable where it is not such a table.
+    Columns and units: docs/reference/results.md; in three dimensions weight is in m2. Unreadable where it
+    is not such a table.
     """
     return read_table(folder / "fields/contact.csv", COLUMNS)
 
 
-def draw(table: np.recarray, names: list[str], half: bool, free: np.ndarray, ball: dict[str, Value] | None = None, symmetry: str = "full",
-         history: dict[str, np.ndarray] | None = None) -> plt.Figure | None:
-    """A row of panels a body: pressure over the outline at some instants, over outline and time, with friction where it sticks and slides,
-    and with the `history` half-width and largest pressure; None without contact. Of two bodies that touch nothing but each other the first
-    shows all. `free`: times [s] at which nothing is touched.
+def draw(
+    table: np.recarray,
+    names: list[str],
+    half: bool,
+    free: np.ndarray,
+    ball: dict[str, Value] | None = None,
+    symmetry: str = "full",
+    history: dict[str, np.ndarray] | None = None,
+) -> plt.Figure | None:
+    """A row of panels a body: pressure over the outline at some instants, over outline and
+    time, with friction where it sticks and slides, and with the `history` half-width and
+    largest pressure; None without contact. Of two bodies that touch nothing but each other the
+    first shows all. `free`: times [s] at which nothing is touched.
 
-    Half a body is drawn with its mirror image. `ball`: the scene where the body is a ball that nothing turns: all is drawn over the
-    distance from its axis. Of other bodies in three dimensions: of one the points nearest to the plane z = 0, of several all over the
-    distance from the first touch; below them the patch at some instants. `symmetry` (quarter, half, full): what of a body in three
-    dimensions was computed."""
+    Half a body is drawn with its mirror image. `ball`: the scene where the body is a ball that
+    nothing turns: all is drawn over the distance from its axis. Of other bodies in three
+    dimensions: of one the points nearest to the plane z = 0, of several all over the distance
+    from the first touch; below them the patch at some instants. `symmetry` (quarter, half,
+    full): what of a body in three dimensions was computed.
+    """
     if not len(table):
         return None
     bodies = [int(body) for body in np.unique(table.body)]
-    bodies = sorted(sorted(bodies, key=lambda body: -table.pressure[table.body == body].max())[:MOST_BODIES])
+    bodies = sorted(
+        sorted(bodies, key=lambda body: -table.pressure[table.body == body].max())[:MOST_BODIES]
+    )
     alone = set(zip(table.body, table.partner)) == {(1, 2), (2, 1)}
     if alone:
         bodies = [1]
     instants = np.union1d(table.t, free[(free > table.t.min()) & (free < table.t.max())])
     rubs, solid = bool(table.shear.any()), "Z" in table.dtype.names
-    shown = ["profiles", "pressure"] + ["slip"] * rubs + ["history"] * (history is not None and "contact_half_width" in history)
+    shown = (
+        ["profiles", "pressure"]
+        + ["slip"] * rubs
+        + ["history"] * (history is not None and "contact_half_width" in history)
+    )
     maps = (1 + rubs) * (solid and not ball)
-    figure = plt.figure(figsize=(max(2.8 * len(shown), 7.0 if maps else 0), (2.5 + 1.7 * maps) * len(bodies) + 0.6),
-                        layout="constrained" if maps else None)
-    parts = figure.subfigures(2 * len(bodies), 1, height_ratios=[2.5, 1.7 * maps] * len(bodies)) if maps else []
-    rows = [part.subplots(1, len(shown)) for part in parts[::2]] or figure.subplots(len(bodies), len(shown), squeeze=False)
+    figure = plt.figure(
+        figsize=(max(2.8 * len(shown), 7.0 if maps else 0), (2.5 + 1.7 * maps) * len(bodies) + 0.6),
+        layout="constrained" if maps else None,
+    )
+    parts = (
+        figure.subfigures(2 * len(bodies), 1, height_ratios=[2.5, 1.7 * maps] * len(bodies))
+        if maps
+        else []
+    )
+    rows = [part.subplots(1, len(shown)) for part in parts[::2]] or figure.subplots(
+        len(bodies), len(shown), squeeze=False
+    )
     for k, body in enumerate(bodies):
         points, panels = table[table.body == body], dict(zip(shown, rows[k]))
-        own, words, states = _radial(points, ball) if ball or solid and len(names) > 1 else _section(points, half)
+        own, words, states = (
+            _radial(points, ball) if ball or solid and len(names) > 1 else _section(points, half)
+        )
         _profiles(panels["profiles"], own, words, "" if solid and words == ALONG else "-")
         if ball:
             _beside_hertz(panels["profiles"], points, ball)
-        picture = _over_time(panels["pressure"], own, instants, 1e-6 * own.pressure, cmap="viridis", vmin=0)
-        figure.colorbar(picture, cax=panels["pressure"].inset_axes((1.04, 0, 0.06, 1)), label=PRESSURE)
+        picture = _over_time(
+            panels["pressure"], own, instants, 1e-6 * own.pressure, cmap="viridis", vmin=0
+        )
+        figure.colorbar(
+            picture, cax=panels["pressure"].inset_axes((1.04, 0, 0.06, 1)), label=PRESSURE
+        )
         if rubs:
             _over_time(panels["slip"], own, instants, own.state, **_colours(states))
             panels["slip"].legend(*_keys(states), **ABOVE)
         for axes in [panels[name] for name in ("pressure", "slip") if name in panels]:
-            axes.set(ylabel=f"{words} [mm]", xlabel="time [ms]", ylim=(0, None) if words != ALONG else (None, None))
+            axes.set(
+                ylabel=f"{words} [mm]",
+                xlabel="time [ms]",
+                ylim=(0, None) if words != ALONG else (None, None),
+            )
         if "history" in shown:
-            of, width = f"_{body}" if len(names) > 1 else "", "contact radius" if ball else "half-width"
+            of, width = (
+                f"_{body}" if len(names) > 1 else "",
+                "contact radius" if ball else "half-width",
+            )
             _history(panels["history"], history, own, instants, of, width)
         if len(names) > 1:
             panels["pressure"].set_title(f"{names[0]} on {names[1]}" if alone else names[body - 1])
@@ -90,30 +156,65 @@ def _columns(**columns: np.ndarray) -> np.recarray:
 
 
 def _section(points: np.recarray, half: bool) -> tuple[np.recarray, str, dict[str, str]]:
-    """Along the outline: t, s [m], pressure, state (SLIP: -1, 0, 1); in three dimensions near the plane z = 0."""
+    """Along the outline: t, s [m], pressure, state (SLIP: -1, 0, 1); in three dimensions near
+    the plane z = 0.
+    """
     if "Z" in points.dtype.names:
         away = np.abs(points.Z)
         points = points[away <= max(0.15 * away.max(), away.min())]
-    state, sides = np.where(points.slides > 0, np.sign(points.slip_velocity), 0.0), (1, -1) if half else (1,)
-    own = np.concatenate([_columns(t=points.t, s=side * points.s, pressure=points.projected_pressure, state=side * state)
-                          for side in sides]).view(np.recarray)
+    state, sides = (
+        np.where(points.slides > 0, np.sign(points.slip_velocity), 0.0),
+        (1, -1) if half else (1,),
+    )
+    own = np.concatenate(
+        [
+            _columns(
+                t=points.t,
+                s=side * points.s,
+                pressure=points.projected_pressure,
+                state=side * state,
+            )
+            for side in sides
+        ]
+    ).view(np.recarray)
     # twice only on the axis, and where an outline meets itself
     once = np.unique(np.stack([own.t, own.s]), axis=1, return_index=True)[1]
     return own[once], ALONG, SLIP
 
 
-def _radial(points: np.recarray, ball: dict[str, Value] | None) -> tuple[np.recarray, str, dict[str, str]]:
-    """Over the distance from the axis, of a ball, or from the first touch: t, s [m], pressure, state. Of a surface means over rings: the
-    pressure over all of its points that are ever under load; it slides where most of the load does."""
+def _radial(
+    points: np.recarray, ball: dict[str, Value] | None
+) -> tuple[np.recarray, str, dict[str, str]]:
+    """Over the distance from the axis, of a ball, or from the first touch: t, s [m], pressure,
+    state. Of a surface means over rings: the pressure over all of its points that are ever
+    under load; it slides where most of the load does.
+    """
     solid = "Z" in points.dtype.names
     if ball:
-        away, words, states = np.hypot(points.X, points.Z) if solid else points.X, "distance from the axis", RADIAL
-        slip = (points.slip_velocity * points.X + points.slip_velocity_z * points.Z) / away if solid else points.slip_velocity
+        away, words, states = (
+            np.hypot(points.X, points.Z) if solid else points.X,
+            "distance from the axis",
+            RADIAL,
+        )
+        slip = (
+            (points.slip_velocity * points.X + points.slip_velocity_z * points.Z) / away
+            if solid
+            else points.slip_velocity
+        )
     else:
-        away, words, states, slip = np.abs(points.s), "distance from the first touch", SLIDES, np.ones(len(points))
+        away, words, states, slip = (
+            np.abs(points.s),
+            "distance from the first touch",
+            SLIDES,
+            np.ones(len(points)),
+        )
     state = np.where(points.slides > 0, np.sign(slip), 0.0)
     if not solid:
-        return _columns(t=points.t, s=away, pressure=points.projected_pressure, state=state), words, states
+        return (
+            _columns(t=points.t, s=away, pressure=points.projected_pressure, state=state),
+            words,
+            states,
+        )
     _, every = np.unique(np.stack([points.X, points.Y, points.Z]), axis=1, return_index=True)
     count = int(np.clip(np.sqrt(len(every)), 4, 40))
     width = 1.0001 * away.max() / count
@@ -121,21 +222,43 @@ def _radial(points: np.recarray, ball: dict[str, Value] | None) -> tuple[np.reca
     area = np.bincount(ring[every], points.weight[every], count)
     times, instant = np.unique(points.t, return_inverse=True)
     at, load = instant * count + ring, points.projected_pressure * points.weight
-    total, turned, slid = (np.bincount(at, weights) for weights in (load, load * state, load * (points.slides > 0)))
+    total, turned, slid = (
+        np.bincount(at, weights) for weights in (load, load * state, load * (points.slides > 0))
+    )
     found = np.unique(at)
-    own = _columns(t=times[found // count], s=(found % count + 0.5) * width, pressure=total[found] / area[found % count],
-                   state=np.where(slid > total / 2, np.sign(turned), 0.0)[found])
+    own = _columns(
+        t=times[found // count],
+        s=(found % count + 0.5) * width,
+        pressure=total[found] / area[found % count],
+        state=np.where(slid > total / 2, np.sign(turned), 0.0)[found],
+    )
     return own, words, states
 
 
-def _history(axes: plt.Axes, history: dict[str, np.ndarray], own: np.recarray, instants: np.ndarray, of: str, width: str) -> None:
-    """Half-width of the contact, in these words, [mm] over time, and on the right its largest pressure [MPa] at the instants [s], as the
-    other panels show it; in the flight neither."""
+def _history(
+    axes: plt.Axes,
+    history: dict[str, np.ndarray],
+    own: np.recarray,
+    instants: np.ndarray,
+    of: str,
+    width: str,
+) -> None:
+    """Half-width of the contact, in these words, [mm] over time, and on the right its largest
+    pressure [MPa] at the instants [s], as the other panels show it; in the flight neither.
+    """
     half_width, other = history[f"contact_half_width{of}"], axes.twinx()
     largest = np.full(len(instants), np.nan)
     np.fmax.at(largest, np.searchsorted(instants, own.t), 1e-6 * own.pressure)
-    for where, t, values, colour, label in ((axes, history["t"], np.where(half_width > 0, 1e3 * half_width, np.nan), BLUE, f"{width} [mm]"),
-                                            (other, instants, largest, ORANGE, "largest pressure [MPa]")):
+    for where, t, values, colour, label in (
+        (
+            axes,
+            history["t"],
+            np.where(half_width > 0, 1e3 * half_width, np.nan),
+            BLUE,
+            f"{width} [mm]",
+        ),
+        (other, instants, largest, ORANGE, "largest pressure [MPa]"),
+    ):
         where.plot(1e3 * t, values, color=colour, linewidth=1)
         where.set_ylim(0, None)
         where.set_ylabel(label, color=colour)
@@ -144,22 +267,33 @@ def _history(axes: plt.Axes, history: dict[str, np.ndarray], own: np.recarray, i
     axes.set(xlabel="time [ms]")
 
 
-def _maps(figure: plt.Figure, points: np.recarray, rubs: bool, symmetry: str, several: bool) -> None:
-    """The points under load at some instants, each a square of its area: coloured by pressure and, below, where they stick and slide. Of
-    one body on the plane y = 0 at their places x, z, else in the reference along the two main directions of all of them."""
+def _maps(
+    figure: plt.Figure, points: np.recarray, rubs: bool, symmetry: str, several: bool
+) -> None:
+    """The points under load at some instants, each a square of its area: coloured by pressure
+    and, below, where they stick and slide. Of one body on the plane y = 0 at their places x, z,
+    else in the reference along the two main directions of all of them.
+    """
     mirrored = {"quarter": ("X", "Z"), "half": ("Z",)}.get(symmetry, ())
     columns = {name: points[name] for name in ("t", "X", "Y", "Z", "x", "y", "z")}
     columns["pressure"] = points.projected_pressure
     columns["area"] = points.weight / 2 ** len(mirrored)
-    columns["state"] = np.where(points.slides > 0, 1.0 if several else np.sign(points.slip_velocity), 0.0)
+    columns["state"] = np.where(
+        points.slides > 0, 1.0 if several else np.sign(points.slip_velocity), 0.0
+    )
     for axis in mirrored:
         turned = (axis, axis.lower(), *(("state",) if axis == "X" and not several else ()))
-        columns = {name: np.concatenate([values, -values if name in turned else values]) for name, values in columns.items()}
-    if not several and np.abs(columns["y"]).max() < 0.1 * np.ptp(columns["x"]):             # on the plane
+        columns = {
+            name: np.concatenate([values, -values if name in turned else values])
+            for name, values in columns.items()
+        }
+    if not several and np.abs(columns["y"]).max() < 0.1 * np.ptp(columns["x"]):  # on the plane
         columns |= {"across": columns["x"], "up": columns["z"]}
         labels = "x [mm]", "z [mm]"
     else:
-        columns["across"], columns["up"] = _in_plane(np.stack([columns[axis] for axis in "XYZ"], axis=1))
+        columns["across"], columns["up"] = _in_plane(
+            np.stack([columns[axis] for axis in "XYZ"], axis=1)
+        )
         labels = "along the patch [mm]", "across [mm]"
     points = _columns(**columns)
     shown = _instants(points, MAPS)
@@ -167,13 +301,25 @@ def _maps(figure: plt.Figure, points: np.recarray, rubs: bool, symmetry: str, se
     states = SLIDES if several else SLIP
     low, high = (1e3 * np.array([end(points.across), end(points.up)]) for end in (np.min, np.max))
     low, high = low - 0.04 * (high - low), high + 0.04 * (high - low)
-    scale = 72 * min(5.2 / len(shown) / (high - low)[0], 1.1 / (high - low)[1])                # points a mm
-    for row, (column, colours) in zip(grid, (("pressure", dict(cmap="viridis", vmin=0, vmax=1e-6 * points.pressure.max())),
-                                             ("state", _colours(states)))):
+    scale = 72 * min(5.2 / len(shown) / (high - low)[0], 1.1 / (high - low)[1])  # points a mm
+    for row, (column, colours) in zip(
+        grid,
+        (
+            ("pressure", dict(cmap="viridis", vmin=0, vmax=1e-6 * points.pressure.max())),
+            ("state", _colours(states)),
+        ),
+    ):
         for axes, (t, now, _) in zip(row, shown):
             values = 1e-6 * now.pressure if column == "pressure" else now.state
-            picture = axes.scatter(1e3 * now.across, 1e3 * now.up, c=values, s=np.maximum(1e6 * now.area * scale**2, 1.5), marker="s",
-                                   linewidths=0, **colours)
+            picture = axes.scatter(
+                1e3 * now.across,
+                1e3 * now.up,
+                c=values,
+                s=np.maximum(1e6 * now.area * scale**2, 1.5),
+                marker="s",
+                linewidths=0,
+                **colours,
+            )
             axes.set(aspect="equal", xlim=(low[0], high[0]), ylim=(low[1], high[1]))
             axes.tick_params(labelsize=7)
             if column == "pressure":
@@ -187,7 +333,9 @@ def _maps(figure: plt.Figure, points: np.recarray, rubs: bool, symmetry: str, se
 
 
 def _in_plane(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Of places (n, 3) [m] the distances from their centre along the two directions in which they spread most, the second nearer to z."""
+    """Of places (n, 3) [m] the distances from their centre along the two directions in which
+    they spread most, the second nearer to z.
+    """
     places = places - places.mean(axis=0)
     two = np.linalg.svd(places, full_matrices=False)[2][:2]
     two = two[np.argsort(np.abs(two[:, 2]))]
@@ -199,25 +347,40 @@ def _instants(table: np.recarray, most: int = INSTANTS) -> list[tuple[float, np.
     """(t, rows, colour) of up to `most` times."""
     times = np.unique(table.t)
     picked = evenly(times, most + 2)[1:-1] if len(times) > most else times
-    return [(t, table[table.t == t], colour) for t, colour in zip(picked, plt.get_cmap("plasma")(np.linspace(0, 0.85, len(picked))))]
+    return [
+        (t, table[table.t == t], colour)
+        for t, colour in zip(picked, plt.get_cmap("plasma")(np.linspace(0, 0.85, len(picked))))
+    ]
 
 
 def _profiles(axes: plt.Axes, own: np.recarray, words: str, line: str) -> None:
-    """Pressure [MPa] over s [mm], which is the distance in these words, at up to INSTANTS times: along a line, broken between contacts that
-    are far from each other; without a line the points."""
+    """Pressure [MPa] over s [mm], which is the distance in these words, at up to INSTANTS
+    times: along a line, broken between contacts that are far from each other; without a line
+    the points.
+    """
     for t, now, colour in _instants(own):
         now = now[np.argsort(now.s, kind="stable")]
-        gap = _between(now.s)[0] if line else []                        # where a line is broken
+        gap = _between(now.s)[0] if line else []  # where a line is broken
         s, values = np.append(now.s, gap), np.append(now.pressure, np.full(len(gap), np.nan))
         order = np.argsort(s, kind="stable")
-        axes.plot(1e3 * s[order], 1e-6 * values[order], color=colour, linestyle=line, marker="" if line else ".", markersize=2.5,
-                  linewidth=1.1, label=f"{1e3 * t:.3g} ms")
+        axes.plot(
+            1e3 * s[order],
+            1e-6 * values[order],
+            color=colour,
+            linestyle=line,
+            marker="" if line else ".",
+            markersize=2.5,
+            linewidth=1.1,
+            label=f"{1e3 * t:.3g} ms",
+        )
     axes.set(xlabel=f"{words} [mm]", ylabel=PRESSURE, ylim=(0, None))
     legend(axes, **ABOVE)
 
 
 def _beside_hertz(axes: plt.Axes, points: np.recarray, ball: dict[str, Value]) -> None:
-    """In a slow impact of a ball Hertz' pressure of the same force at each instant of the profiles."""
+    """In a slow impact of a ball Hertz' pressure of the same force at each instant of the
+    profiles.
+    """
     if ball["speed"] <= SLOW * np.sqrt(ball["young"] / ball["density"]):
         for _, now, colour in _instants(points):
             r, pressure = hertz((now.pressure * now.weight).sum(), ball)
@@ -228,8 +391,9 @@ def _beside_hertz(axes: plt.Axes, points: np.recarray, ball: dict[str, Value]) -
 
 
 def hertz(force: float, ball: dict[str, Value]) -> tuple[np.ndarray, np.ndarray]:
-    """Radii [m] and Hertz' pressure there [Pa] of a ball that is pressed on a rigid plane by `force` [N]: a^3 = 3 F R / (4 E*), p_0 = 3 F /
-    (2 pi a^2)."""
+    """Radii [m] and Hertz' pressure there [Pa] of a ball that is pressed on a rigid plane by
+    `force` [N]: a^3 = 3 F R / (4 E*), p_0 = 3 F / (2 pi a^2).
+    """
     stiffness = ball["young"] / (1 - ball["nu"] ** 2)
     a = (3 * force * ball["radius"] / (4 * stiffness)) ** (1 / 3)
     r = a * np.sin(np.linspace(0, np.pi / 2, 60))
@@ -237,19 +401,27 @@ def hertz(force: float, ball: dict[str, Value]) -> tuple[np.ndarray, np.ndarray]
 
 
 def _between(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Of places in their order (n): a usual distance behind the last and before the first of every two far from each other."""
+    """Of places in their order (n): a usual distance behind the last and before the first of
+    every two far from each other.
+    """
     usual = np.median(np.diff(places)) if len(places) > 1 else 0.0
     far = np.flatnonzero(np.diff(places) > FAR * usual)
     return places[far] + usual, places[far + 1] - usual
 
 
-def _over_time(axes: plt.Axes, own: np.recarray, instants: np.ndarray, values: np.ndarray, **colours) -> QuadMesh:
-    """The values of the points over the instants [s] and their places, nothing where there is no load."""
+def _over_time(
+    axes: plt.Axes, own: np.recarray, instants: np.ndarray, values: np.ndarray, **colours
+) -> QuadMesh:
+    """The values of the points over the instants [s] and their places, nothing where there is
+    no load.
+    """
     places, between = np.unique(own.s), _between(np.unique(own.s))
-    places = np.sort(np.concatenate([places, *between]))                # empty rows between two contacts
+    places = np.sort(np.concatenate([places, *between]))  # empty rows between two contacts
     found = np.full((len(places), len(instants)), np.nan)
     found[np.searchsorted(places, own.s), np.searchsorted(instants, own.t)] = values
-    return axes.pcolormesh(1e3 * instants, 1e3 * places, found, shading="nearest", rasterized=True, **colours)
+    return axes.pcolormesh(
+        1e3 * instants, 1e3 * places, found, shading="nearest", rasterized=True, **colours
+    )
 
 
 def _colours(states: dict[str, str]) -> dict:

@@ -11,8 +11,7 @@ from ..input import dimension
 from ..input.parameters import Value
 from ..output import vtu
 from ..output.results import Contents, body_names, check_files, read_history, read_json, read_scene
-from . import bodies, impacts, solid
-from . import contact as contacts
+from . import bodies, contact as contacts, impacts, solid
 from .figures import BODY, STYLE, as_written, is_half, material, per_metre, plt, save, touched
 
 __all__ = ["LETTERS", "MOST_LINES", "draw", "title", "wrapped"]

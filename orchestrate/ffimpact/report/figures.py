@@ -1,5 +1,6 @@
-"""What figures have in common, and those of one body that goes along the plane: friction force, what slides and sticks, and the flight, as
-figures 4 and 5 of the paper."""
+"""What figures have in common, and those of one body that goes along the plane: friction force,
+what slides and sticks, and the flight, as figures 4 and 5 of the paper.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -21,35 +22,111 @@ from ..output import vtu
 from . import literature
 
 __all__ = [
-    "ABOVE", "BAND", "BELOW", "BLACK", "BLUE", "BODY", "Body", "COLOURED", "DASHED", "GREEN",
-    "GREY", "LAWS", "ORANGE", "ORIGIN", "PURPLE", "Pose", "SHAPES", "SMALL", "STICKS", "STRESS",
-    "STYLE", "VISCOUS", "amid", "as_written", "balance_error", "deformed", "diameter", "draw_body",
-    "end_of_contact", "evenly", "flight", "friction_force", "goes_along", "is_half", "least",
-    "legend", "material", "numbers_of_the_paper", "over_time", "per_metre", "published", "rolling",
-    "save", "scale_bar", "side_by_side", "touched",
+    "ABOVE",
+    "BAND",
+    "BELOW",
+    "BLACK",
+    "BLUE",
+    "BODY",
+    "Body",
+    "COLOURED",
+    "DASHED",
+    "GREEN",
+    "GREY",
+    "LAWS",
+    "ORANGE",
+    "ORIGIN",
+    "PURPLE",
+    "Pose",
+    "SHAPES",
+    "SMALL",
+    "STICKS",
+    "STRESS",
+    "STYLE",
+    "VISCOUS",
+    "amid",
+    "as_written",
+    "balance_error",
+    "deformed",
+    "diameter",
+    "draw_body",
+    "end_of_contact",
+    "evenly",
+    "flight",
+    "friction_force",
+    "goes_along",
+    "is_half",
+    "least",
+    "legend",
+    "material",
+    "numbers_of_the_paper",
+    "over_time",
+    "per_metre",
+    "published",
+    "rolling",
+    "save",
+    "scale_bar",
+    "side_by_side",
+    "touched",
 ]
 
-LAWS = {"svk": "St. Venant–Kirchhoff", "neohookean": "neo-Hookean", "mooney-rivlin": "Mooney–Rivlin", "ogden": "Ogden",
-        "incompressible": "neo-Hookean with J = 1"}
-BLUE, ORANGE, GREEN, PURPLE, BLACK, GREY = "#0072b2", "#d55e00", "#009e73", "#aa4499", "#222222", "#999999"
-STICKS = "#bbbbbb"      # what slides is orange, what slides back blue
-END_FORCES = ("newmark", "bdf2", "backward-euler")      # integrators whose forces are those at the end of a step
-SMALL = 7.5   # text of legends, of numbers in cells and below figures; all other text has the style's size
-# hinting, titley: quicker: outlines of letters as they are; titles stand where nothing is to be made way for
-STYLE = {"font.size": 9, "axes.titlesize": 9, "legend.fontsize": SMALL, "figure.titlesize": 9, "axes.spines.top": False,
-         "axes.spines.right": False, "axes.linewidth": 0.8, "lines.linewidth": 1.4, "legend.frameon": False, "figure.dpi": 100,
-         "savefig.dpi": 150, "figure.constrained_layout.w_pad": 0.08, "text.hinting": "none", "axes.titley": 1.0}
-NUMBERS = 6   # intervals at most between those along an axis
+LAWS = {
+    "svk": "St. Venant–Kirchhoff",
+    "neohookean": "neo-Hookean",
+    "mooney-rivlin": "Mooney–Rivlin",
+    "ogden": "Ogden",
+    "incompressible": "neo-Hookean with J = 1",
+}
+BLUE, ORANGE, GREEN, PURPLE, BLACK, GREY = (
+    "#0072b2",
+    "#d55e00",
+    "#009e73",
+    "#aa4499",
+    "#222222",
+    "#999999",
+)
+STICKS = "#bbbbbb"  # what slides is orange, what slides back blue
+END_FORCES = (
+    "newmark",
+    "bdf2",
+    "backward-euler",
+)  # integrators whose forces are those at the end of a step
+# text of legends, of numbers in cells and below figures; all other text has the style's size
+SMALL = 7.5
+# hinting, titley: quicker: outlines of letters as they are; titles stand where nothing is to be
+# made way for
+STYLE = {
+    "font.size": 9,
+    "axes.titlesize": 9,
+    "legend.fontsize": SMALL,
+    "figure.titlesize": 9,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.linewidth": 0.8,
+    "lines.linewidth": 1.4,
+    "legend.frameon": False,
+    "figure.dpi": 100,
+    "savefig.dpi": 150,
+    "figure.constrained_layout.w_pad": 0.08,
+    "text.hinting": "none",
+    "axes.titley": 1.0,
+}
+NUMBERS = 6  # intervals at most between those along an axis
 BODY = {"ball-plane": "ball: ", "ball-axisymmetric": "ball as a body of revolution: "}
 STRESS = "von Mises stress [MPa]"
 # pictures of shapes by name: the field that colours them, and its label
 COLOURED = {"shapes": ("von_mises", STRESS), "pressure": ("pressure", "pressure −tr(σ)/3 [MPa]")}
-SHAPES = 9   # small multiples at most
-ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 1), "handlelength": 1.6, "columnspacing": 1.4}   # a legend above its panel
+SHAPES = 9  # small multiples at most
+ABOVE = {
+    "loc": "lower center",
+    "bbox_to_anchor": (0.5, 1),
+    "handlelength": 1.6,
+    "columnspacing": 1.4,
+}  # a legend above its panel
 # one below it, under the numbers and the name of its axis
 BELOW = {"loc": "upper center", "bbox_to_anchor": (0.5, 0), "borderaxespad": 5.5}
-BARE = {"xticks": [], "yticks": []}                               # of a panel without axes: its ticks would still be laid out
-BAND = "#c8c8c8"   # of what other curves run along
+BARE = {"xticks": [], "yticks": []}  # of a panel without axes: its ticks would still be laid out
+BAND = "#c8c8c8"  # of what other curves run along
 VISCOUS = "#8c510a"
 DASHED = (0, (4, 2))
 ORIGIN = np.zeros(2)
@@ -66,7 +143,9 @@ def save(figure: plt.Figure, path: Path) -> None:
             if type(axis.get_major_locator()) is AutoLocator:
                 axis.set_major_locator(MaxNLocator(NUMBERS, steps=(1, 2, 2.5, 5, 10)))
     with catch_warnings():
-        filterwarnings("ignore", "Glyph .* missing from", UserWarning)    # a letter that the font lacks is an empty box in the title
+        filterwarnings(
+            "ignore", "Glyph .* missing from", UserWarning
+        )  # a letter that the font lacks is an empty box in the title
         figure.savefig(path)
     plt.close(figure)
 
@@ -74,10 +153,17 @@ def save(figure: plt.Figure, path: Path) -> None:
 def material(one: dict[str, Value]) -> str:
     """Law with its own numbers, E, nu and density of a body; of a rigid one its mass or density."""
     if one.get("rigid"):
-        return f"rigid, m = {one['mass']:g} kg" if "mass" in one else f"rigid, ρ = {one['density']:g} kg/m³"
+        return (
+            f"rigid, m = {one['mass']:g} kg"
+            if "mass" in one
+            else f"rigid, ρ = {one['density']:g} kg/m³"
+        )
     own = "" if one.get("law_parameters", "none") == "none" else f" ({one['law_parameters']})"
-    viscosities = "".join(f", {sign} = {one[name]:.3g} Pa s" for name, sign in (("viscosity", "η"), ("bulk_viscosity", "ζ"))
-                          if one.get(name))
+    viscosities = "".join(
+        f", {sign} = {one[name]:.3g} Pa s"
+        for name, sign in (("viscosity", "η"), ("bulk_viscosity", "ζ"))
+        if one.get(name)
+    )
     if one.get("relaxation_modulus"):
         viscosities += f", G = {1e-6 * one['relaxation_modulus']:.3g} MPa for τ = {one['relaxation_time']:.3g} s"
     law = LAWS.get(one["law"], one["law"])
@@ -95,55 +181,87 @@ def per_metre(scene: dict[str, Value]) -> str:
 
 
 def amid(history: dict[str, np.ndarray], scene: dict[str, Value]) -> np.ndarray:
-    """The times [ms] at which the forces of a history are drawn: amid its steps, of which they are means (but of END_FORCES)."""
-    return 1e3 * (history["t"] - (0 if scene.get("integrator") in END_FORCES else history["dt"] / 2))
+    """The times [ms] at which the forces of a history are drawn: amid its steps, of which they
+    are means (but of END_FORCES).
+    """
+    return 1e3 * (
+        history["t"] - (0 if scene.get("integrator") in END_FORCES else history["dt"] / 2)
+    )
 
 
 def touched(summary: dict) -> tuple[float, float] | None:
-    """When the contact begins and ends [s], both interpolated inside their steps; None without one, or where it is not over."""
+    """When the contact begins and ends [s], both interpolated inside their steps; None without
+    one, or where it is not over.
+    """
     if summary.get("contact_time") is None or summary.get("contact_start") is None:
         return None
     return summary["contact_start"], summary["contact_start"] + summary["contact_time"]
 
 
-def over_time(panels: list[plt.Axes], history: dict[str, np.ndarray], scene: dict[str, Value]) -> None:
-    """Limits of the time [ms], which begins at 0 where the run does not begin with a long flight; a dotted line at the end of the contact,
-    where the run goes on after it for longer than between any two touches, with a name in the legend of the first panel."""
+def over_time(
+    panels: list[plt.Axes], history: dict[str, np.ndarray], scene: dict[str, Value]
+) -> None:
+    """Limits of the time [ms], which begins at 0 where the run does not begin with a long
+    flight; a dotted line at the end of the contact, where the run goes on after it for longer
+    than between any two touches, with a name in the legend of the first panel.
+    """
     t, touches = 1e3 * history["t"], history["normal_force"] > 0
     last = 1e3 * scene["touched"][1] if scene.get("touched") else t[-1]
     for axes in panels:
         axes.set_xlim(0 if t[0] < 0.05 * t[-1] else t[0] - 0.02 * np.ptp(t), t[-1])
         if t[-1] - last > np.diff(t[touches]).max(initial=0.0):
-            axes.axvline(last, color=BLACK, linestyle=":", linewidth=0.8, label=f"end of the contact, {last:.4g} ms"
-                         if axes is panels[0] else None)
+            axes.axvline(
+                last,
+                color=BLACK,
+                linestyle=":",
+                linewidth=0.8,
+                label=f"end of the contact, {last:.4g} ms" if axes is panels[0] else None,
+            )
 
 
 def published(axes: plt.Axes, scene: dict[str, Value]) -> None:
-    """The paper's contact time of the same impact, from the first touch on, where it states one, as a line with a name."""
+    """The paper's contact time of the same impact, from the first touch on, where it states
+    one, as a line with a name.
+    """
     begin, _ = scene.get("touched") or (None, None)
-    for _, seconds, words in numbers_of_the_paper(scene, "contact_time", any_law=True) if begin is not None else []:
-        axes.axvline(1e3 * (begin + seconds), color=BLACK, linestyle="-.", linewidth=0.9, label=f"{words}: {1e3 * seconds:.3g} ms")
+    for _, seconds, words in (
+        numbers_of_the_paper(scene, "contact_time", any_law=True) if begin is not None else []
+    ):
+        axes.axvline(
+            1e3 * (begin + seconds),
+            color=BLACK,
+            linestyle="-.",
+            linewidth=0.9,
+            label=f"{words}: {1e3 * seconds:.3g} ms",
+        )
         axes.set_xlim(right=max(axes.get_xlim()[1], 1.02e3 * (begin + seconds)))
 
 
-def numbers_of_the_paper(scene: dict[str, Value], key: str, over: str = "",
-                         any_law: bool = False) -> list[tuple[Value | None, float, str]]:
+def numbers_of_the_paper(
+    scene: dict[str, Value], key: str, over: str = "", any_law: bool = False
+) -> list[tuple[Value | None, float, str]]:
     """(value of the parameter `over` there, number, words) of every number `key` (summary.json, SI)
     that the paper prints of this scene, or of the scene with another value of `over`. With
     `any_law` also those of another law, which the words then name. None of a body of the user's
     own mesh."""
     found = []
     free = ("law", over) if any_law else (over,)
-    for run in literature.published(scene.get("script"), scene, free) if not scene.get("mesh") else []:
+    for run in (
+        literature.published(scene.get("script"), scene, free) if not scene.get("mesh") else []
+    ):
         when = run["when"]
         if run["source"].startswith("paper") and key in run["numbers"]:
-            law = "" if over == "law" or when["law"] == scene.get("law") else f", {LAWS[when['law']]}"
+            law = (
+                "" if over == "law" or when["law"] == scene.get("law") else f", {LAWS[when['law']]}"
+            )
             found.append((when.get(over), run["numbers"][key]["value"], run["source"] + law))
     return found
 
 
 def legend(axes: plt.Axes, shown: Callable[[list], list] = list, **how) -> None:
-    """The names of the lines and areas of a panel, or those `shown` of them; no legend where none has a name."""
+    """The names of the lines and areas of a panel, or those `shown` of them; no legend where
+    none has a name.
+    """
     artists, names = axes.get_legend_handles_labels()
     if names:
         axes.legend(shown(artists), shown(names), **how)
@@ -152,8 +270,12 @@ def legend(axes: plt.Axes, shown: Callable[[list], list] = list, **how) -> None:
 def balance_error(axes: plt.Axes, history: dict[str, np.ndarray], energy: float) -> None:
     """The error of the balance over time [ms], relative to `energy` [J/m]."""
     error = np.abs(history["balance"]) / energy
-    axes.semilogy(1e3 * history["t"], np.where(error > 0, error, np.nan), color=BLACK, linewidth=0.9)
-    axes.yaxis.set_major_formatter(lambda value, _: "10" + f"{np.log10(value):.0f}".translate(RAISED))
+    axes.semilogy(
+        1e3 * history["t"], np.where(error > 0, error, np.nan), color=BLACK, linewidth=0.9
+    )
+    axes.yaxis.set_major_formatter(
+        lambda value, _: "10" + f"{np.log10(value):.0f}".translate(RAISED)
+    )
     axes.yaxis.set_minor_locator(NullLocator())
 
 
@@ -163,23 +285,36 @@ def least(values: np.ndarray, largest: float) -> str:
     return f" (up to {float(f'{most:.1g}'):g})" if 0 < most < 0.01 * largest else ""
 
 
-def end_of_contact(panels: list[plt.Axes], history: dict[str, np.ndarray], scene: dict[str, Value]) -> None:
-    """The time of panels over the same time, with the end of the contact and the paper's contact time named above the first."""
+def end_of_contact(
+    panels: list[plt.Axes], history: dict[str, np.ndarray], scene: dict[str, Value]
+) -> None:
+    """The time of panels over the same time, with the end of the contact and the paper's
+    contact time named above the first.
+    """
     over_time(panels, history, scene)
     published(panels[0], scene)
     legend(panels[0], **ABOVE, ncols=2)
 
 
 def friction_force(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
-    """Figure 5: normal and friction force [kN/m] over time; beside them, enlarged, where stick and slip alternate most, if they do.
+    """Figure 5: normal and friction force [kN/m] over time; beside them, enlarged, where stick
+    and slip alternate most, if they do.
 
-    The broken lines are the coefficients times the normal force: a body of which all points slide one way is on the dynamic one.
+    The broken lines are the coefficients times the normal force: a body of which all points
+    slide one way is on the dynamic one.
     """
     t, per = amid(history, scene), per_metre(scene)
     normal, friction = 1e-3 * history["normal_force"], 1e-3 * history["friction_force"]
     window = _liveliest(history)
-    figure, grid = plt.subplots(2, 2 if window else 1, figsize=(8.4 if window else 5.6, 5.2), sharex="col", squeeze=False,
-                                height_ratios=[1, 1.4], width_ratios=[1.6, 1] if window else None)
+    figure, grid = plt.subplots(
+        2,
+        2 if window else 1,
+        figsize=(8.4 if window else 5.6, 5.2),
+        sharex="col",
+        squeeze=False,
+        height_ratios=[1, 1.4],
+        width_ratios=[1.6, 1] if window else None,
+    )
     force, drag = grid[:, 0]
     force.plot(t, normal, color=BLUE)
     force.set(ylabel=f"normal force [kN{per}]", ylim=(0, None))
@@ -188,8 +323,16 @@ def friction_force(history: dict[str, np.ndarray], scene: dict[str, Value]) -> p
         axes.axhline(0, color=GREY, linewidth=0.6)
         for name, line in (("friction_static", (0, (1, 1.5))), ("friction_dynamic", (0, (4, 2)))):
             for sign in signs:
-                axes.plot(t, sign * scene[name] * normal, color=BLACK, linestyle=line, linewidth=0.8,
-                          label=f"{name.partition('_')[2]} limit, {scene[name]:g} of the normal force" if sign == signs[0] else None)
+                axes.plot(
+                    t,
+                    sign * scene[name] * normal,
+                    color=BLACK,
+                    linestyle=line,
+                    linewidth=0.8,
+                    label=f"{name.partition('_')[2]} limit, {scene[name]:g} of the normal force"
+                    if sign == signs[0]
+                    else None,
+                )
         axes.set_xlabel("time [ms]")
     drag.plot(t, friction, color=ORANGE, linewidth=1.2)
     drag.set_ylabel(f"friction force [kN{per}]")
@@ -200,45 +343,82 @@ def friction_force(history: dict[str, np.ndarray], scene: dict[str, Value]) -> p
     return figure
 
 
-def _enlarge(grid: np.ndarray, history: dict[str, np.ndarray], scene: dict[str, Value], window: tuple[int, int]) -> None:
-    """The right panels of figure 5: the share of the load that slides, and the friction force [kN/m], in a window of rows that is marked on
-    the left."""
+def _enlarge(
+    grid: np.ndarray,
+    history: dict[str, np.ndarray],
+    scene: dict[str, Value],
+    window: tuple[int, int],
+) -> None:
+    """The right panels of figure 5: the share of the load that slides, and the friction force
+    [kN/m], in a window of rows that is marked on the left.
+    """
     t, friction = amid(history, scene), 1e-3 * history["friction_force"]
     first, last = window
     inside, (share, zoom) = slice(first, last + 1), grid[:, 1]
     for axes in grid[:, 0]:
         axes.axvspan(t[first], t[last], color=BAND, alpha=0.6, linewidth=0, zorder=0)
-    share.step(1e3 * history["t"], 100 * history["sliding_fraction"], where="pre", color=PURPLE, linewidth=1.0)
-    share.set(title="grey on the left, enlarged", ylabel="load that slides [%]",
-              xlim=(t[first], t[last]), ylim=(0, 1.08 * max(1.0, 100 * history["sliding_fraction"][inside].max())))
+    share.step(
+        1e3 * history["t"],
+        100 * history["sliding_fraction"],
+        where="pre",
+        color=PURPLE,
+        linewidth=1.0,
+    )
+    share.set(
+        title="grey on the left, enlarged",
+        ylabel="load that slides [%]",
+        xlim=(t[first], t[last]),
+        ylim=(0, 1.08 * max(1.0, 100 * history["sliding_fraction"][inside].max())),
+    )
     zoom.plot(t, friction, color=ORANGE, linewidth=1.0, marker=".", markersize=3)
     # the limits that the force touches, too
-    lines = [line.get_ydata()[inside] for line in grid[1, 0].lines if len(line.get_ydata()) == len(t)]
-    near = np.concatenate([friction[inside], *(values for values in lines if values.mean() * friction[inside].mean() > 0)])
+    lines = [
+        line.get_ydata()[inside] for line in grid[1, 0].lines if len(line.get_ydata()) == len(t)
+    ]
+    near = np.concatenate(
+        [
+            friction[inside],
+            *(values for values in lines if values.mean() * friction[inside].mean() > 0),
+        ]
+    )
     margin = 0.15 * (np.ptp(near) or abs(near[0]) or 1.0)
-    zoom.set(ylabel=f"friction force [kN{per_metre(scene)}]", ylim=(near.min() - margin, near.max() + margin))
+    zoom.set(
+        ylabel=f"friction force [kN{per_metre(scene)}]",
+        ylim=(near.min() - margin, near.max() + margin),
+    )
 
 
 def _liveliest(history: dict[str, np.ndarray]) -> tuple[int, int] | None:
-    """First and last row of the twelfth of the contact, or third of its longest interval where that is less, in which the share of the load
-    that slides goes up and down most, weighted with the load; None where it does so by less than a twentieth of the largest load."""
+    """First and last row of the twelfth of the contact, or third of its longest interval where
+    that is less, in which the share of the load that slides goes up and down most, weighted
+    with the load; None where it does so by less than a twentieth of the largest load.
+    """
     touching = np.flatnonzero(history["normal_force"] > 0)
     t, force = history["t"], history["normal_force"]
     intervals = np.split(touching, np.flatnonzero(np.diff(touching) > 1) + 1)
-    width = min((t[touching[-1]] - t[touching[0]]) / 12, max(t[each[-1]] - t[each[0]] for each in intervals) / 3)
+    width = min(
+        (t[touching[-1]] - t[touching[0]]) / 12,
+        max(t[each[-1]] - t[each[0]] for each in intervals) / 3,
+    )
     change = np.diff(history["sliding_fraction"]) * np.minimum(force[1:], force[:-1])
     up, travelled = (np.concatenate([[0], np.cumsum(each)]) for each in (change, np.abs(change)))
     ends = np.minimum(np.searchsorted(t, t + width), len(t) - 1)
-    lively = travelled[ends] - travelled - np.abs(up[ends] - up)   # there and back again
+    lively = travelled[ends] - travelled - np.abs(up[ends] - up)  # there and back again
     idle = np.cumsum(force == 0)
-    lively = np.where(idle[ends] > idle, -1.0, lively)              # not in the air
+    lively = np.where(idle[ends] > idle, -1.0, lively)  # not in the air
     first = int(np.argmax(lively))
-    return (first, int(ends[first])) if lively[first] > 0.05 * force.max() and ends[first] > first else None
+    return (
+        (first, int(ends[first]))
+        if lively[first] > 0.05 * force.max() and ends[first] > first
+        else None
+    )
 
 
 def rolling(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
-    """Velocity of the centre and of the rim [m/s], which are equal in rolling, and which share of the load sticks, slides on
-    and slides back. A disc that is set down on the plane: the velocities of a rigid one beside them."""
+    """Velocity of the centre and of the rim [m/s], which are equal in rolling, and which share
+    of the load sticks, slides on and slides back. A disc that is set down on the plane: the
+    velocities of a rigid one beside them.
+    """
     t = 1e3 * history["t"]
     figure, (top, bottom) = plt.subplots(2, sharex=True, figsize=(5.6, 4.6), height_ratios=[1.6, 1])
     top.axhline(0, color=GREY, linewidth=0.6)
@@ -250,16 +430,29 @@ def rolling(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figu
     top.set_ylabel("velocity [m/s]")
     touches = history["normal_force"] > 0
     back = np.minimum(history["reverse_fraction"], history["sliding_fraction"])
-    shares = {"sticks": (1 - history["sliding_fraction"], STICKS), "slides": (history["sliding_fraction"] - back, ORANGE),
-              "slides back": (back, BLUE)}
+    shares = {
+        "sticks": (1 - history["sliding_fraction"], STICKS),
+        "slides": (history["sliding_fraction"] - back, ORANGE),
+        "slides back": (back, BLUE),
+    }
     if not back.any():
         del shares["slides back"]
     floor = np.zeros(len(t))
     for label, (values, colour) in shares.items():
         values = np.where(touches, 100 * values, 0)
-        bottom.fill_between(t, floor, floor + values, step="pre", color=colour, linewidth=0, label=label)
+        bottom.fill_between(
+            t, floor, floor + values, step="pre", color=colour, linewidth=0, label=label
+        )
         floor = floor + values
-    bottom.fill_between(t, 0, np.where(touches, 0, 100), step="pre", color="#f2f2f2", linewidth=0, label="no contact")
+    bottom.fill_between(
+        t,
+        0,
+        np.where(touches, 0, 100),
+        step="pre",
+        color="#f2f2f2",
+        linewidth=0,
+        label="no contact",
+    )
     bottom.set(xlabel="time [ms]", ylabel="share of the load [%]", ylim=(0, 100))
     legend(bottom, **ABOVE | {"handlelength": 1.0}, ncols=4, handleheight=1.0)
     over_time([top, bottom], history, scene)
@@ -268,14 +461,19 @@ def rolling(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figu
 
 
 def _rigid_rolling(t: np.ndarray, scene: dict[str, Value]) -> tuple[np.ndarray, np.ndarray] | None:
-    """v_x and -omega R [m/s] of a rigid disc on the plane, each (steps,): it slides until both are equal, then rolls.
+    """v_x and -omega R [m/s] of a rigid disc on the plane, each (steps,): it slides until both
+    are equal, then rolls.
 
-    None where the disc does not start on the plane or other forces than gravity act: with v0 and no spin it slides as
-    v0 - mu_d g t and rolls from v0/(3 mu_d g) on, at 2/3 v0.
+    None where the disc does not start on the plane or other forces than gravity act: with v0
+    and no spin it slides as v0 - mu_d g t and rolls from v0/(3 mu_d g) on, at 2/3 v0.
     """
-    given = lambda name: scene.get(name, 0)   # noqa: E731
+    given = lambda name: scene.get(name, 0)  # noqa: E731
     pull = given("friction_dynamic") * given("gravity")
-    if pull <= 0 or given("angle") != 0 or any(map(given, ("height", "body_force_x", "body_force_y"))):
+    if (
+        pull <= 0
+        or given("angle") != 0
+        or any(map(given, ("height", "body_force_x", "body_force_y")))
+    ):
         return None
     slip = scene["speed"] + given("spin") * scene["radius"]
     gained = np.sign(slip) * pull * np.minimum(t, abs(slip) / (3 * pull))
@@ -284,7 +482,9 @@ def _rigid_rolling(t: np.ndarray, scene: dict[str, Value]) -> tuple[np.ndarray, 
 
 @dataclass(frozen=True)
 class Pose:
-    """The body at time t [s]: centre of mass (2,), closed outline (n, 2) and a material diameter (m, 2), marked at its first point."""
+    """The body at time t [s]: centre of mass (2,), closed outline (n, 2) and a material
+    diameter (m, 2), marked at its first point.
+    """
 
     t: float
     centre: np.ndarray
@@ -293,70 +493,122 @@ class Pose:
 
 
 def goes_along(history: dict[str, np.ndarray], scene: dict[str, Value]) -> bool:
-    """Whether the body goes along the plane or turns, so that its way shows more than its shapes do."""
+    """Whether the body goes along the plane or turns, so that its way shows more than its
+    shapes do.
+    """
     along = max(np.abs(history["vx"]).max(), scene["radius"] * np.abs(history["spin"]).max())
     return along > 1e-3 * max(np.abs(history["vy"]).max(), along)
 
 
-def flight(history: dict[str, np.ndarray], scene: dict[str, Value], series: list[tuple[float, Path]]) -> plt.Figure:
-    """Figure 4b: the body along its flight with a material diameter that shows how it turns, and the way of its centre.
+def flight(
+    history: dict[str, np.ndarray], scene: dict[str, Value], series: list[tuple[float, Path]]
+) -> plt.Figure:
+    """Figure 4b: the body along its flight with a material diameter that shows how it turns,
+    and the way of its centre.
 
-    A run begins at the touch and ends soon after the contact: before and after it the motion is continued as that of a
-    rigid body (parabola, constant spin), dashed and named so.
+    A run begins at the touch and ends soon after the contact: before and after it the motion is
+    continued as that of a rigid body (parabola, constant spin), dashed and named so.
     """
-    row = lambda t: int(np.argmin(np.abs(history["t"] - t)))   # noqa: E731
+    row = lambda t: int(np.argmin(np.abs(history["t"] - t)))  # noqa: E731
     impact = history["vy"][0] < 0 or scene.get("height", 0) > 0
     if impact:
         lowest = min(series, key=lambda each: history["y"][row(each[0])])
-        picked = [(series[0], "touch", BLUE), (lowest, "lowest", ORANGE), (series[-1], "end of the run", GREEN)]
+        picked = [
+            (series[0], "touch", BLUE),
+            (lowest, "lowest", ORANGE),
+            (series[-1], "end of the run", GREEN),
+        ]
     else:
         places = evenly(range(len(series)), 5)
         picked = [(series[k], "", plt.get_cmap("viridis")(0.85 * k / places[-1])) for k in places]
     figure, axes = plt.subplots(figsize=(6.4, 5.6 if impact else 3.6))
     run = history["t"] >= series[0][0]
-    axes.plot(history["x"][run], history["y"][run], color=BLACK, linewidth=1.0, label="centre of mass")
+    axes.plot(
+        history["x"][run], history["y"][run], color=BLACK, linewidth=1.0, label="centre of mass"
+    )
     poses = [_pose(t, path, history) for (t, path), _, _ in picked]
     for pose, (_, name, colour) in zip(poses, picked):
         _draw_pose(axes, pose, colour, "-", f"{name}, {1e3 * pose.t:.2f} ms" if name else None)
         if not name:
-            axes.text(pose.centre[0], pose.outline[:, 1].max(), f"{1e3 * pose.t:.0f} ms", color=colour, ha="center", va="bottom")
+            axes.text(
+                pose.centre[0],
+                pose.outline[:, 1].max(),
+                f"{1e3 * pose.t:.0f} ms",
+                color=colour,
+                ha="center",
+                va="bottom",
+            )
     room = 0.0
     if impact:
         _draw_flight(axes, poses[0], -1, row(poses[0].t), history, scene, BLUE)
-        axes.plot([], [], color=BLUE, linestyle=DASHED, label="continued as rigid motion, shape frozen")
-        if history["normal_force"][-1] == 0 and history["vy"][-1] > 0:   # it has left the plane
+        axes.plot(
+            [], [], color=BLUE, linestyle=DASHED, label="continued as rigid motion, shape frozen"
+        )
+        if history["normal_force"][-1] == 0 and history["vy"][-1] > 0:  # it has left the plane
             _draw_flight(axes, poses[-1], 1, -1, history, scene, GREEN)
             at, ahead = row(poses[0].t), np.sign(history["vx"][0]) or 1.0
-            before, after = (np.degrees(np.arctan2(abs(history["vy"][k]), ahead * history["vx"][k])) for k in (at, -1))
-            axes.set_title(f"angle to the plane: {before:.1f}° before, {after:.1f}° after" + " (backwards)" * bool(after > 90.05))
-        room = 1.2 * scene["radius"]   # for the times beside the outlines
+            before, after = (
+                np.degrees(np.arctan2(abs(history["vy"][k]), ahead * history["vx"][k]))
+                for k in (at, -1)
+            )
+            axes.set_title(
+                f"angle to the plane: {before:.1f}° before, {after:.1f}° after"
+                + " (backwards)" * bool(after > 90.05)
+            )
+        room = 1.2 * scene["radius"]  # for the times beside the outlines
     left, right = axes.get_xlim()
     high = axes.get_ylim()[1] + (0 if impact else 0.2 * scene["radius"])
     axes.axhline(0, color=BLACK, linewidth=0.8)
     axes.axhspan(-0.3 * scene["radius"], 0, color="#d0d0d0", linewidth=0)
-    axes.set(xlim=(left - room, right + room), ylim=(-0.3 * scene["radius"], high), aspect="equal", xlabel="x [m]", ylabel="y [m]")
+    axes.set(
+        xlim=(left - room, right + room),
+        ylim=(-0.3 * scene["radius"], high),
+        aspect="equal",
+        xlabel="x [m]",
+        ylabel="y [m]",
+    )
     legend(axes, **BELOW, ncols=2, handlelength=1.8)
     return figure
 
 
-def _draw_flight(axes: plt.Axes, pose: Pose, sign: int, row: int, history: dict[str, np.ndarray], scene: dict[str, Value],
-                 colour: str) -> None:
-    """Two more outlines after (sign 1) or before (-1) the pose, in rigid motion with the velocities of history's `row`."""
-    pause = 3 * scene["radius"] / np.hypot(history["vx"][row], history["vy"][row])   # one and a half diameters apart
+def _draw_flight(
+    axes: plt.Axes,
+    pose: Pose,
+    sign: int,
+    row: int,
+    history: dict[str, np.ndarray],
+    scene: dict[str, Value],
+    colour: str,
+) -> None:
+    """Two more outlines after (sign 1) or before (-1) the pose, in rigid motion with the
+    velocities of history's `row`.
+    """
+    pause = (
+        3 * scene["radius"] / np.hypot(history["vx"][row], history["vy"][row])
+    )  # one and a half diameters apart
     if sign < 0 and scene.get("height", 0) > 0:
-        pause = min(pause, pose.t / 2)                                                # not before the start
+        pause = min(pause, pose.t / 2)  # not before the start
     for k in (1, 2):
         moved = _fly(pose, sign * k * pause, row, history, scene)
         _draw_pose(axes, moved, colour, DASHED, None)
-        axes.annotate(f"{1e3 * moved.t:.1f} ms".replace("-", "−"), moved.outline[np.argmax(sign * moved.outline[:, 0])],
-                      (3 * sign, 0), textcoords="offset points", color=colour, ha="left" if sign > 0 else "right", va="center")
+        axes.annotate(
+            f"{1e3 * moved.t:.1f} ms".replace("-", "−"),
+            moved.outline[np.argmax(sign * moved.outline[:, 0])],
+            (3 * sign, 0),
+            textcoords="offset points",
+            color=colour,
+            ha="left" if sign > 0 else "right",
+            va="center",
+        )
     waits = np.linspace(0, 2 * sign * pause, 50)
     way = np.array([_fly(pose, wait, row, history, scene).centre for wait in waits])
     axes.plot(*way.T, color=BLACK, linewidth=0.8, linestyle=":")
 
 
 def _pose(t: float, path: Path, history: dict[str, np.ndarray]) -> Pose:
-    """The deformed outline and the deformed upright diameter of a snapshot of a whole disc, the mark at its top."""
+    """The deformed outline and the deformed upright diameter of a snapshot of a whole disc, the
+    mark at its top.
+    """
     snapshot = vtu.read(path)
     moved = snapshot.points + snapshot.fields["displacement"][:, :2]
     following = dict(mesh.boundary(snapshot.triangles).tolist())
@@ -368,22 +620,34 @@ def _pose(t: float, path: Path, history: dict[str, np.ndarray]) -> Pose:
 
 
 def diameter(snapshot: vtu.Snapshot) -> np.ndarray:
-    """The deformed places (m, 2) [m] of the upright material diameter of a whole body, from its top down."""
+    """The deformed places (m, 2) [m] of the upright material diameter of a whole body, from its
+    top down.
+    """
     low, high = snapshot.points.min(axis=0), snapshot.points.max(axis=0)
     x = np.full(41, (low[0] + high[0]) / 2)
-    y = np.linspace(high[1], low[1], 43)[1:-1]   # not quite to the outline, which is a polygon here
+    y = np.linspace(high[1], low[1], 43)[1:-1]  # not quite to the outline, which is a polygon here
     grid = Triangulation(*snapshot.points.T, snapshot.triangles)
     moved = snapshot.points + snapshot.fields["displacement"][:, :2]
-    return np.ma.compress_rows(np.ma.stack([LinearTriInterpolator(grid, values)(x, y) for values in moved.T], axis=1))
+    return np.ma.compress_rows(
+        np.ma.stack([LinearTriInterpolator(grid, values)(x, y) for values in moved.T], axis=1)
+    )
 
 
-def _fly(pose: Pose, wait: float, row: int, history: dict[str, np.ndarray], scene: dict[str, Value]) -> Pose:
-    """The pose after another `wait` seconds (before, if negative) of rigid flight with the velocities of history's `row`."""
+def _fly(
+    pose: Pose, wait: float, row: int, history: dict[str, np.ndarray], scene: dict[str, Value]
+) -> Pose:
+    """The pose after another `wait` seconds (before, if negative) of rigid flight with the
+    velocities of history's `row`.
+    """
     velocity = np.array([history["vx"][row], history["vy"][row]])
-    pull = np.array([scene.get("body_force_x", 0), scene.get("body_force_y", 0) - scene.get("gravity", 0)])
+    pull = np.array(
+        [scene.get("body_force_x", 0), scene.get("body_force_y", 0) - scene.get("gravity", 0)]
+    )
     turn = rotation(history["spin"][row] * wait)
     place = pose.centre + velocity * wait + pull * wait**2 / 2
-    outline, diameter = ((points - pose.centre) @ turn.T + place for points in (pose.outline, pose.diameter))
+    outline, diameter = (
+        (points - pose.centre) @ turn.T + place for points in (pose.outline, pose.diameter)
+    )
     return Pose(pose.t + wait, place, outline, diameter)
 
 
@@ -398,45 +662,92 @@ def evenly(items: Sequence, most: int) -> list:
     return [items[k] for k in np.unique(np.linspace(0, len(items) - 1, most).round().astype(int))]
 
 
-def side_by_side(found: list["Body"], times: list[float], view: tuple[float, float, float, float], columns: int,
-                 behind: Callable, label: str) -> plt.Figure:
-    """The bodies in rows, each at its time [s] within the limits `view` [m] with what behind(axes, times, places) draws there, coloured by
-    their stress, of which `label` says what it is: in one panel, as each of its own would take as long as its body."""
+def side_by_side(
+    found: list["Body"],
+    times: list[float],
+    view: tuple[float, float, float, float],
+    columns: int,
+    behind: Callable,
+    label: str,
+) -> plt.Figure:
+    """The bodies in rows, each at its time [s] within the limits `view` [m] with what
+    behind(axes, times, places) draws there, coloured by their stress, of which `label` says
+    what it is: in one panel, as each of its own would take as long as its body.
+    """
     left, right, low, high = view
-    rows, inch = -(-len(found) // columns), (right - left) * columns / 6.5             # [m]
+    rows, inch = -(-len(found) // columns), (right - left) * columns / 6.5  # [m]
     step = np.array([right - left + 0.1 * inch, high - low + 0.3 * inch])
     figure, axes = plt.subplots(figsize=(7.5, rows * step[1] / inch + 0.4), subplot_kw=BARE)
     axes.set_axis_off()
-    axes.set(xlim=(left, right + (columns - 1) * step[0]), ylim=(low - (rows - 1) * step[1], low + step[1]), aspect="equal")
-    # 0 or less and more: five in a thousand of all nodes are beyond each, so that one spot does not darken all the rest
-    low_stress, high_stress = np.quantile(np.concatenate([body.stress for body in found]), [0.005, 0.995])
+    axes.set(
+        xlim=(left, right + (columns - 1) * step[0]),
+        ylim=(low - (rows - 1) * step[1], low + step[1]),
+        aspect="equal",
+    )
+    # 0 or less and more: five in a thousand of all nodes are beyond each, so that one spot does not
+    # darken all the rest
+    low_stress, high_stress = np.quantile(
+        np.concatenate([body.stress for body in found]), [0.005, 0.995]
+    )
     ends = min(0.0, low_stress), high_stress or 1.0
     places = [step * (k % columns, -(k // columns)) for k in range(len(found))]
     behind(axes, times, places)
     for body, t, place in zip(found, times, places):
         picture = draw_body(axes, body, ends, place)
-        axes.text(*place + ((left + right) / 2, high), f"{1e3 * t:.2f} ms", ha="center", va="bottom")
+        axes.text(
+            *place + ((left + right) / 2, high), f"{1e3 * t:.2f} ms", ha="center", va="bottom"
+        )
     scale_bar(axes, 0.25 / columns)
-    figure.colorbar(picture, cax=axes.inset_axes((1.03, 0.15, 0.025, 0.7)), label=label, extend="both" if ends[0] < 0 else "max")
+    figure.colorbar(
+        picture,
+        cax=axes.inset_axes((1.03, 0.15, 0.025, 0.7)),
+        label=label,
+        extend="both" if ends[0] < 0 else "max",
+    )
     return figure
 
 
 def scale_bar(axes: plt.Axes, share: float = 0.25) -> None:
-    """Below axes in m, which have no ticks, a length of 1, 2 or 5 times a power of ten, at most this share of the width."""
+    """Below axes in m, which have no ticks, a length of 1, 2 or 5 times a power of ten, at most
+    this share of the width.
+    """
     left, right = axes.get_xlim()
     wanted = share * (right - left)
-    size = max(length for digit in (1, 2, 5) if (length := digit * 10.0 ** np.floor(np.log10(wanted))) <= wanted)
-    below = axes.get_xaxis_transform() + ScaledTranslation(0, -9 / 72, axes.figure.dpi_scale_trans)      # [m] along, nine points down
-    axes.plot([left, left + size], [0, 0], color=BLACK, linewidth=2.0, solid_capstyle="butt", transform=below, clip_on=False)
+    size = max(
+        length
+        for digit in (1, 2, 5)
+        if (length := digit * 10.0 ** np.floor(np.log10(wanted))) <= wanted
+    )
+    below = axes.get_xaxis_transform() + ScaledTranslation(
+        0, -9 / 72, axes.figure.dpi_scale_trans
+    )  # [m] along, nine points down
+    axes.plot(
+        [left, left + size],
+        [0, 0],
+        color=BLACK,
+        linewidth=2.0,
+        solid_capstyle="butt",
+        transform=below,
+        clip_on=False,
+    )
     factor, unit = (1e6, "μm") if size < 1e-3 else (1e3, "mm") if size < 1 else (1, "m")
-    axes.text(left + size + share / 16 * (right - left), 0, f"{factor * size:.3g} {unit}", fontsize=SMALL, ha="left", va="center",
-              transform=below)
+    axes.text(
+        left + size + share / 16 * (right - left),
+        0,
+        f"{factor * size:.3g} {unit}",
+        fontsize=SMALL,
+        ha="left",
+        va="center",
+        transform=below,
+    )
     axes.set_xlim(left, right)
 
 
 @dataclass(frozen=True)
 class Body:
-    """The whole deformed body: points (n, 2) in m, triangles (t, 3), von Mises stress or another field of stress (n,) in MPa."""
+    """The whole deformed body: points (n, 2) in m, triangles (t, 3), von Mises stress or
+    another field of stress (n,) in MPa.
+    """
 
     points: np.ndarray
     triangles: np.ndarray
@@ -444,24 +755,41 @@ class Body:
 
 
 def is_half(scene: dict[str, Value]) -> bool:
-    """Whether only the half of the body, or of a meridian plane of it, to the right of its axis was computed; of a body in three dimensions
-    a quarter."""
+    """Whether only the half of the body, or of a meridian plane of it, to the right of its axis
+    was computed; of a body in three dimensions a quarter.
+    """
     script = scene.get("script", "")
-    return scene.get("symmetry") == ("quarter" if script in ("ball-plane", "bodies-3d") else "half") or script.endswith("axisymmetric")
+    return scene.get("symmetry") == (
+        "quarter" if script in ("ball-plane", "bodies-3d") else "half"
+    ) or script.endswith("axisymmetric")
 
 
 def deformed(snapshot: vtu.Snapshot, half: bool, field: str = "von_mises") -> Body:
-    """The body of a snapshot; where half of it was computed, the other half is the mirror image in its left end, the axis."""
+    """The body of a snapshot; where half of it was computed, the other half is the mirror image
+    in its left end, the axis.
+    """
     points = snapshot.points + snapshot.fields["displacement"][:, :2]
     triangles, stress = snapshot.triangles, 1e-6 * snapshot.fields[field]
     if half:
         triangles = np.vstack([triangles, triangles + len(points)])
-        points, stress = np.vstack([points, points * (-1, 1) + (2 * snapshot.points[:, 0].min(), 0)]), np.concatenate([stress, stress])
+        points, stress = (
+            np.vstack([points, points * (-1, 1) + (2 * snapshot.points[:, 0].min(), 0)]),
+            np.concatenate([stress, stress]),
+        )
     return Body(points, triangles, stress)
 
 
-def draw_body(axes: plt.Axes, body: Body, ends: tuple[float, float], place: np.ndarray = ORIGIN) -> TriMesh:
+def draw_body(
+    axes: plt.Axes, body: Body, ends: tuple[float, float], place: np.ndarray = ORIGIN
+) -> TriMesh:
     """The body coloured by its stress, on a scale with these ends [MPa], drawn at a place [m]."""
-    picture = axes.tripcolor(*(body.points + place).T, body.triangles, body.stress, shading="gouraud", cmap="viridis", clim=ends)
+    picture = axes.tripcolor(
+        *(body.points + place).T,
+        body.triangles,
+        body.stress,
+        shading="gouraud",
+        cmap="viridis",
+        clim=ends,
+    )
     picture.set_in_layout(False)
     return picture

@@ -1,4 +1,6 @@
-"""Figure 3 of the paper: the friction laws (11)-(13), drawn from the function of edp/core/contact/friction.idp that runs use."""
+"""Figure 3 of the paper: the friction laws (11)-(13), drawn from the function of
+edp/core/contact/friction.idp that runs use.
+"""
 
 import argparse
 from pathlib import Path
@@ -15,18 +17,36 @@ from .figures import BELOW, BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE, leg
 
 __all__ = ["VALUES", "draw", "main", "tabulate"]
 
-VALUES = {"friction_static": 0.7, "friction_dynamic": 0.5, "slip_velocity": 0.1}   # of section 3.1 and figure 3
-LABELS = {"linear": (r"linear, $\phi^3$ with $v_T/\varepsilon$", BLUE, "-"), "sqrt": (r"sqrt, $\phi^1$", GREEN, "-"),
-          "tanh": (r"tanh, $\phi^2$", ORANGE, "-"),
-          "linear-printed": (r"linear-printed: $v_T/2\varepsilon$" "\nas printed in (13)", PURPLE, "--")}
+VALUES = {
+    "friction_static": 0.7,
+    "friction_dynamic": 0.5,
+    "slip_velocity": 0.1,
+}  # of section 3.1 and figure 3
+LABELS = {
+    "linear": (r"linear, $\phi^3$ with $v_T/\varepsilon$", BLUE, "-"),
+    "sqrt": (r"sqrt, $\phi^1$", GREEN, "-"),
+    "tanh": (r"tanh, $\phi^2$", ORANGE, "-"),
+    "linear-printed": (r"linear-printed: $v_T/2\varepsilon$" "\nas printed in (13)", PURPLE, "--"),
+}
 
 
 def main(argv: list[str]) -> int:
     """Tabulates the laws into DIR/laws.csv and draws DIR/friction-laws.png."""
     parser = argparse.ArgumentParser(prog="ffimpact friction-laws", description=__doc__)
-    parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "friction-laws", help="the result folder")
+    parser.add_argument(
+        "--out",
+        metavar="DIR",
+        type=Path,
+        default=RESULTS / "friction-laws",
+        help="the result folder",
+    )
     for name, value in VALUES.items():
-        parser.add_argument(f"--{name}", metavar="VALUE", default=value, help=f"{parameters.PARAMETERS[name].help} (default: {value:g})")
+        parser.add_argument(
+            f"--{name}",
+            metavar="VALUE",
+            default=value,
+            help=f"{parameters.PARAMETERS[name].help} (default: {value:g})",
+        )
     options = parser.parse_args(argv)
     values = parameters.check({name: getattr(options, name) for name in VALUES})
     folder = result_folder(options.out)
@@ -36,22 +56,33 @@ def main(argv: list[str]) -> int:
 
 
 def tabulate(folder: Path, values: dict[str, parameters.Value]) -> pd.DataFrame:
-    """The table of edp/friction-laws.edp: panel, law, transition, side, v [m/s], ratio [-], slope [s/m]; see there."""
+    """The table of edp/friction-laws.edp: panel, law, transition, side, v [m/s], ratio [-],
+    slope [s/m]; see there.
+    """
     program = freefem.find()
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with open(folder / "log.txt", "w"):
             pass
     except OSError as error:
-        raise Unreadable(f"{folder} cannot be written: {error.strerror}; choose another --out") from None
-    code, said = freefem.run(program, "edp/friction-laws.edp", values | {"out": folder}, folder / "log.txt")
+        raise Unreadable(
+            f"{folder} cannot be written: {error.strerror}; choose another --out"
+        ) from None
+    code, said = freefem.run(
+        program, "edp/friction-laws.edp", values | {"out": folder}, folder / "log.txt"
+    )
     if code != 0:
-        raise Failure(said or f"FreeFem++ stopped with exit code {code}; see {folder / 'log.txt'}", code=code if said else 1)
+        raise Failure(
+            said or f"FreeFem++ stopped with exit code {code}; see {folder / 'log.txt'}",
+            code=code if said else 1,
+        )
     return pd.read_csv(folder / "laws.csv")
 
 
 def draw(laws: pd.DataFrame, values: dict[str, float], path: Path) -> None:
-    """The three panels of figure 3, the sides of a jump apart, the velocity in units of slip_velocity."""
+    """The three panels of figure 3, the sides of a jump apart, the velocity in units of
+    slip_velocity.
+    """
     laws = laws.assign(size_=laws.v / values["slip_velocity"])
     with plt.rc_context(STYLE):
         figure, (a, b, c) = plt.subplots(1, 3, figsize=(10.2, 3.9))
@@ -60,31 +91,79 @@ def draw(laws: pd.DataFrame, values: dict[str, float], path: Path) -> None:
             axes.axvline(0, color=GREY, linewidth=0.6)
             axes.set_xlabel(rf"$v_T/\varepsilon$,  $\varepsilon = {values['slip_velocity']:g}$ m/s")
         a.plot("size_", "ratio", data=laws[laws.panel == "a"], color=BLACK)
-        a.set(title="a) Coulomb's law (11): the limit $\\varepsilon \\to 0$", ylabel=r"$-t_T/(\mu\,t_N)$", xlabel="$v_T$",
-              xlim=(-3, 3), xticks=[0], ylim=(-1.2, 1.2), yticks=[-1, 0, 1])
+        a.set(
+            title="a) Coulomb's law (11): the limit $\\varepsilon \\to 0$",
+            ylabel=r"$-t_T/(\mu\,t_N)$",
+            xlabel="$v_T$",
+            xlim=(-3, 3),
+            xticks=[0],
+            ylim=(-1.2, 1.2),
+            yticks=[-1, 0, 1],
+        )
         for law, (label, colour, line) in LABELS.items():
             _curve(b, laws[(laws.panel == "b") & (laws.law == law)], colour, line, label, 1.2)
-        b.set(title="b) regularised (13), $\\mu_e = \\mu_d$", ylabel=r"$\phi_\varepsilon(v_T)$", xlim=(-4, 4), ylim=(-1.2, 1.2),
-              yticks=[-1, -0.5, 0, 0.5, 1])
+        b.set(
+            title="b) regularised (13), $\\mu_e = \\mu_d$",
+            ylabel=r"$\phi_\varepsilon(v_T)$",
+            xlim=(-4, 4),
+            ylim=(-1.2, 1.2),
+            yticks=[-1, -0.5, 0, 0.5, 1],
+        )
         legend(b, **BELOW, handlelength=1.6, ncols=2)
         both = laws[laws.panel == "c"]
-        _curve(c, both[both.transition == "jump"], BLUE, "-", "jump at $|v_T| = \\varepsilon$, as in the paper", 1.6)
-        _curve(c, both[both.transition == "smooth"], ORANGE, "--", "smooth (friction_transition)", 1.4)
-        ticks = {f"{sign}\\mu_{kind}": float(sign + "1") * values[f"friction_{name}"] for sign in ("-", "+")
-                 for kind, name in (("e", "static"), ("d", "dynamic"))}
-        c.set(title="c) static and dynamic coefficient, linear", ylabel=r"$-t_T/t_N = \mu_f\,\phi_\varepsilon$", xlim=(-4, 4),
-              ylim=(-1.2 * values["friction_static"], 1.2 * values["friction_static"]))
-        c.set_yticks([0, *ticks.values()], ["0", *(f"${name} = {value:+g}$".replace("+", "") for name, value in ticks.items())])
+        _curve(
+            c,
+            both[both.transition == "jump"],
+            BLUE,
+            "-",
+            "jump at $|v_T| = \\varepsilon$, as in the paper",
+            1.6,
+        )
+        _curve(
+            c, both[both.transition == "smooth"], ORANGE, "--", "smooth (friction_transition)", 1.4
+        )
+        ticks = {
+            f"{sign}\\mu_{kind}": float(sign + "1") * values[f"friction_{name}"]
+            for sign in ("-", "+")
+            for kind, name in (("e", "static"), ("d", "dynamic"))
+        }
+        c.set(
+            title="c) static and dynamic coefficient, linear",
+            ylabel=r"$-t_T/t_N = \mu_f\,\phi_\varepsilon$",
+            xlim=(-4, 4),
+            ylim=(-1.2 * values["friction_static"], 1.2 * values["friction_static"]),
+        )
+        c.set_yticks(
+            [0, *ticks.values()],
+            ["0", *(f"${name} = {value:+g}$".replace("+", "") for name, value in ticks.items())],
+        )
         legend(c, **BELOW, handlelength=1.6, ncols=1)
         save(figure, path)
 
 
-def _curve(axes: plt.Axes, points: pd.DataFrame, colour: str, line: str, label: str, width: float) -> None:
-    """One law: sticking and sliding sides are separate lines, with a dotted line over a jump between them."""
+def _curve(
+    axes: plt.Axes, points: pd.DataFrame, colour: str, line: str, label: str, width: float
+) -> None:
+    """One law: sticking and sliding sides are separate lines, with a dotted line over a jump
+    between them.
+    """
     stick = points[points.side == "stick"]
     left, right = points[points.size_ < stick.size_.min()], points[points.size_ > stick.size_.max()]
     for part in (left, stick, right):
-        axes.plot(part.size_, part.ratio, color=colour, linestyle=line, linewidth=width, label=label if part is stick else None)
+        axes.plot(
+            part.size_,
+            part.ratio,
+            color=colour,
+            linestyle=line,
+            linewidth=width,
+            label=label if part is stick else None,
+        )
     for inner, outer in ((stick.iloc[0], left.iloc[-1]), (stick.iloc[-1], right.iloc[0])):
         if abs(inner.ratio - outer.ratio) > 0.05:
-            axes.plot([outer.size_] * 2, [inner.ratio, outer.ratio], color=colour, linestyle=":", linewidth=0.8)
+            axes.plot(
+                [outer.size_] * 2,
+                [inner.ratio, outer.ratio],
+                color=colour,
+                linestyle=":",
+                linewidth=0.8,
+            )

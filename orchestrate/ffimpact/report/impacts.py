@@ -1,5 +1,7 @@
-"""The impacts of a run, a row each (contacts.csv), and restitution over several of them; the vibration that they leave: the energy in each
-natural mode (modes.csv), beside the spectrum of the force."""
+"""The impacts of a run, a row each (contacts.csv), and restitution over several of them; the
+vibration that they leave: the energy in each natural mode (modes.csv), beside the spectrum of the
+force.
+"""
 
 from pathlib import Path
 
@@ -9,24 +11,47 @@ from ..output.results import Contents, read_table
 from .figures import BLUE, GREEN, GREY, ORANGE, legend, plt
 
 __all__ = [
-    "HIGHEST", "draw", "heights", "read", "read_modes", "several", "spectrum", "vibration",
+    "HIGHEST",
+    "draw",
+    "heights",
+    "read",
+    "read_modes",
+    "several",
+    "spectrum",
+    "vibration",
     "with_flights",
 ]
 
-LIGHTEST = 0.01                  # of the largest impulse of a meeting: what is less is the grazing end of an impact
-# of the approach, and of the largest slip of a meeting: of less the restitution along the partner is that of vibrations
+LIGHTEST = 0.01  # of the largest impulse of a meeting: what is less is the grazing end of an impact
+# of the approach, and of the largest slip of a meeting: of less the restitution along the partner
+# is that of vibrations
 LEAST_SLIP = 0.05
-LEAST_APPROACH = 0.01            # of the largest of a meeting: of less, as of a body that lies on its partner, there is no restitution
-HIGHEST = 1.5                    # restitution that is drawn to scale: above it a body that vibrates was pushed off as it hardly approached
+# of the largest of a meeting: of less, as of a body that lies on its partner, there is no
+# restitution
+LEAST_APPROACH = 0.01
+# restitution that is drawn to scale: above it a body that vibrates was pushed off as it hardly
+# approached
+HIGHEST = 1.5
 COLOURS = [BLUE, ORANGE, GREEN, "#cc79a7", "#e69f00", "#56b4e9"]
-TOLD = 5                         # restitutions written beside the first impacts
-INSIDE = 40                      # rows inside a flight
+TOLD = 5  # restitutions written beside the first impacts
+INSIDE = 40  # rows inside a flight
 MODES = ["mode", "frequency", "energy", "strain_energy", "kinetic_energy"]
-NEEDED = ["body", "partner", "start", "end", "impulse", "approach", "separation", "restitution", "restitution_tangential"]
+NEEDED = [
+    "body",
+    "partner",
+    "start",
+    "end",
+    "impulse",
+    "approach",
+    "separation",
+    "restitution",
+    "restitution_tangential",
+]
 
 
 def read(folder: Path) -> np.recarray:
-    """contacts.csv of the run in `folder`: a row for every interval of contact of two bodies, or of a body with an obstacle (partner < 0).
+    """contacts.csv of the run in `folder`: a row for every interval of contact of two bodies,
+    or of a body with an obstacle (partner < 0).
 
     Columns and units: edp/core/run/columns.idp. Unreadable where it is not such a table.
     """
@@ -34,49 +59,98 @@ def read(folder: Path) -> np.recarray:
 
 
 def several(table: np.recarray) -> list[np.recarray]:
-    """The impacts of each meeting, where one has more than one; intervals with less than LIGHTEST of the largest impulse of their meeting
-    are none."""
-    meetings = [table[(table.body == body) & (table.partner == partner)]
-                for body, partner in np.unique(np.stack([table.body, table.partner], axis=1), axis=0)]
+    """The impacts of each meeting, where one has more than one; intervals with less than
+    LIGHTEST of the largest impulse of their meeting are none.
+    """
+    meetings = [
+        table[(table.body == body) & (table.partner == partner)]
+        for body, partner in np.unique(np.stack([table.body, table.partner], axis=1), axis=0)
+    ]
     impacts = [rows[rows.impulse >= LIGHTEST * rows.impulse.max()] for rows in meetings]
     return impacts if any(len(rows) > 1 for rows in impacts) else []
 
 
 def draw(table: np.recarray, names: list[str], rigid: list[str]) -> plt.Figure | None:
-    """Restitution, across and along the partner, over the impacts of each meeting, and below them the speeds before each; None where there
-    are not several, or none has a restitution. `names`: of the bodies; `rigid`: of the obstacles."""
+    """Restitution, across and along the partner, over the impacts of each meeting, and below
+    them the speeds before each; None where there are not several, or none has a restitution.
+    `names`: of the bodies; `rigid`: of the obstacles.
+    """
     impacts = several(table)
-    if not any(np.isfinite(rows[name]).any() for rows in impacts for name in ("restitution", "restitution_tangential")):
+    if not any(
+        np.isfinite(rows[name]).any()
+        for rows in impacts
+        for name in ("restitution", "restitution_tangential")
+    ):
         return None
     figure, (top, below) = plt.subplots(2, 1, figsize=(6.4, 5), sharex=True)
     for colour, rows in zip(COLOURS, impacts):
         body, partner, t = int(rows.body[0]), int(rows.partner[0]), 1e3 * rows.start
         label = f"{names[body - 1]} – {names[partner - 1] if partner > 0 else rigid[-partner - 1]}"
-        across = np.where(rows.approach > LEAST_APPROACH * np.fmax.reduce(rows.approach), rows.restitution, np.nan)
+        across = np.where(
+            rows.approach > LEAST_APPROACH * np.fmax.reduce(rows.approach), rows.restitution, np.nan
+        )
         pushed = across > HIGHEST
-        top.plot(t, np.where(pushed, np.nan, across), "o-", color=colour, markersize=4, linewidth=0.8,
-                 label=f"{label}: normal" if np.isfinite(across).any() else None)
+        top.plot(
+            t,
+            np.where(pushed, np.nan, across),
+            "o-",
+            color=colour,
+            markersize=4,
+            linewidth=0.8,
+            label=f"{label}: normal" if np.isfinite(across).any() else None,
+        )
         if pushed.any():
-            top.plot(t[pushed], np.full(pushed.sum(), HIGHEST), "^", color=colour, markersize=5,
-                     label=f"{label}: normal, above {HIGHEST:g}")
-        slips = rows.slip_before > LEAST_SLIP * np.maximum(rows.approach, np.fmax.reduce(rows.slip_before))
+            top.plot(
+                t[pushed],
+                np.full(pushed.sum(), HIGHEST),
+                "^",
+                color=colour,
+                markersize=5,
+                label=f"{label}: normal, above {HIGHEST:g}",
+            )
+        slips = rows.slip_before > LEAST_SLIP * np.maximum(
+            rows.approach, np.fmax.reduce(rows.slip_before)
+        )
         along = np.where(slips, rows.restitution_tangential, np.nan)
         below.plot(t, rows.approach, "o-", color=colour, markersize=4, linewidth=0.8)
         if np.isfinite(along).any():
-            top.plot(t, along, "s--", color=colour, markersize=4, linewidth=0.8, fillstyle="none", label=f"{label}: tangential")
-            below.plot(t, rows.slip_before, "s--", color=colour, markersize=4, linewidth=0.8, fillstyle="none")
+            top.plot(
+                t,
+                along,
+                "s--",
+                color=colour,
+                markersize=4,
+                linewidth=0.8,
+                fillstyle="none",
+                label=f"{label}: tangential",
+            )
+            below.plot(
+                t,
+                rows.slip_before,
+                "s--",
+                color=colour,
+                markersize=4,
+                linewidth=0.8,
+                fillstyle="none",
+            )
     top.set(ylabel="restitution", ylim=(min(0.0, top.get_ylim()[0]), max(1.05, top.get_ylim()[1])))
     top.axhline(1, color=GREY, linewidth=0.6)
     legend(top, ncols=2, loc="lower center", bbox_to_anchor=(0.5, 1))
     low, high = below.get_ylim()
-    below.set(xlabel="start of the contact [ms]", ylabel="speed before [m/s]", ylim=(min(0.0, low), 1.1 * high))
+    below.set(
+        xlabel="start of the contact [ms]",
+        ylabel="speed before [m/s]",
+        ylim=(min(0.0, low), 1.1 * high),
+    )
     return figure
 
 
 def with_flights(history: dict[str, np.ndarray]) -> Contents:
-    """The history with rows inside its flights, of which a run has one each. With s from 0 to 1 in a flight of duration T, in which every
-    velocity changes by dv = g T, all is linear in s but places, less by s (1 - s) dv T/2, and kinetic energy and work of gravity, less by
-    s (1 - s) m dv^2/2. No force acts from its very beginning on."""
+    """The history with rows inside its flights, of which a run has one each. With s from 0 to 1
+    in a flight of duration T, in which every velocity changes by dv = g T, all is linear in s
+    but places, less by s (1 - s) dv T/2, and kinetic energy and work of gravity, less by s (1 -
+    s) m dv^2/2. No force acts from its very beginning on.
+    """
     t = history["t"]
     flies = (history["newton_iterations"][1:] == 0) & (history["normal_force"][1:] == 0)
     shares = np.append(np.linspace(0, 1, INSIDE + 2)[1:-1], 1e-6)
@@ -90,7 +164,10 @@ def with_flights(history: dict[str, np.ndarray]) -> Contents:
     for name in filled:
         if "force" in name:
             filled[name][flies[step] & (share > 0)] = 0
-    for of in ("", *(name.removeprefix("kinetic") for name in history if name.startswith("kinetic_"))):
+    for of in (
+        "",
+        *(name.removeprefix("kinetic") for name in history if name.startswith("kinetic_")),
+    ):
         gained = np.zeros(len(t) - 1)
         for axis in (axis for axis in "xyz" if axis + of in history):
             change = np.diff(history[f"v{axis}{of}"])
@@ -102,8 +179,9 @@ def with_flights(history: dict[str, np.ndarray]) -> Contents:
 
 
 def heights(history: dict[str, np.ndarray], table: np.recarray, names: list[str]) -> plt.Figure:
-    """The height of each body's centre above its last one [mm] over time [s], with the instants of its impacts and the first restitutions:
-    of a run until rest, with_flights()."""
+    """The height of each body's centre above its last one [mm] over time [s], with the instants
+    of its impacts and the first restitutions: of a run until rest, with_flights().
+    """
     figure, axes = plt.subplots(figsize=(6.4, 3.4))
     t = history["t"]
     for colour, (body, name) in zip(COLOURS, enumerate(names, 1)):
@@ -111,47 +189,89 @@ def heights(history: dict[str, np.ndarray], table: np.recarray, names: list[str]
         above = 1e3 * (y - y[-1])
         axes.plot(t, above, color=colour, label=f"{name}: at rest y = {y[-1]:.4g} m")
         impacts = table[(table.body == body) & np.isfinite(table.restitution)]
-        axes.plot(impacts.start, np.interp(impacts.start, t, above), "o", color=colour, markersize=3)
+        axes.plot(
+            impacts.start, np.interp(impacts.start, t, above), "o", color=colour, markersize=3
+        )
         for one in impacts[:TOLD]:
-            axes.annotate(f"{one.restitution:.2f}", (one.start, np.interp(one.start, t, above)), (0, -4), textcoords="offset points",
-                          ha="center", va="top", fontsize=7.5)
+            axes.annotate(
+                f"{one.restitution:.2f}",
+                (one.start, np.interp(one.start, t, above)),
+                (0, -4),
+                textcoords="offset points",
+                ha="center",
+                va="top",
+                fontsize=7.5,
+            )
     axes.set(xlabel="time [s]", ylabel="centre above its place at rest [mm]", xlim=(t[0], t[-1]))
     axes.margins(y=0.12)
-    legend(axes, ncols=2, loc="lower center", bbox_to_anchor=(0.5, 1), title="dots: impacts, with their restitutions", title_fontsize=7.5)
+    legend(
+        axes,
+        ncols=2,
+        loc="lower center",
+        bbox_to_anchor=(0.5, 1),
+        title="dots: impacts, with their restitutions",
+        title_fontsize=7.5,
+    )
     return figure
 
 
 # ---- vibration
 
+
 def read_modes(folder: Path) -> np.recarray:
-    """modes.csv of the run in `folder`: mode (from 1), frequency [Hz], energy of the last state in it and its two parts [J; of a plane
-    problem J/m].
+    """modes.csv of the run in `folder`: mode (from 1), frequency [Hz], energy of the last state
+    in it and its two parts [J; of a plane problem J/m].
 
     Unreadable where it is not such a table.
     """
     return read_table(folder / "modes.csv", MODES)
 
 
-def spectrum(t: np.ndarray, dt: np.ndarray, force: np.ndarray, frequencies: np.ndarray) -> np.ndarray:
-    """|integral of F exp(-i 2 pi f t) dt| [N s] at `frequencies` [Hz], of a force that is constant in each step (t: its end)."""
-    turns = np.exp(-2j * np.pi * np.outer(frequencies, t - dt / 2)) * np.sinc(np.outer(frequencies, dt))
+def spectrum(
+    t: np.ndarray, dt: np.ndarray, force: np.ndarray, frequencies: np.ndarray
+) -> np.ndarray:
+    """|integral of F exp(-i 2 pi f t) dt| [N s] at `frequencies` [Hz], of a force that is
+    constant in each step (t: its end).
+    """
+    turns = np.exp(-2j * np.pi * np.outer(frequencies, t - dt / 2)) * np.sinc(
+        np.outer(frequencies, dt)
+    )
     return np.abs(turns @ (force * dt))
 
 
 def vibration(table: np.recarray, history: dict[str, np.ndarray], per: str) -> plt.Figure | None:
-    """Energy by mode over frequency, and above it the force's spectrum up to the last mode; None where there are no modes, or no energies.
-    `per`: "/m" in plane strain."""
+    """Energy by mode over frequency, and above it the force's spectrum up to the last mode;
+    None where there are no modes, or no energies. `per`: "/m" in plane strain.
+    """
     if np.isnan(table.energy).all():
         return None
     most = np.nanmax(table.energy)
     figure, (top, below) = plt.subplots(2, 1, figsize=(6.4, 5), sharex=True)
     frequencies = np.linspace(0, 1.05 * table.frequency.max(), 600)
-    top.plot(1e-3 * frequencies, spectrum(history["t"], history["dt"], history["normal_force"], frequencies), color=BLUE, linewidth=1)
+    top.plot(
+        1e-3 * frequencies,
+        spectrum(history["t"], history["dt"], history["normal_force"], frequencies),
+        color=BLUE,
+        linewidth=1,
+    )
     top.set(ylabel=f"spectrum of the force [N s{per}]", yscale="log")
-    for name, colour, style in (("kinetic_energy", "#e69f00", "s"), ("strain_energy", GREEN, "^"), ("energy", "black", "o")):
+    for name, colour, style in (
+        ("kinetic_energy", "#e69f00", "s"),
+        ("strain_energy", GREEN, "^"),
+        ("energy", "black", "o"),
+    ):
         shown = table[table[name] > 1e-6 * most]
-        below.plot(1e-3 * shown.frequency, shown[name], style, color=colour, markersize=3.5, label=name.replace("_", " "))
-    below.vlines(1e-3 * table.frequency, 1e-6 * most, table.energy, color="#bbbbbb", linewidth=0.6, zorder=0)
+        below.plot(
+            1e-3 * shown.frequency,
+            shown[name],
+            style,
+            color=colour,
+            markersize=3.5,
+            label=name.replace("_", " "),
+        )
+    below.vlines(
+        1e-3 * table.frequency, 1e-6 * most, table.energy, color="#bbbbbb", linewidth=0.6, zorder=0
+    )
     below.set(ylabel=f"energy of a mode [J{per}]", xlabel="frequency [kHz]", yscale="log")
     legend(below)
     return figure

@@ -1,5 +1,7 @@
-"""A film of a scene: the deforming body coloured by its stress above the ground, and the contact force over time under it. Of a body in
-three dimensions, where PyVista is installed (solid.py), the body cut open and from below; elsewhere its cut with the plane z = 0."""
+"""A film of a scene: the deforming body coloured by its stress above the ground, and the contact
+force over time under it. Of a body in three dimensions, where PyVista is installed (solid.py), the
+body cut open and from below; elsewhere its cut with the plane z = 0.
+"""
 
 import argparse
 import logging
@@ -16,7 +18,7 @@ from .. import progress, scene
 from ..failure import BadInput, NotInstalled, Unreadable
 from ..input.parameters import overrides, whole
 from ..output import vtu
-from ..output.results import RunResult, suffixes
+from ..output.results import Record, suffixes
 from ..places import RESULTS, shown
 from ..running.run import run
 from . import bodies, contact, solid
@@ -39,63 +41,104 @@ from .figures import (
 
 __all__ = ["Motion", "PlaneStage", "SolidStage", "Stage", "main", "of", "write"]
 
-SECONDS = 8.0     # of the film
-MOST = 400        # frames, 50 a second: players show a faster GIF slower
+SECONDS = 8.0  # of the film
+MOST = 400  # frames, 50 a second: players show a faster GIF slower
 DPI = 110
-logging.getLogger("matplotlib.animation").setLevel(logging.ERROR)   # what ffmpeg says is said in one line
+logging.getLogger("matplotlib.animation").setLevel(
+    logging.ERROR
+)  # what ffmpeg says is said in one line
 
 
 def main(argv: list[str]) -> int:
-    """Runs or reuses the scene with a snapshot a frame in DIR and writes DIR/<scene>.mp4 (or .gif), or reuses the film too."""
+    """Runs or reuses the scene with a snapshot a frame in DIR and writes DIR/<scene>.mp4 (or
+    .gif), or reuses the film too.
+    """
     parser = argparse.ArgumentParser(prog="ffimpact movie", description=__doc__)
-    parser.add_argument("scene", metavar="SCENE", help="a built-in scene or the path of a TOML file")
-    parser.add_argument("--set", metavar="NAME=VALUE", nargs="+", action="extend", default=[], help="set a parameter")
-    parser.add_argument("--frames", metavar="N", type=whole, default=100,
-                        help="number of frames (default: 100), and of snapshots of the run")
-    parser.add_argument("--format", choices=("mp4", "gif"), help="default: mp4 where there is ffmpeg, otherwise gif")
-    parser.add_argument("--out", metavar="DIR", type=Path, help="the result folder (default: results/movies/SCENE)")
+    parser.add_argument(
+        "scene", metavar="SCENE", help="a built-in scene or the path of a TOML file"
+    )
+    parser.add_argument(
+        "--set",
+        metavar="NAME=VALUE",
+        nargs="+",
+        action="extend",
+        default=[],
+        help="set a parameter",
+    )
+    parser.add_argument(
+        "--frames",
+        metavar="N",
+        type=whole,
+        default=100,
+        help="number of frames (default: 100), and of snapshots of the run",
+    )
+    parser.add_argument(
+        "--format", choices=("mp4", "gif"), help="default: mp4 where there is ffmpeg, otherwise gif"
+    )
+    parser.add_argument(
+        "--out", metavar="DIR", type=Path, help="the result folder (default: results/movies/SCENE)"
+    )
     options = parser.parse_args(argv)
     if not 2 <= options.frames <= MOST:
         raise BadInput(f"--frames: {options.frames} is out of range (accepted: 2 to {MOST})")
     if options.format == "mp4" and not FFMpegWriter.isAvailable():
-        raise NotInstalled("ffmpeg not found, which writes mp4; run: sudo apt-get install ffmpeg; or take --format gif")
+        raise NotInstalled(
+            "ffmpeg not found, which writes mp4; run: sudo apt-get install ffmpeg; or take --format gif"
+        )
     form = options.format or ("mp4" if FFMpegWriter.isAvailable() else "gif")
     given = scene.load(options.scene)
-    result = run(given, overrides(options.set) | {"fields": options.frames}, options.out or RESULTS / "movies" / given.name)
+    result = run(
+        given,
+        overrides(options.set) | {"fields": options.frames},
+        options.out or RESULTS / "movies" / given.name,
+    )
     film = result.folder / f"{given.name}.{form}"
-    done = result.reused and film.exists() and film.stat().st_mtime >= (result.folder / "summary.json").stat().st_mtime
+    done = (
+        result.reused
+        and film.exists()
+        and film.stat().st_mtime >= (result.folder / "summary.json").stat().st_mtime
+    )
     if not done:
         write(film, result, options.frames)
     print(shown(film))
     return 0
 
 
-def write(film: Path, result: RunResult, frames: int) -> None:
-    """Writes `frames` frames, evenly spaced from the touch to the end, of SECONDS seconds together; complete or not at all."""
+def write(film: Path, result: Record, frames: int) -> None:
+    """Writes `frames` frames, evenly spaced from the touch to the end, of SECONDS seconds
+    together; complete or not at all.
+    """
     with plt.rc_context(STYLE):
         stage = of(result)
         part = film.with_suffix(f".part{film.suffix}")
         writer = (FFMpegWriter if film.suffix == ".mp4" else PillowWriter)(fps=frames / SECONDS)
         try:
             with writer.saving(stage.figure, part, DPI):
-                for t in progress.in_turn(film.name, np.linspace(stage.times[0], stage.times[-1], frames)):
+                for t in progress.in_turn(
+                    film.name, np.linspace(stage.times[0], stage.times[-1], frames)
+                ):
                     stage.show(t)
                     writer.grab_frame()
             os.replace(part, film)
         except (BrokenPipeError, subprocess.CalledProcessError) as error:
-            if error.__context__ and not isinstance(error.__context__, BrokenPipeError):    # something stopped us, and so ffmpeg
+            if error.__context__ and not isinstance(
+                error.__context__, BrokenPipeError
+            ):  # something stopped us, and so ffmpeg
                 raise error.__context__ from None
-            raise NotInstalled("ffmpeg could not write the film: it lacks H.264, or the disk is full; take --format gif") from None
+            raise NotInstalled(
+                "ffmpeg could not write the film: it lacks H.264, or the disk is full; take --format gif"
+            ) from None
         finally:
             part.unlink(missing_ok=True)
             plt.close(stage.figure)
 
 
 class Motion:
-    """The snapshots of a run, and the body at any time between them, where places and stresses are linear in time.
+    """The snapshots of a run, and the body at any time between them, where places and stresses
+    are linear in time.
 
-    `times` (s,) in s from the touch to the end; `bodies`, one a time (of several bodies all of them); `diameters` (s, m, 2) in m, None
-    where half a body was computed, or `several`.
+    `times` (s,) in s from the touch to the end; `bodies`, one a time (of several bodies all of
+    them); `diameters` (s, m, 2) in m, None where half a body was computed, or `several`.
     """
 
     def __init__(self, pvd: Path, half: bool, several: bool = False):
@@ -105,17 +148,23 @@ class Motion:
         snapshots = [vtu.read(path) for _, path in series]
         self.times = np.array([t for t, _ in series])
         self.bodies = [deformed(snapshot, half) for snapshot in snapshots]
-        self.diameters = None if half or several else np.array([diameter(snapshot) for snapshot in snapshots])
+        self.diameters = (
+            None if half or several else np.array([diameter(snapshot) for snapshot in snapshots])
+        )
 
     def at(self, t: float) -> tuple[Body, np.ndarray | None]:
         """The body and its diameter (m, 2) at time t [s]."""
-        points, stress = (vtu.between(self.times, [getattr(body, name) for body in self.bodies], t) for name in ("points", "stress"))
+        points, stress = (
+            vtu.between(self.times, [getattr(body, name) for body in self.bodies], t)
+            for name in ("points", "stress")
+        )
         line = None if self.diameters is None else vtu.between(self.times, self.diameters, t)
         return Body(points, self.bodies[0].triangles, stress), line
 
 
 class Stage:
-    """The figure of all frames: axes, colours and curves are drawn once, `show` moves the rest to a time between `times` [s].
+    """The figure of all frames: axes, colours and curves are drawn once, `show` moves the rest
+    to a time between `times` [s].
 
     A subclass draws the body into a panel of width x height inches, and moves it.
     """
@@ -123,10 +172,14 @@ class Stage:
     times: np.ndarray
     figure: plt.Figure
 
-    def _lay_out(self, result: RunResult, width: float, height: float) -> plt.Axes:
+    def _lay_out(self, result: Record, width: float, height: float) -> plt.Axes:
         """The figure with its title and forces; the panel of the body."""
-        self.figure, (self.above, below) = plt.subplots(2, figsize=(width + 2.0, height + 3.2), height_ratios=(height, 1.6),
-                                                        layout="constrained")
+        self.figure, (self.above, below) = plt.subplots(
+            2,
+            figsize=(width + 2.0, height + 3.2),
+            height_ratios=(height, 1.6),
+            layout="constrained",
+        )
         self.figure.suptitle(title(result.scene))
         self._draw_force(below, result.history, per_metre(result.scene))
         return self.above
@@ -135,7 +188,11 @@ class Stage:
         """Normal force, and friction force where there is any [kN/m], over the time of the film."""
         inside = history["t"] >= self.times[0]
         self.t = 1e3 * history["t"][inside]
-        forces = {"normal": BLUE, "friction": ORANGE} if history["friction_force"].any() else {"normal": BLUE}
+        forces = (
+            {"normal": BLUE, "friction": ORANGE}
+            if history["friction_force"].any()
+            else {"normal": BLUE}
+        )
         self.forces = {name: 1e-3 * history[f"{name}_force"][inside] for name in forces}
         axes.axhline(0, color=GREY, linewidth=0.6)
         for name, colour in forces.items():
@@ -143,7 +200,10 @@ class Stage:
         axes.margins(x=0.005)
         axes.set(xlabel="time [ms]", ylabel=f"contact force [kN{per}]")
         self.now = axes.axvline(self.t[0], color=BLACK, linewidth=0.8)
-        self.dots = {name: axes.plot([], [], "o", color=colour, markersize=5, clip_on=False)[0] for name, colour in forces.items()}
+        self.dots = {
+            name: axes.plot([], [], "o", color=colour, markersize=5, clip_on=False)[0]
+            for name, colour in forces.items()
+        }
         if len(forces) > 1:
             legend(axes, loc="lower right", bbox_to_anchor=(1, 1), ncols=2, borderaxespad=0)
 
@@ -163,24 +223,36 @@ class Stage:
 
 
 class PlaneStage(Stage):
-    """A body in the plane, or the cut of one in three dimensions with the plane z = 0, among its obstacles."""
+    """A body in the plane, or the cut of one in three dimensions with the plane z = 0, among
+    its obstacles.
+    """
 
-    def __init__(self, result: RunResult, motion: Motion):
+    def __init__(self, result: Record, motion: Motion):
         self.motion, self.times = motion, motion.times
         view = left, right, floor, top = bodies.limits(motion.bodies)
-        width = min(6.0, 4.8 * (right - left) / (top - floor))      # [inch]
+        width = min(6.0, 4.8 * (right - left) / (top - floor))  # [inch]
         self._lay_out(result, width, width * (top - floor) / (right - left))
         self.view, self.rigid = view, bodies.obstacles_of(result.scene)
         self.drawn = bodies.draw_obstacles(self.above, self.rigid, view, motion.times[0])
-        self.above.set(xlim=(left, right), ylim=(floor, top), aspect="equal", xlabel="x [m]", ylabel="y [m]")
-        self.largest = np.quantile([body.stress for body in motion.bodies], 0.999) or 1.0   # one spot does not darken all the rest
+        self.above.set(
+            xlim=(left, right), ylim=(floor, top), aspect="equal", xlabel="x [m]", ylabel="y [m]"
+        )
+        self.largest = (
+            np.quantile([body.stress for body in motion.bodies], 0.999) or 1.0
+        )  # one spot does not darken all the rest
         self.picture = draw_body(self.above, motion.bodies[0], (0, self.largest))
-        self.figure.colorbar(self.picture, ax=self.above, label=STRESS, extend="max", aspect=30, pad=0.02)
+        self.figure.colorbar(
+            self.picture, ax=self.above, label=STRESS, extend="max", aspect=30, pad=0.02
+        )
         self.marks = []
-        if motion.diameters is not None:   # shows how the body turns
+        if motion.diameters is not None:  # shows how the body turns
             outlined = [withStroke(linewidth=2.5, foreground=BLACK)]
-            self.marks = [self.above.plot([], [], color="white", linewidth=1.2, path_effects=outlined)[0],
-                          self.above.plot([], [], color="white", marker="o", markersize=5, markeredgecolor=BLACK)[0]]
+            self.marks = [
+                self.above.plot([], [], color="white", linewidth=1.2, path_effects=outlined)[0],
+                self.above.plot(
+                    [], [], color="white", marker="o", markersize=5, markeredgecolor=BLACK
+                )[0],
+            ]
         self._settle()
 
     def _move(self, t: float) -> None:
@@ -197,20 +269,29 @@ class PlaneStage(Stage):
 
 
 class SolidStage(Stage):
-    """A body in three dimensions: cut open, with its stress, and beside it from below, with the contact pressure."""
+    """A body in three dimensions: cut open, with its stress, and beside it from below, with the
+    contact pressure.
+    """
 
-    def __init__(self, result: RunResult, views: solid.Views):
+    def __init__(self, result: Record, views: solid.Views):
         self.views, self.times = views, views.times
         width, height = 7.2, 7.2 / 2 * solid.PIXELS[1] / solid.PIXELS[0]
         panel = self._lay_out(result, width, height)
         panel.set_axis_off()
         self.pictures = []
-        for k, (image, (colours, label)) in enumerate(zip(views.render(views.sights[0]), solid.bars(views))):
+        for k, (image, (colours, label)) in enumerate(
+            zip(views.render(views.sights[0]), solid.bars(views))
+        ):
             axes = panel.inset_axes((0.5 * k, 0, 0.5, 1))
             axes.set_axis_off()
             self.pictures.append(axes.imshow(image, interpolation="antialiased"))
-            self.figure.colorbar(colours, cax=panel.inset_axes((0.5 * k + 0.08, -0.05, 0.34, 0.03)), label=label, orientation="horizontal",
-                                 extend="max")
+            self.figure.colorbar(
+                colours,
+                cax=panel.inset_axes((0.5 * k + 0.08, -0.05, 0.34, 0.03)),
+                label=label,
+                orientation="horizontal",
+                extend="max",
+            )
         self._settle()
 
     def _move(self, t: float) -> None:
@@ -218,8 +299,18 @@ class SolidStage(Stage):
             picture.set_data(image)
 
 
-def of(result: RunResult) -> Stage:
+def of(result: Record) -> Stage:
     series = vtu.series(result.folder / "fields.pvd")
-    if series and vtu.read_solid(series[0][1]) and (result.folder / "fields/contact.csv").exists() and not solid.missing():
+    if (
+        series
+        and vtu.read_solid(series[0][1])
+        and (result.folder / "fields/contact.csv").exists()
+        and not solid.missing()
+    ):
         return SolidStage(result, solid.Views(series, contact.read(result.folder), result.scene))
-    return PlaneStage(result, Motion(result.folder / "fields.pvd", is_half(result.scene), len(suffixes(result.history)) > 1))
+    return PlaneStage(
+        result,
+        Motion(
+            result.folder / "fields.pvd", is_half(result.scene), len(suffixes(result.history)) > 1
+        ),
+    )

@@ -1,5 +1,7 @@
-"""Pictures of a body in three dimensions: cut open, with the von Mises stress, and from below, with the contact pressure. They are rendered
-by PyVista, where it is installed (INSTALL). The arrays that they are drawn from need it not."""
+"""Pictures of a body in three dimensions: cut open, with the von Mises stress, and from below, with
+the contact pressure. They are rendered by PyVista, where it is installed (INSTALL). The arrays that
+they are drawn from need it not.
+"""
 
 import os
 import subprocess
@@ -19,70 +21,111 @@ from .contact import PRESSURE
 from .figures import STRESS, evenly, plt
 
 __all__ = [
-    "AXES", "INSTALL", "PIXELS", "Pressure", "Sight", "Views", "bars", "draw", "in_front",
-    "missing", "skin", "whole",
+    "AXES",
+    "INSTALL",
+    "PIXELS",
+    "Pressure",
+    "Sight",
+    "Views",
+    "bars",
+    "draw",
+    "in_front",
+    "missing",
+    "skin",
+    "whole",
 ]
 
 INSTALL = f"{shown(Path(sys.executable))} -m pip install pyvista vtk"
-PROBE = ("import pyvista; p = pyvista.Plotter(off_screen=True, window_size=(8, 8)); p.add_mesh(pyvista.Sphere()); "
-         "p.screenshot(None, return_img=True)")
-INSTANTS = 4               # of the picture at most
-FINE = 4                   # parts of the side of a face
-PIXELS = (700, 620)        # of a view
+PROBE = (
+    "import pyvista; p = pyvista.Plotter(off_screen=True, window_size=(8, 8)); p.add_mesh(pyvista.Sphere()); "
+    "p.screenshot(None, return_img=True)"
+)
+INSTANTS = 4  # of the picture at most
+FINE = 4  # parts of the side of a face
+PIXELS = (700, 620)  # of a view
 COLOURS = {"stress": "viridis", "pressure": "YlOrRd"}
 GROUND = "#d0d0d0"
-GRID = 60                  # points along each side of the box in which an obstacle's surface is looked for
-AXES = {"quarter": (0, 2), "half": (2,)}       # of a symmetric body: along which the computed part has a mirror image
+GRID = 60  # points along each side of the box in which an obstacle's surface is looked for
+AXES = {
+    "quarter": (0, 2),
+    "half": (2,),
+}  # of a symmetric body: along which the computed part has a mirror image
 
 
 @cache
 def missing() -> str:
-    """Why nothing can be rendered here; empty where it can. Asked of another process: where there is no OpenGL at all VTK crashes."""
+    """Why nothing can be rendered here; empty where it can. Asked of another process: where
+    there is no OpenGL at all VTK crashes.
+    """
     if not os.environ.get("DISPLAY"):
-        os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")   # off-screen, without a look for a screen
+        os.environ.setdefault(
+            "VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow"
+        )  # off-screen, without a look for a screen
     try:
-        probe = subprocess.run([sys.executable, "-c", PROBE], capture_output=True, text=True, timeout=120)
+        probe = subprocess.run(
+            [sys.executable, "-c", PROBE], capture_output=True, text=True, timeout=120
+        )
     except (OSError, subprocess.TimeoutExpired) as error:
         return f"PyVista cannot render here: {type(error).__name__}"
     if "ModuleNotFoundError" in probe.stderr:
         return f"PyVista is not installed ({INSTALL})"
-    return "" if probe.returncode == 0 else "PyVista cannot render here: it needs EGL or a screen (apt-get install libegl1)"
+    return (
+        ""
+        if probe.returncode == 0
+        else "PyVista cannot render here: it needs EGL or a screen (apt-get install libegl1)"
+    )
 
 
 # ---- the surface
 
+
 def skin(tetrahedra: np.ndarray) -> vtu.Skin:
     """The faces that bound quadratic tetrahedra."""
     faces = tetrahedra[:, vtu.FACES].reshape(-1, 6)
-    _, first, count = np.unique(np.sort(faces[:, :3], axis=1), axis=0, return_index=True, return_counts=True)
+    _, first, count = np.unique(
+        np.sort(faces[:, :3], axis=1), axis=0, return_index=True, return_counts=True
+    )
     return vtu.split(faces[first[count == 1]].tobytes(), FINE)
 
 
 def whole(solid: vtu.Solid, axes: tuple[int, ...]) -> vtu.Solid:
-    """The body of which the part where the coordinates `axes` are positive was computed, of one mesh with its mirror images."""
+    """The body of which the part where the coordinates `axes` are positive was computed, of one
+    mesh with its mirror images.
+    """
     for axis in axes:
         points, n = solid.points, len(solid.points)
         on_plane = np.abs(points[:, axis]) < 1e-9 * np.ptp(points, axis=0).max()
         twin = np.where(on_plane, np.arange(n), n + np.cumsum(~on_plane) - 1)
         flip = np.where(np.arange(3) == axis, -1.0, 1.0)
-        both = lambda field, sign=1.0: np.concatenate([field, sign * field[~on_plane]])   # noqa: B023, E731
-        fields = {"displacement": both(solid.fields["displacement"], flip), "von_mises": both(solid.fields["von_mises"])}
-        solid = vtu.Solid(both(points, flip), np.vstack([solid.tetrahedra, twin[solid.tetrahedra]]), fields)
+        both = lambda field, sign=1.0: np.concatenate([field, sign * field[~on_plane]])  # noqa: B023, E731
+        fields = {
+            "displacement": both(solid.fields["displacement"], flip),
+            "von_mises": both(solid.fields["von_mises"]),
+        }
+        solid = vtu.Solid(
+            both(points, flip), np.vstack([solid.tetrahedra, twin[solid.tetrahedra]]), fields
+        )
     return solid
 
 
 def in_front(solid: vtu.Solid, axes: tuple[int, ...]) -> np.ndarray:
-    """Which tetrahedra (t,) are taken away to look into the body: those before z = 0, of a quarter's mirror images one."""
+    """Which tetrahedra (t,) are taken away to look into the body: those before z = 0, of a
+    quarter's mirror images one.
+    """
     middle = solid.points[solid.tetrahedra[:, :4]].mean(axis=1)
     return (middle[:, 2] > 0) & ((middle[:, 0] > 0) | (0 not in axes))
 
 
 # ---- the pressure on it
 
+
 class Pressure:
-    """The pressure (m,) [Pa] at the vertices (m, 3) of a skin in the reference configuration: the mean of the points of contact nearby,
-    weighted with their area A and exp(-(distance/h)^2), h^2 the largest A. Points that bear no load at the time have none, and where points
-    that ever bear some fill less than all of the neighbourhood, of radius 2 h, the rest of it has none: the force is kept."""
+    """The pressure (m,) [Pa] at the vertices (m, 3) of a skin in the reference configuration:
+    the mean of the points of contact nearby, weighted with their area A and
+    exp(-(distance/h)^2), h^2 the largest A. Points that bear no load at the time have none, and
+    where points that ever bear some fill less than all of the neighbourhood, of radius 2 h, the
+    rest of it has none: the force is kept.
+    """
 
     def __init__(self, table: np.recarray, axes: tuple[int, ...], vertices: np.ndarray):
         self.table, self.largest = table, float(table.pressure.max()) if len(table) else 0.0
@@ -100,7 +143,9 @@ class Pressure:
             self.near = ((vertices > low) & (vertices < high)).all(axis=1)
             square = ((vertices[self.near, None] - known) ** 2).sum(axis=2) / h**2
             weight = np.where(square < 4, np.exp(-square), 0) * shares
-            self.share = weight / np.maximum(weight.sum(axis=1, keepdims=True), np.pi * h**2 * (1 - np.exp(-4)))
+            self.share = weight / np.maximum(
+                weight.sum(axis=1, keepdims=True), np.pi * h**2 * (1 - np.exp(-4))
+            )
 
     def at(self, t: float) -> np.ndarray:
         now = self.table[self.table.t == self._instant(t)]
@@ -111,18 +156,26 @@ class Pressure:
         return found
 
     def _instant(self, t: float) -> float:
-        """The time of the table that is `t` to the digits that are written; nan where no point bears load then."""
+        """The time of the table that is `t` to the digits that are written; nan where no
+        point bears load then.
+        """
         times = np.unique(self.table.t)
         nearest = times[np.abs(times - t).argmin()] if len(times) else np.nan
-        return nearest if abs(nearest - t) <= 1e-6 * max(abs(t), np.ptp(times) if len(times) else 0) else np.nan
+        return (
+            nearest
+            if abs(nearest - t) <= 1e-6 * max(abs(t), np.ptp(times) if len(times) else 0)
+            else np.nan
+        )
 
 
 # ---- the views
 
+
 @dataclass(frozen=True)
 class Sight:
-    """What is seen at an instant t [s]: vertices (m, 3) [m] and von Mises stress [MPa] of the cut body, vertices and pressure [MPa] of all
-    of it."""
+    """What is seen at an instant t [s]: vertices (m, 3) [m] and von Mises stress [MPa] of the
+    cut body, vertices and pressure [MPa] of all of it.
+    """
 
     t: float
     cut: np.ndarray
@@ -132,10 +185,14 @@ class Sight:
 
 
 class Views:
-    """The snapshots `series` of a body in three dimensions, rendered. `times` [s]; `stress`, `pressure`: the largest that is drawn [MPa];
-    `loaded`: at which snapshots the body is touched."""
+    """The snapshots `series` of a body in three dimensions, rendered. `times` [s]; `stress`,
+    `pressure`: the largest that is drawn [MPa]; `loaded`: at which snapshots the body is
+    touched.
+    """
 
-    def __init__(self, series: list[tuple[float, Path]], table: np.recarray, scene: dict[str, Value]):
+    def __init__(
+        self, series: list[tuple[float, Path]], table: np.recarray, scene: dict[str, Value]
+    ):
         axes = AXES.get(scene.get("symmetry"), ())
         solids = [whole(vtu.read_solid(path), axes) for _, path in series]
         points, tetrahedra = solids[0].points, solids[0].tetrahedra
@@ -143,46 +200,116 @@ class Views:
         self.times = np.array([t for t, _ in series])
         self.rigid = obstacles_of(scene)
         pressure = Pressure(table, axes, self.outside.at(points))
-        self.sights = [self._sight(t, solid, pressure.at(t)) for t, solid in zip(self.times, solids)]
-        self.stress = float(np.quantile([sight.stress for sight in self.sights], 0.999)) or 1.0    # one spot does not darken all the rest
+        self.sights = [
+            self._sight(t, solid, pressure.at(t)) for t, solid in zip(self.times, solids)
+        ]
+        self.stress = (
+            float(np.quantile([sight.stress for sight in self.sights], 0.999)) or 1.0
+        )  # one spot does not darken all the rest
         self.pressure = max(float(sight.pressure.max()) for sight in self.sights) or 1.0
-        self.loaded = [k for k, sight in enumerate(self.sights) if sight.pressure.max() > 0.05 * self.pressure]
-        self.towards = (0.75, 0.42, 1.0) if 0 in axes else (0.3, 0.3, 1.0)     # the eye
-        ends = np.array([[sight.outside.min(axis=0), sight.outside.max(axis=0)] for sight in self.sights])
+        self.loaded = [
+            k for k, sight in enumerate(self.sights) if sight.pressure.max() > 0.05 * self.pressure
+        ]
+        self.towards = (0.75, 0.42, 1.0) if 0 in axes else (0.3, 0.3, 1.0)  # the eye
+        ends = np.array(
+            [[sight.outside.min(axis=0), sight.outside.max(axis=0)] for sight in self.sights]
+        )
         self.low, self.high = ends[:, 0].min(axis=0), ends[:, 1].max(axis=0)
 
     def _sight(self, t: float, solid: vtu.Solid, pressure: np.ndarray) -> Sight:
         place = solid.points + solid.fields["displacement"]
-        return Sight(t, self.cut.at(place), 1e-6 * self.cut.at(solid.fields["von_mises"]), self.outside.at(place), 1e-6 * pressure)
+        return Sight(
+            t,
+            self.cut.at(place),
+            1e-6 * self.cut.at(solid.fields["von_mises"]),
+            self.outside.at(place),
+            1e-6 * pressure,
+        )
 
     def at(self, t: float) -> Sight:
         """What is seen at the time t [s], between two snapshots linear in time."""
-        return Sight(*(vtu.between(self.times, [getattr(sight, name) for sight in self.sights], t) for name in Sight.__dataclass_fields__))
+        return Sight(
+            *(
+                vtu.between(self.times, [getattr(sight, name) for sight in self.sights], t)
+                for name in Sight.__dataclass_fields__
+            )
+        )
 
     def render(self, sight: Sight) -> tuple[np.ndarray, np.ndarray]:
-        """Both views as images (height, width, 3): the cut body from the front, all of it from below, through the obstacles."""
-        return (self._image(sight.cut, self.cut.triangles, sight.stress, self.stress, COLOURS["stress"], self.towards, sight.t),
-                self._image(sight.outside, self.outside.triangles, sight.pressure, self.pressure, COLOURS["pressure"],
-                            (0.25, -1.0, 0.55), None))
+        """Both views as images (height, width, 3): the cut body from the front, all of it
+        from below, through the obstacles.
+        """
+        return (
+            self._image(
+                sight.cut,
+                self.cut.triangles,
+                sight.stress,
+                self.stress,
+                COLOURS["stress"],
+                self.towards,
+                sight.t,
+            ),
+            self._image(
+                sight.outside,
+                self.outside.triangles,
+                sight.pressure,
+                self.pressure,
+                COLOURS["pressure"],
+                (0.25, -1.0, 0.55),
+                None,
+            ),
+        )
 
-    def _image(self, vertices: np.ndarray, triangles: np.ndarray, values: np.ndarray, largest: float, colours: str,
-               towards: tuple[float, float, float], t: float | None) -> np.ndarray:
+    def _image(
+        self,
+        vertices: np.ndarray,
+        triangles: np.ndarray,
+        values: np.ndarray,
+        largest: float,
+        colours: str,
+        towards: tuple[float, float, float],
+        t: float | None,
+    ) -> np.ndarray:
         import pyvista
+
         plotter = pyvista.Plotter(off_screen=True, window_size=PIXELS)
         try:
-            surface = pyvista.PolyData(vertices, np.column_stack([np.full(len(triangles), 3), triangles]).ravel())
+            surface = pyvista.PolyData(
+                vertices, np.column_stack([np.full(len(triangles), 3), triangles]).ravel()
+            )
             surface.point_data["value"] = values
-            plotter.add_mesh(surface, scalars="value", cmap=colours, clim=(0, largest), show_scalar_bar=False, smooth_shading=True,
-                             split_sharp_edges=True, feature_angle=40, ambient=0.45, diffuse=0.55)
+            plotter.add_mesh(
+                surface,
+                scalars="value",
+                cmap=colours,
+                clim=(0, largest),
+                show_scalar_bar=False,
+                smooth_shading=True,
+                split_sharp_edges=True,
+                feature_angle=40,
+                ambient=0.45,
+                diffuse=0.55,
+            )
             centre, size = (self.low + self.high) / 2, self.high - self.low
             for one in self.rigid if t is not None else []:
                 low, span = self.low - 0.08 * size.max(), size + 0.16 * size.max()
-                box = pyvista.ImageData(dimensions=(GRID,) * 3, origin=low, spacing=span / (GRID - 1))
+                box = pyvista.ImageData(
+                    dimensions=(GRID,) * 3, origin=low, spacing=span / (GRID - 1)
+                )
                 gap = one.gap(box.points - one.velocity * t)
                 if gap.min() < 0 < gap.max():
-                    plotter.add_mesh(box.contour([0.0], scalars=gap), color=GROUND, opacity=0.5, lighting=one.kind != "plane",
-                                     show_scalar_bar=False)
-            plotter.camera_position = [centre + 10 * np.linalg.norm(size) * np.array(towards) / np.linalg.norm(towards), centre, (0, 1, 0)]
+                    plotter.add_mesh(
+                        box.contour([0.0], scalars=gap),
+                        color=GROUND,
+                        opacity=0.5,
+                        lighting=one.kind != "plane",
+                        show_scalar_bar=False,
+                    )
+            plotter.camera_position = [
+                centre + 10 * np.linalg.norm(size) * np.array(towards) / np.linalg.norm(towards),
+                centre,
+                (0, 1, 0),
+            ]
             plotter.enable_parallel_projection()
             plotter.camera.parallel_scale = 0.38 * np.linalg.norm(size)
             plotter.enable_anti_aliasing("ssaa")
@@ -192,14 +319,20 @@ class Views:
             plotter.close()
 
 
-def draw(series: list[tuple[float, Path]], table: np.recarray, scene: dict[str, Value]) -> plt.Figure | None:
-    """The body at up to INSTANTS times at which it is touched: above cut open, with its stress, below from below, with the contact
-    pressure. None of a body in the plane, without contact, and where nothing can be rendered."""
+def draw(
+    series: list[tuple[float, Path]], table: np.recarray, scene: dict[str, Value]
+) -> plt.Figure | None:
+    """The body at up to INSTANTS times at which it is touched: above cut open, with its stress,
+    below from below, with the contact pressure. None of a body in the plane, without contact,
+    and where nothing can be rendered.
+    """
     if not len(table) or vtu.read_solid(series[0][1]) is None or missing():
         return None
     views = Views(series, table, scene)
     picked = evenly(views.loaded or [0], INSTANTS)
-    figure, grid = plt.subplots(2, len(picked), figsize=(2.5 * len(picked) + 0.9, 4.6), squeeze=False, layout="constrained")
+    figure, grid = plt.subplots(
+        2, len(picked), figsize=(2.5 * len(picked) + 0.9, 4.6), squeeze=False, layout="constrained"
+    )
     for column, k in zip(grid.T, picked):
         for axes, image in zip(column, views.render(views.sights[k])):
             axes.imshow(image)
@@ -212,5 +345,10 @@ def draw(series: list[tuple[float, Path]], table: np.recarray, scene: dict[str, 
 
 def bars(views: Views) -> list[tuple[ScalarMappable, str]]:
     """Colours and label of the stress and of the pressure."""
-    return [(ScalarMappable(plt.Normalize(0, largest), COLOURS[name]), label)
-            for name, largest, label in (("stress", views.stress, STRESS), ("pressure", views.pressure, PRESSURE))]
+    return [
+        (ScalarMappable(plt.Normalize(0, largest), COLOURS[name]), label)
+        for name, largest, label in (
+            ("stress", views.stress, STRESS),
+            ("pressure", views.pressure, PRESSURE),
+        )
+    ]

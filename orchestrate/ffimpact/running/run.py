@@ -1,7 +1,8 @@
 """One scene, one run, one folder: the run contract.
 
-A run that failed leaves its files for a look (log.txt, history.csv, scene.toml, failure.json), in DIR, or in DIR.failed where DIR holds an
-earlier finished run, which is not lost. How a folder is made, locked and put in its place: folder.py.
+A run that failed leaves its files for a look (log.txt, history.csv, scene.toml, failure.json), in
+DIR, or in DIR.failed where DIR holds an earlier finished run, which is not lost. How a folder is
+made, locked and put in its place: folder.py.
 """
 
 import hashlib
@@ -21,8 +22,7 @@ from ..freefem import freefem
 from ..input.parameters import Value
 from ..input.toml_text import to_toml
 from ..mesh import gmsh_file, mesh
-from ..output import estimate as estimates
-from ..output import notes
+from ..output import estimate as estimates, notes
 from ..output.folder import (
     checkpoints,
     clear,
@@ -34,7 +34,7 @@ from ..output.folder import (
     unfinished,
 )
 from ..output.results import (
-    RunResult,
+    Record,
     check_files,
     files_of,
     read_answers,
@@ -51,26 +51,44 @@ from .solver import FAILURES, USED, Solver, runs
 
 __all__ = ["ENTRANCE", "HARMLESS", "code_hash", "commit", "imported", "reusable", "run"]
 
-ENTRANCE = "scenes/assembly"           # the module that makes flags, mesh and scene.dat, with all that it imports
+ENTRANCE = (
+    "scenes/assembly"  # the module that makes flags, mesh and scene.dat, with all that it imports
+)
 # of these: what asks, starts, says and reads, and does not decide a result
 HARMLESS = {"failure", "places", "freefem/describe", "freefem/freefem"}
-ESTIMATING = ("output/estimate", "output/notes", "output/results", "scenes/finer")   # what decides the stated errors besides
+ESTIMATING = (
+    "output/estimate",
+    "output/notes",
+    "output/results",
+    "scenes/finer",
+)  # what decides the stated errors besides
 
 
-def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | str | None = None, *,
-        mesh_file: Path | str | None = None, force: bool = False, progress: bool | None = None, estimate: bool = True) -> RunResult:
-    """Runs `scene` with some parameters overridden in the folder `out` (default results/<scene>), or reuses it.
+def run(
+    scene: Scene,
+    overrides: dict[str, Value] | None = None,
+    out: Path | str | None = None,
+    *,
+    mesh_file: Path | str | None = None,
+    force: bool = False,
+    progress: bool | None = None,
+    estimate: bool = True,
+) -> Record:
+    """Runs `scene` with some parameters overridden in the folder `out` (default
+    results/<scene>), or reuses it.
 
-    Raises Failure with the exit code of the run contract. `force` runs again, from the start, even if the folder is up to date; else a run
-    that was killed goes on from its last checkpoint. `progress`: whether a line shows how far it is (None: on a terminal, in a notebook).
-    With `estimate` a second, coarser run estimates the error, and finer ones follow until it is below the accuracy (estimate.py).
+    Raises Failure with the exit code of the run contract. `force` runs again, from the start,
+    even if the folder is up to date; else a run that was killed goes on from its last
+    checkpoint. `progress`: whether a line shows how far it is (None: on a terminal, in a
+    notebook). With `estimate` a second, coarser run estimates the error, and finer ones follow
+    until it is below the accuracy (estimate.py).
     """
     started = time.monotonic()
     scene = scene.override(_sizes_left_to(mesh_file, scene) | (overrides or {}))
     folder = result_folder(Path(out or RESULTS / scene.name))
     mesh_file = mesh_file and _mesh_path(Path(mesh_file))
     foreign = gmsh_file.load(mesh_file, alone=True) if mesh_file else None
-    scene.description(foreign, mesh_file)   # BadInput before anything is made
+    scene.description(foreign, mesh_file)  # BadInput before anything is made
     finished = finished_in(folder, force)
     if not force and (there := reusable(scene, folder, mesh_file, estimate)):
         return there
@@ -79,10 +97,17 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | str
     if scene.meshed and not foreign:
         mesh.start_gmsh()
     with Line(scene.name, runs(estimate), progress) as line, staging(folder) as (stage, lock):
-        if not force and (there := reusable(scene, folder, mesh_file, estimate)):   # another run has finished it meanwhile
+        if not force and (
+            there := reusable(scene, folder, mesh_file, estimate)
+        ):  # another run has finished it meanwhile
             return there
-        provenance = {"script": scene.script, "version": __version__, "code": code_hash(), "freefem": program.version,
-                      "gmsh": _gmsh(scene, mesh_file)}
+        provenance = {
+            "script": scene.script,
+            "version": __version__,
+            "code": code_hash(),
+            "freefem": program.version,
+            "gmsh": _gmsh(scene, mesh_file),
+        }
         asked_for = {"asked": scene.asked, "estimate": estimate and _hash(ESTIMATING)}
         asked = asked_for | provenance | {"mesh": mesh_file and _sha256(mesh_file)}
         if force or unfinished(stage) != asked:
@@ -90,47 +115,79 @@ def run(scene: Scene, overrides: dict[str, Value] | None = None, out: Path | str
             write_json(stage / "checkpoint.json", asked)
 
         try:
-            with Solver(program, scene, mesh_file, foreign, stage, lock, line, pair=estimate) as solve:
+            with Solver(
+                program, scene, mesh_file, foreign, stage, lock, line, pair=estimate
+            ) as solve:
                 solve({}, stage)
-                settled = stage, scene.values | scene.sizes, solve.own_mesh, solve, read_answers, solve.scaled
+                settled = (
+                    stage,
+                    scene.values | scene.sizes,
+                    solve.own_mesh,
+                    solve,
+                    read_answers,
+                    solve.scaled,
+                )
                 found = estimates.settle(*settled) if estimate else {}
         except Failure as failure:
-            if checkpoints(stage):   # a script that comes to its end, good or bad, removes it
+            if checkpoints(stage):  # a script that comes to its end, good or bad, removes it
                 failure.folder = stage
-            elif failure.code not in (TooLong.code, BadInput.code, Unreadable.code):   # these leave nothing behind
+            elif failure.code not in (
+                TooLong.code,
+                BadInput.code,
+                Unreadable.code,
+            ):  # these leave nothing behind
                 failure.folder = failed_beside(folder) if finished else folder
                 _keep_failed(stage, failure, scene, provenance | asked_for)
                 _put(stage, failure.folder, scene, mesh_file)
             raise
-        provenance |= asked_for | {"git": commit(), "mesh": _sha256(mesh_file or stage / scene.mesh_name) if scene.meshed else None}
+        provenance |= asked_for | {
+            "git": commit(),
+            "mesh": _sha256(mesh_file or stage / scene.mesh_name) if scene.meshed else None,
+        }
         _tell_accuracy(stage / "scene.toml", scene.values["accuracy"])
         _finish(stage, scene, found | {"total_seconds": time.monotonic() - started}, provenance)
         _put(stage, folder, scene, mesh_file)
-    return RunResult(folder, read_summary(folder), reused=False)
+    return Record(folder, read_summary(folder), reused=False)
 
 
 def _put(stage: Path, folder: Path, scene: Scene, mesh_file: Path | None) -> None:
-    """In its place; the log names the folder that the run ends up in, not the one it was made in."""
+    """In its place; the log names the folder that the run ends up in, not the one it was made
+    in.
+    """
     log = stage / "log.txt"
     log.write_text(log.read_text(errors="replace").replace(str(stage), str(shown(folder))))
     replace(stage, folder, _same_scene(folder, scene, mesh_file))
 
 
 def _tell_accuracy(path: Path, asked: float) -> None:
-    """scene.toml says what was asked for beside the accuracy as used, where finer runs were made for it."""
+    """scene.toml says what was asked for beside the accuracy as used, where finer runs were
+    made for it.
+    """
     used = read_scene(path.parent)["accuracy"]
     if not math.isclose(used, asked):
         why = f"   # asked for: {asked:g}; this one, with the sizes of mesh and steps, for the estimated error\n"
-        path.write_text(re.sub(r"(?m)^(accuracy = \S+)\n", rf"\1{why}", path.read_text("utf-8"), count=1), "utf-8")
+        path.write_text(
+            re.sub(r"(?m)^(accuracy = \S+)\n", rf"\1{why}", path.read_text("utf-8"), count=1),
+            "utf-8",
+        )
 
 
 def _finish(stage: Path, scene: Scene, found: dict, provenance: dict) -> None:
     """The summary with what was `found` beside the run and its provenance, last and by rename."""
     summary = read_summary(stage)
-    found |= notes.settled(*(summary.get(kind, []) + found.get(kind, []) for kind in ("warnings", "notes")))
-    found["skipped"] = found.get("skipped", []) + [name for name in summary["skipped"] if name != "error estimate"
-                                                   or not found.get("estimated_error")]
-    summary |= {"estimated_error": None, "released": list(scene.released)} | found | {"provenance": provenance | {"files": files_of(stage)}}
+    found |= notes.settled(
+        *(summary.get(kind, []) + found.get(kind, []) for kind in ("warnings", "notes"))
+    )
+    found["skipped"] = found.get("skipped", []) + [
+        name
+        for name in summary["skipped"]
+        if name != "error estimate" or not found.get("estimated_error")
+    ]
+    summary |= (
+        {"estimated_error": None, "released": list(scene.released)}
+        | found
+        | {"provenance": provenance | {"files": files_of(stage)}}
+    )
     (stage / "summary.json").unlink()
     write_json(stage / "summary.json.part", summary)
     os.replace(stage / "summary.json.part", stage / "summary.json")
@@ -140,40 +197,67 @@ def _keep_failed(stage: Path, failure: Failure, scene: Scene, provenance: dict) 
     """failure.json: the one the script wrote, or what is known; never a summary.json."""
     (stage / "summary.json").unlink(missing_ok=True)
     if not (stage / "scene.toml").exists():
-        (stage / USED).exists() or (stage / USED).write_text(to_toml(scene.with_files_in(stage, scene.given)), "utf-8")
+        (stage / USED).exists() or (stage / USED).write_text(
+            to_toml(scene.with_files_in(stage, scene.given)), "utf-8"
+        )
         os.replace(stage / USED, stage / "scene.toml")
-    record = {"status": FAILURES.get(failure.code, "crashed"), "message": str(failure)} | read_json(stage / "failure.json")
-    write_json(stage / "failure.json", record | {"exit_code": failure.code, "provenance": provenance})
+    record = {"status": FAILURES.get(failure.code, "crashed"), "message": str(failure)} | read_json(
+        stage / "failure.json"
+    )
+    write_json(
+        stage / "failure.json", record | {"exit_code": failure.code, "provenance": provenance}
+    )
 
 
 # ---- reuse
 
-def reusable(scene: Scene, folder: Path, mesh_file: Path | None = None, estimate: bool = False) -> RunResult | None:
-    """The finished run in `folder` if it is of this very scene, mesh and code, with an estimate of its error where that is asked for,
-    else None; Unreadable if it is not ours."""
+
+def reusable(
+    scene: Scene, folder: Path, mesh_file: Path | None = None, estimate: bool = False
+) -> Record | None:
+    """The finished run in `folder` if it is of this very scene, mesh and code, with an estimate
+    of its error where that is asked for, else None; Unreadable if it is not ours.
+    """
     summary = finished_in(folder, force=False)
-    same = (summary and (folder / "history.csv").exists() and summary.get("provenance", {}).get("code") == code_hash()
-            and (summary["provenance"].get("estimate") == _hash(ESTIMATING) or not estimate) and read_scene(folder)
-            and _same_scene(folder, scene, mesh_file))
+    same = (
+        summary
+        and (folder / "history.csv").exists()
+        and summary.get("provenance", {}).get("code") == code_hash()
+        and (summary["provenance"].get("estimate") == _hash(ESTIMATING) or not estimate)
+        and read_scene(folder)
+        and _same_scene(folder, scene, mesh_file)
+    )
     if same:
         check_files(folder)
-    return RunResult(folder, summary, reused=True) if same else None
+    return Record(folder, summary, reused=True) if same else None
 
 
 def code_hash() -> str:
-    """sha256 over what decides a result besides the scene: the FreeFEM scripts, their kernels and what makes meshes and scene.dat."""
-    return _hash(sorted(imported(ENTRANCE) - HARMLESS),
-                 sorted(path for path in (ROOT / "edp").rglob("*") if path.suffix in (".edp", ".idp", ".hpp", ".cpp")))
+    """sha256 over what decides a result besides the scene: the FreeFEM scripts, their kernels
+    and what makes meshes and scene.dat.
+    """
+    return _hash(
+        sorted(imported(ENTRANCE) - HARMLESS),
+        sorted(
+            path
+            for path in (ROOT / "edp").rglob("*")
+            if path.suffix in (".edp", ".idp", ".hpp", ".cpp")
+        ),
+    )
 
 
 @cache
 def imported(name: str, package: Path = PACKAGE) -> set[str]:
-    """A module of the package and those of it that it imports, wherever in it, or they do: as their paths in the package, without .py."""
+    """A module of the package and those of it that it imports, wherever in it, or they do: as
+    their paths in the package, without .py.
+    """
     found, open_ones = set(), {name}
     while open_ones:
         found.add(module := open_ones.pop())
-        for dots, source, listed in re.findall(r"(?m)^\s*from (\.+)([\w.]*) import (\([^)]*\)|.*)",
-                                               (package / f"{module}.py").read_text("utf-8")):
+        for dots, source, listed in re.findall(
+            r"(?m)^\s*from (\.+)([\w.]*) import (\([^)]*\)|.*)",
+            (package / f"{module}.py").read_text("utf-8"),
+        ):
             room = Path(module).parents[len(dots) - 1] / source.replace(".", "/")
             names = {str(room), *(str(room / name) for name in re.findall(r"\w+", listed))}
             open_ones |= {name for name in names if (package / f"{name}.py").exists()} - found
@@ -182,14 +266,18 @@ def imported(name: str, package: Path = PACKAGE) -> set[str]:
 
 def _hash(modules: Iterable[str], files: Iterable[Path] = ()) -> str:
     digest = hashlib.sha256()
-    named = {path.relative_to(ROOT): path for path in files} | {f"{name}.py": PACKAGE / f"{name}.py" for name in modules}
+    named = {path.relative_to(ROOT): path for path in files} | {
+        f"{name}.py": PACKAGE / f"{name}.py" for name in modules
+    }
     for name, path in named.items():
         digest.update(f"{name}\n".encode() + path.read_bytes())
     return digest.hexdigest()
 
 
 def _same_scene(folder: Path, scene: Scene, mesh_file: Path | None) -> bool:
-    """Whether the run in `folder`, finished or failed, is one of this scene on this mesh, by whatever code."""
+    """Whether the run in `folder`, finished or failed, is one of this scene on this mesh, by
+    whatever code.
+    """
     name = "summary.json" if (folder / "summary.json").exists() else "failure.json"
     try:
         provenance = json.loads((folder / name).read_text())["provenance"]
@@ -198,46 +286,60 @@ def _same_scene(folder: Path, scene: Scene, mesh_file: Path | None) -> bool:
         else:
             same_mesh = provenance["gmsh"] == _gmsh(scene, None)
         same_script, asked = provenance["script"] == scene.script, provenance["asked"]
-    except (FileNotFoundError, ValueError, KeyError, TypeError):   # it does not say
+    except (FileNotFoundError, ValueError, KeyError, TypeError):  # it does not say
         return False
     return same_mesh and same_script and asked == scene.asked
 
 
 # ---- the mesh
 
+
 def _sizes_left_to(mesh_file: Path | str | None, scene: Scene) -> dict[str, Value]:
-    """The element sizes of a scene, open where a mesh file has its own: those it fixes are for another
-    mesh."""
+    """The element sizes of a scene, open where a mesh file has its own: those it fixes are for
+    another mesh.
+    """
     return dict.fromkeys(SIZES, 0) if mesh_file and not scene.bodies else {}
 
 
 def _mesh_path(given: Path) -> Path:
     try:
         path = given.resolve()
-        if path.exists() and not path.is_file():   # reading a pipe or a device might never end
+        if path.exists() and not path.is_file():  # reading a pipe or a device might never end
             raise BadInput(f"mesh: {given} is no file")
-    except (OSError, RuntimeError) as error:       # a loop of links, a name too long
-        raise BadInput(f"mesh: {given} cannot be read: {getattr(error, 'strerror', None) or error}") from None
+    except (OSError, RuntimeError) as error:  # a loop of links, a name too long
+        raise BadInput(
+            f"mesh: {given} cannot be read: {getattr(error, 'strerror', None) or error}"
+        ) from None
     return path
 
 
 def _gmsh(scene: Scene, mesh_file: Path | None) -> str | None:
-    """The version of the gmsh that makes the mesh, None where a file or the script itself brings it."""
+    """The version of the gmsh that makes the mesh, None where a file or the script itself
+    brings it.
+    """
     return mesh.start_gmsh().__version__ if scene.meshed and not mesh_file else None
 
 
 # ---- provenance
+
 
 def _sha256(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 def commit(digits: int = 40) -> str:
-    """The commit, with -dirty where the tree differs from it; unknown where the program is installed, in whosever folder."""
+    """The commit, with -dirty where the tree differs from it; unknown where the program is
+    installed, in whosever folder.
+    """
     if INSTALLED:
         return "unknown"
     try:
-        return subprocess.run(["git", "describe", "--always", "--dirty", f"--abbrev={digits}", "--exclude=*"], cwd=ROOT,
-                              capture_output=True, text=True, check=True).stdout.strip()
+        return subprocess.run(
+            ["git", "describe", "--always", "--dirty", f"--abbrev={digits}", "--exclude=*"],
+            cwd=ROOT,
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout.strip()
     except (OSError, subprocess.CalledProcessError):
         return "unknown"

@@ -1,6 +1,8 @@
-"""Where bodies of a scene first touch: they fly as rigid bodies, r = r0 + v t + b t^2 / 2, angle = angle0 + spin t, until the gap closes.
+"""Where bodies of a scene first touch: they fly as rigid bodies, r = r0 + v t + b t^2 / 2, angle =
+angle0 + spin t, until the gap closes.
 
-While the spheres around them are apart time is skipped at once, between roots of polynomials."""
+While the spheres around them are apart time is skipped at once, between roots of polynomials.
+"""
 
 import itertools
 import math
@@ -22,21 +24,30 @@ from .scene import Scene, gap_between
 
 __all__ = ["Meeting", "loaded_pull", "meetings", "refuse_nothing", "refuse_sinking", "turned"]
 
-STEPS = 2000                 # of bodies within reach of each other: what has not met by then is not known to
-# of the smaller thickness: a gap from an obstacle without parts to be within reach of, that is followed no further
+STEPS = 2000  # of bodies within reach of each other: what has not met by then is not known to
+# of the smaller thickness: a gap from an obstacle without parts to be within reach of, that is
+# followed no further
 FAR = 1e9
-RESTITUTION = 0.5            # of a hit that turns bodies: much of it goes to vibration, and they turn while it lasts
-ECCENTRIC = 1e-2             # lever of a hit over the reach of the body that it turns
-MORE = 3                     # touches of two bodies that follow the first one
-MET, CLOSED = 1e-3, 1e-9     # of the smaller thickness: a gap that counts as met, and one that is followed no further
+RESTITUTION = (
+    0.5  # of a hit that turns bodies: much of it goes to vibration, and they turn while it lasts
+)
+ECCENTRIC = 1e-2  # lever of a hit over the reach of the body that it turns
+MORE = 3  # touches of two bodies that follow the first one
+MET, CLOSED = (
+    1e-3,
+    1e-9,
+)  # of the smaller thickness: a gap that counts as met, and one that is followed no further
 
 
 @dataclass(frozen=True)
 class Meeting:
-    """Body `first` and `second` (body k, or -1 - k for obstacle k) when they first touch, or, where they do not, at the start: both as they
-    are then; the parts along and across the normal, positive, of their relative velocity [m/s] and of the constant force between them
-    [m/s2]; the radius that stands for the pair [m]; the time [s], infinite where they do not; the normal, outward of the second; whether as
-    rigid bodies they never meet; the closing speed [m/s] of an impact that presses as much as the motion of a support does."""
+    """Body `first` and `second` (body k, or -1 - k for obstacle k) when they first touch, or,
+    where they do not, at the start: both as they are then; the parts along and across the
+    normal, positive, of their relative velocity [m/s] and of the constant force between them
+    [m/s2]; the radius that stands for the pair [m]; the time [s], infinite where they do not;
+    the normal, outward of the second; whether as rigid bodies they never meet; the closing
+    speed [m/s] of an impact that presses as much as the motion of a support does.
+    """
 
     first: int
     second: int
@@ -52,45 +63,62 @@ class Meeting:
     pressed: float = 0.0
 
     def gaps(self, body: int, points: np.ndarray) -> np.ndarray:
-        """Gaps (n,) from the other one of the points of `body`, as it is at the meeting, for the sizes of elements."""
+        """Gaps (n,) from the other one of the points of `body`, as it is at the meeting,
+        for the sizes of elements.
+        """
         other = self.outlines[1 if body == self.first else 0]
         return other.gap_for_sizes(points) if isinstance(other, Obstacle) else other.gap(points)
 
 
 def meetings(scene: Scene) -> list[Meeting]:
-    """One for each two bodies that may come near each other and each body with each obstacle, and those that follow as a hit turns them."""
-    scene = replace(scene, bodies=[body.carried_along for body in scene.bodies],
-                    obstacles=[one.carried_along for one in scene.obstacles])
+    """One for each two bodies that may come near each other and each body with each obstacle,
+    and those that follow as a hit turns them.
+    """
+    scene = replace(
+        scene,
+        bodies=[body.carried_along for body in scene.bodies],
+        obstacles=[one.carried_along for one in scene.obstacles],
+    )
     obstacles = [-1 - k for k in range(len(scene.obstacles))]
     pairs = [(i, j) for i, others in enumerate(_near(scene)) for j in [*others, *obstacles]]
     return [one for pair in pairs for one in _in_turn(scene, _meeting(scene, *pair))]
 
 
 def _near(scene: Scene) -> list[list[int]]:
-    """Of every body the later ones that it may touch: all but those that pass it by, the spheres around them apart, where nothing turns
-    either from its straight way, or both fall alike."""
-    places, ways = (np.array([getattr(body, name) for body in scene.bodies]) for name in ("position", "velocity"))
+    """Of every body the later ones that it may touch: all but those that pass it by, the
+    spheres around them apart, where nothing turns either from its straight way, or both fall
+    alike.
+    """
+    places, ways = (
+        np.array([getattr(body, name) for body in scene.bodies])
+        for name in ("position", "velocity")
+    )
     reaches = np.array([body.outline.reach for body in scene.bodies])
     free = np.array([not body.driven and not body.supports for body in scene.bodies])
     found = []
     for i in range(len(scene.bodies)):
-        r, v = places[i + 1:] - places[i], ways[i + 1:] - ways[i]
+        r, v = places[i + 1 :] - places[i], ways[i + 1 :] - ways[i]
         speed = np.maximum((v * v).sum(axis=1), np.finfo(float).tiny)
         nearest = r + v * np.maximum(0.0, -(r * v).sum(axis=1) / speed)[:, None]
-        within = np.linalg.norm(nearest, axis=1) <= 1.01 * (reaches[i] + reaches[i + 1:])
-        found.append((i + 1 + np.flatnonzero(within | ~free[i] | ~free[i + 1:])).tolist())
+        within = np.linalg.norm(nearest, axis=1) <= 1.01 * (reaches[i] + reaches[i + 1 :])
+        found.append((i + 1 + np.flatnonzero(within | ~free[i] | ~free[i + 1 :])).tolist())
     return found
 
 
 def _fall(scene: Scene) -> np.ndarray:
     """The acceleration of free bodies [m/s2]."""
     fall = np.zeros(scene.dimension.axes)
-    fall[:2] = scene.values.get("body_force_x", 0.0), scene.values["body_force_y"] - scene.values["gravity"]
+    fall[:2] = (
+        scene.values.get("body_force_x", 0.0),
+        scene.values["body_force_y"] - scene.values["gravity"],
+    )
     return fall
 
 
 def _in_turn(scene: Scene, one: Meeting) -> list[Meeting]:
-    """A meeting, and in the plane those of the same two that follow, where it turns rigid bodies without friction: other corners strike."""
+    """A meeting, and in the plane those of the same two that follow, where it turns rigid
+    bodies without friction: other corners strike.
+    """
     found = [one]
     while scene.dimension is PLANE_STRAIN and len(found) <= MORE and math.isfinite(one.time):
         scene = _rebound(scene, one)
@@ -102,11 +130,15 @@ def _in_turn(scene: Scene, one: Meeting) -> list[Meeting]:
 
 
 def _rebound(scene: Scene, one: Meeting) -> Scene | None:
-    """The bodies of a meeting a little later, when they have parted and nothing pulls them on. None where it does not turn them."""
+    """The bodies of a meeting a little later, when they have parted and nothing pulls them on.
+    None where it does not turn them.
+    """
     n = one.normal
     point = _middle(one)
     fall = _fall(scene) * one.time
-    moves = scene.obstacles[-1 - one.second].velocity if one.second < 0 else np.zeros(len(n))    # of the obstacle, which stays where it is
+    moves = (
+        scene.obstacles[-1 - one.second].velocity if one.second < 0 else np.zeros(len(n))
+    )  # of the obstacle, which stays where it is
     hit, yields, closing = [], 0.0, 0.0
     for sign, k in ((1, one.first), (-1, one.second)):
         if k < 0:
@@ -125,14 +157,23 @@ def _rebound(scene: Scene, one: Meeting) -> Scene | None:
     for sign, k, shape, lever, mass in hit:
         body, push = bodies[k], sign * (1 + RESTITUTION) * closing / yields / mass
         velocity, spin = body.velocity + fall + push * n, body.spin + push * lever / shape.gyration
-        bodies[k] = replace(body, position=shape.area_centre + (velocity - moves) * soon, angle=body.angle + body.spin * one.time
-                            + spin * soon, velocity=velocity, spin=spin)
-    still = {name: 0.0 for name in ("gravity", "body_force_x", "body_force_y") if name in scene.values}
+        bodies[k] = replace(
+            body,
+            position=shape.area_centre + (velocity - moves) * soon,
+            angle=body.angle + body.spin * one.time + spin * soon,
+            velocity=velocity,
+            spin=spin,
+        )
+    still = {
+        name: 0.0 for name in ("gravity", "body_force_x", "body_force_y") if name in scene.values
+    }
     return replace(scene, bodies=bodies, values=scene.values | still)
 
 
 def _middle(one: Meeting) -> np.ndarray:
-    """Where the two bodies of a meeting touch; of a face on another the middle, so that a body set down flat is not turned."""
+    """Where the two bodies of a meeting touch; of a face on another the middle, so that a body
+    set down flat is not turned.
+    """
     points = np.vstack([shape.points for shape in one.outlines if isinstance(shape, Outline)])
     off = np.max([abs(shape.gap(points)) for shape in one.outlines], axis=0)
     along = (points - points[off.argmin()]) @ one.normal
@@ -143,32 +184,67 @@ def _middle(one: Meeting) -> np.ndarray:
 def _meeting(scene: Scene, first: int, second: int) -> Meeting:
     body = scene.bodies[first]
     other = scene.bodies[second] if second >= 0 else scene.obstacles[-1 - second]
-    falls = [not one.supports for one in (body, other) if isinstance(one, Body)]     # two bodies fall alike
+    falls = [
+        not one.supports for one in (body, other) if isinstance(one, Body)
+    ]  # two bodies fall alike
     pull = _fall(scene) * (falls[0] - (falls[1] if second >= 0 else 0))
     start = body.velocity - other.velocity
-    radius = min([body.outline.half_thickness, *([other.outline.half_thickness] if second >= 0 else [])])
+    radius = min(
+        [body.outline.half_thickness, *([other.outline.half_thickness] if second >= 0 else [])]
+    )
     loaded = max(loaded_pull(one) for one in (body, other) if isinstance(one, Body))
-    turning = sum(one.outline.fastest(one.angle, one.spin) * one.outline.reach for one in (body, other) if isinstance(one, Body))
+    turning = sum(
+        one.outline.fastest(one.angle, one.spin) * one.outline.reach
+        for one in (body, other)
+        if isinstance(one, Body)
+    )
     t, never = _first_touch(body, other, start, pull, turning, radius)
     met = not math.isinf(t)
     t = t if met else 0.0
     outlines, velocity = _at(body, other, t, pull), start + pull * t
     normal = outlines[0].normal_from(outlines[1])
-    if not met:                                                # what lets them meet later may turn them in any direction
+    if not met:  # what lets them meet later may turn them in any direction
         driven = body.driven or other.driven
-        return Meeting(first, second, outlines, float(np.linalg.norm(velocity)), 0.0, float(np.linalg.norm(pull)) + loaded, 0.0,
-                       float(radius), math.inf, normal, never and not driven)
+        return Meeting(
+            first,
+            second,
+            outlines,
+            float(np.linalg.norm(velocity)),
+            0.0,
+            float(np.linalg.norm(pull)) + loaded,
+            0.0,
+            float(radius),
+            math.inf,
+            normal,
+            never and not driven,
+        )
     along, across = _parts(pull, normal)
-    one = Meeting(first, second, outlines, *_parts(velocity, normal), along + loaded, across, float(radius), t, normal)
+    one = Meeting(
+        first,
+        second,
+        outlines,
+        *_parts(velocity, normal),
+        along + loaded,
+        across,
+        float(radius),
+        t,
+        normal,
+    )
     one = replace(one, pressed=_pressed(scene, one))
-    if isinstance(other, Obstacle) and other.drive:            # its surface slides by as it turns
+    if isinstance(other, Obstacle) and other.drive:  # its surface slides by as it turns
         away = np.linalg.norm(outlines[0].points - other.drive.pivot, axis=1).min()
         one = replace(one, sliding=one.sliding + other.drive.fastest_turn * float(away))
     if scene.dimension is not PLANE_STRAIN:
         return one
-    point, spun = _middle(one), velocity @ normal              # of the points that touch: what turns strikes by its spin, too
+    point, spun = (
+        _middle(one),
+        velocity @ normal,
+    )  # of the points that touch: what turns strikes by its spin, too
     for sign, each, shape in zip((1, -1), (body, other), outlines):
-        if isinstance(each, Body) and abs(lever := _lever(shape, point, normal)) > ECCENTRIC * shape.reach:
+        if (
+            isinstance(each, Body)
+            and abs(lever := _lever(shape, point, normal)) > ECCENTRIC * shape.reach
+        ):
             spun += sign * each.spin * lever
     return replace(one, closing=float(abs(spun)))
 
@@ -176,8 +252,11 @@ def _meeting(scene: Scene, first: int, second: int) -> Meeting:
 def loaded_pull(body: Body) -> float:
     """The acceleration [m/s2] of a body by its loads, on parts as wide as the body is thick. What
     acts all around the body or a cavity has no resultant."""
-    stress = [one.largest for one in body.loads
-              if one.kind == "traction" or (one.kind == "pressure" and one.part.name not in WHOLE)]
+    stress = [
+        one.largest
+        for one in body.loads
+        if one.kind == "traction" or (one.kind == "pressure" and one.part.name not in WHOLE)
+    ]
     if isinstance(body.outline, Outline):
         width, content = 2 * body.outline.half_thickness, body.outline.area
     else:
@@ -186,9 +265,11 @@ def loaded_pull(body: Body) -> float:
 
 
 def _pressed(scene: Scene, one: Meeting) -> float:
-    """The speed [m/s] of an impact whose contact is as wide as a support makes it, that goes on by a
-    depth [m] after the touch. Half-widths b of discs: b^2 = 0.8 R depth (R/10 deep), of the impact
-    2 R^2 v/c (edp/core/input/sizes.idp); of balls b^2 = R depth, and b = 1.31 R (v/c)^0.4."""
+    """The speed [m/s] of an impact whose contact is as wide as a support makes it, that goes on
+    by a depth [m] after the touch. Half-widths b of discs: b^2 = 0.8 R depth (R/10 deep), of
+    the impact 2 R^2 v/c (edp/core/input/sizes.idp); of balls b^2 = R depth, and b = 1.31 R
+    (v/c)^0.4.
+    """
     bodies = [scene.bodies[k] for k in (one.first, one.second) if k >= 0]
     ends = [support.path()[1] for body in bodies for support in body.supports if support.moves]
     share = min(0.5, one.closing * max([0.0, *(end - one.time for end in ends)]) / one.radius)
@@ -203,9 +284,10 @@ def _lever(shape: Shape, point: np.ndarray, n: np.ndarray) -> float:
 
 
 def turned(scene: Scene) -> Scene:
-    """The scene with the discs that gmsh meshes turned so that what touches first is their lowest point
-    when they are not turned: where a disc is meshed finely does not depend on the frame in which the
-    scene is written."""
+    """The scene with the discs that gmsh meshes turned so that what touches first is their
+    lowest point when they are not turned: where a disc is meshed finely does not depend on the
+    frame in which the scene is written.
+    """
     if scene.dimension is not PLANE_STRAIN:
         return scene
     met = meetings(scene)
@@ -217,32 +299,65 @@ def turned(scene: Scene) -> Scene:
         soonest = min(one.time for one in mine)
         first = next(one for one in mine if one.time <= soonest * (1 + 1e-9))
         outward = -first.normal if k == first.first else first.normal
-        found[k] = replace(body, angle=math.atan2(outward[1], outward[0]) + math.pi / 2
-                           - (body.spin * first.time if math.isfinite(first.time) else 0.0))
+        found[k] = replace(
+            body,
+            angle=math.atan2(outward[1], outward[0])
+            + math.pi / 2
+            - (body.spin * first.time if math.isfinite(first.time) else 0.0),
+        )
     return replace(scene, bodies=found)
 
 
 def refuse_nothing(scene: Scene, met: list[Meeting]) -> None:
     """BadInput where nothing can ever move, or nothing touch before an end that is left open."""
-    driven = [f"{kind}.{k}" for kind, all_of in (("body", scene.bodies), ("obstacle", scene.obstacles))
-              for k, one in enumerate(all_of, 1) if one.driven]
+    driven = [
+        f"{kind}.{k}"
+        for kind, all_of in (("body", scene.bodies), ("obstacle", scene.obstacles))
+        for k, one in enumerate(all_of, 1)
+        if one.driven
+    ]
     if driven and (scene.values["end_time"] == 0 or scene.values["until"] == "rest"):
-        raise BadInput(f"end_time: {scene.values['end_time']:g} with until = '{scene.values['until']}', but "
-                       f"{driven[0]} is moved or loaded from the start, which has no end of its own "
-                       f"(accepted: an end_time > 0, until = 'impact')")
-    moving = [*(one.velocity for one in [*scene.bodies, *scene.obstacles]), *(np.atleast_1d(body.spin) for body in scene.bodies)]
+        raise BadInput(
+            f"end_time: {scene.values['end_time']:g} with until = '{scene.values['until']}', but "
+            f"{driven[0]} is moved or loaded from the start, which has no end of its own "
+            f"(accepted: an end_time > 0, until = 'impact')"
+        )
+    moving = [
+        *(one.velocity for one in [*scene.bodies, *scene.obstacles]),
+        *(np.atleast_1d(body.spin) for body in scene.bodies),
+    ]
     forces = [scene.values.get(name, 0.0) for name in ("gravity", "body_force_x", "body_force_y")]
-    if not any(np.any(one) for one in moving) and not any(forces) and not driven and not any(body.supports or body.loads
-                                                                                        for body in scene.bodies):
-        raise BadInput("velocity: 0 of every body, without spin, gravity or body force: nothing would ever move (accepted: one of them)")
-    if scene.values["end_time"] == 0 and all(one.never for one in met) and len(scene.bodies) + len(scene.obstacles) > 1:
-        raise BadInput("end_time: 0 is the end of the contact, but nothing ever touches: the bodies miss each other and every obstacle "
-                       "(accepted: an end_time > 0, or velocities and positions that lead them together)")
+    if (
+        not any(np.any(one) for one in moving)
+        and not any(forces)
+        and not driven
+        and not any(body.supports or body.loads for body in scene.bodies)
+    ):
+        raise BadInput(
+            "velocity: 0 of every body, without spin, gravity or body force: nothing would ever move (accepted: one of them)"
+        )
+    if (
+        scene.values["end_time"] == 0
+        and all(one.never for one in met)
+        and len(scene.bodies) + len(scene.obstacles) > 1
+    ):
+        raise BadInput(
+            "end_time: 0 is the end of the contact, but nothing ever touches: the bodies miss each other and every obstacle "
+            "(accepted: an end_time > 0, or velocities and positions that lead them together)"
+        )
     for one in met if scene.values["end_time"] == 0 and scene.values["until"] != "rest" else []:
         body = scene.bodies[one.first]
-        if one.second < 0 and one.time == 0 and one.closing == 0 and not np.any(body.spin) and _fall(scene) @ one.normal < 0:
-            raise BadInput(f"end_time: 0 is the end of the contact, but '{body.name}' is set down on "
-                           f"'{scene.obstacles[-1 - one.second].name}' and does not leave it (accepted: an end_time > 0)")
+        if (
+            one.second < 0
+            and one.time == 0
+            and one.closing == 0
+            and not np.any(body.spin)
+            and _fall(scene) @ one.normal < 0
+        ):
+            raise BadInput(
+                f"end_time: 0 is the end of the contact, but '{body.name}' is set down on "
+                f"'{scene.obstacles[-1 - one.second].name}' and does not leave it (accepted: an end_time > 0)"
+            )
 
 
 def refuse_sinking(scene: Scene, met: list[Meeting]) -> None:
@@ -268,54 +383,89 @@ def refuse_sinking(scene: Scene, met: list[Meeting]) -> None:
             partner = first.second if k == first.first else first.first
             name = (scene.bodies[partner] if partner >= 0 else scene.obstacles[-1 - partner]).name
             place = ", ".join(f"{x:.3g}" for x in placed[gaps.argmin()])
-            raise BadInput(f"body.{k + 1}.file: '{body.name}' comes to '{name}' with ({place}) "
-                           f"m, which may not touch and would go through it (accepted: a file whose "
-                           f"label {mesh.FREE}, or physical group 'contact', is there, too)")
+            raise BadInput(
+                f"body.{k + 1}.file: '{body.name}' comes to '{name}' with ({place}) "
+                f"m, which may not touch and would go through it (accepted: a file whose "
+                f"label {mesh.FREE}, or physical group 'contact', is there, too)"
+            )
 
 
 def _parts(vector: np.ndarray, normal: np.ndarray) -> tuple[float, float]:
-    """Its parts along and across a unit vector, positive; what is left of the latter by round-off is none."""
+    """Its parts along and across a unit vector, positive; what is left of the latter by
+    round-off is none.
+    """
     along, across = abs(vector @ normal), np.linalg.norm(vector - (vector @ normal) * normal)
     return float(along), float(across) if across > 1e-6 * along else 0.0
 
 
-def _at(body: Body, other: Body | Obstacle, t: float, pull: np.ndarray) -> tuple[Shape, Shape | Obstacle]:
+def _at(
+    body: Body, other: Body | Obstacle, t: float, pull: np.ndarray
+) -> tuple[Shape, Shape | Obstacle]:
     """Both at a time, seen by one who moves with the obstacle, or falls with the bodies."""
+
     def flown(one: Body, velocity: np.ndarray) -> Shape:
         return one.at(t, one.position + velocity * t + pull * t**2 / 2)
+
     if isinstance(other, Body):
         return flown(body, body.velocity), flown(other, other.velocity)
     return flown(body, body.velocity - other.velocity), other
 
 
-def _first_touch(body: Body, other: Body | Obstacle, start: np.ndarray, pull: np.ndarray, turning: float,
-                 radius: float) -> tuple[float, bool]:
-    """When the gap is closed [s], infinite where it is not known to, and whether it never is. By conservative advancement where they are
-    within reach of each other: in each step no point can come nearer than the gap."""
+def _first_touch(
+    body: Body,
+    other: Body | Obstacle,
+    start: np.ndarray,
+    pull: np.ndarray,
+    turning: float,
+    radius: float,
+) -> tuple[float, bool]:
+    """When the gap is closed [s], infinite where it is not known to, and whether it never is.
+    By conservative advancement where they are within reach of each other: in each step no point
+    can come nearer than the gap.
+    """
     rate, steps, met, before = np.linalg.norm(pull), 0, False, math.inf
     for t, end in _within_reach(body, other, start, pull):
         while t < end:
-            gap, speed = _gap(*_at(body, other, t, pull)), np.linalg.norm(start + pull * t) + turning
+            gap, speed = (
+                _gap(*_at(body, other, t, pull)),
+                np.linalg.norm(start + pull * t) + turning,
+            )
             met = met or gap <= MET * radius
-            if met and (gap <= CLOSED * radius or gap >= before):               # closed, or passing by
+            if met and (gap <= CLOSED * radius or gap >= before):  # closed, or passing by
                 return t, False
             steps, before = steps + 1, gap
             if steps > STEPS or gap > FAR * radius:
                 return math.inf, False
             if speed + rate == 0:
                 return math.inf, True
-            t += 2 * gap / (speed + math.sqrt(speed**2 + 2 * rate * gap))       # speed t + rate t^2 / 2 = gap
+            t += (
+                2 * gap / (speed + math.sqrt(speed**2 + 2 * rate * gap))
+            )  # speed t + rate t^2 / 2 = gap
     return math.inf, True
 
 
-def _within_reach(body: Body, other: Body | Obstacle, start: np.ndarray, pull: np.ndarray) -> Iterator[tuple[float, float]]:
-    """From when to when the sphere around the body touches that around the other one, or some part of the obstacle."""
+def _within_reach(
+    body: Body, other: Body | Obstacle, start: np.ndarray, pull: np.ndarray
+) -> Iterator[tuple[float, float]]:
+    """From when to when the sphere around the body touches that around the other one, or some
+    part of the obstacle.
+    """
     if isinstance(other, Body) and not pull.any():
-        yield from _passing(body.position - other.position, start, 1.01 * (body.outline.reach + other.outline.reach))
+        yield from _passing(
+            body.position - other.position, start, 1.01 * (body.outline.reach + other.outline.reach)
+        )
         return
     parts = [[gate.trim() for gate in gates] for gates in _gates(body, other, start, pull)]
-    roots = np.concatenate([gate.roots() for gates in parts for gate in gates if gate.degree() > 0] or [np.empty(0)])
-    times = [0.0, *sorted(set(roots.real[(abs(roots.imag) <= 1e-6 * abs(roots)) & (roots.real > 0)].tolist())), math.inf]
+    roots = np.concatenate(
+        [gate.roots() for gates in parts for gate in gates if gate.degree() > 0] or [np.empty(0)]
+    )
+    times = [
+        0.0,
+        *sorted(
+            set(roots.real[(abs(roots.imag) <= 1e-6 * abs(roots)) & (roots.real > 0)].tolist())
+        ),
+        math.inf,
+    ]
     for begin, end in itertools.pairwise(times):
         middle = (begin + end) / 2 if end < math.inf else 2 * begin + 1
         if any(all(gate(middle) <= 0 for gate in gates) for gates in parts):
@@ -332,13 +482,19 @@ def _passing(r: np.ndarray, v: np.ndarray, within: float) -> Iterator[tuple[floa
         yield from [(max(0.0, first), last)] if last > 0 else []
 
 
-def _gates(body: Body, other: Body | Obstacle, start: np.ndarray, pull: np.ndarray) -> Iterator[list[Polynomial]]:
+def _gates(
+    body: Body, other: Body | Obstacle, start: np.ndarray, pull: np.ndarray
+) -> Iterator[list[Polynomial]]:
     """Of each part of the other one polynomials of time that are all <= 0 within reach of it."""
     reach = 1.01 * body.outline.reach
+
     def seen_from(point: np.ndarray) -> np.ndarray:
-        return np.array([Polynomial([x, v, a / 2]) for x, v, a in zip(body.position - point, start, pull)])
+        return np.array(
+            [Polynomial([x, v, a / 2]) for x, v, a in zip(body.position - point, start, pull)]
+        )
+
     if isinstance(other, Body):
-        yield [(seen_from(other.position)**2).sum() - (reach + 1.01 * other.outline.reach)**2]
+        yield [(seen_from(other.position) ** 2).sum() - (reach + 1.01 * other.outline.reach) ** 2]
     elif other.kind in ("implicit", "surface"):
         yield []
     elif other.kind == "polyline":
@@ -346,22 +502,29 @@ def _gates(body: Body, other: Body | Obstacle, start: np.ndarray, pull: np.ndarr
         for point, along, low, high in zip(sides.start, sides.along, sides.low, sides.high):
             r = seen_from(point)
             above, at = r @ np.array([-along[1], along[0]]), r @ along
-            yield [above - reach, -above - reach, *([low - reach - at] if np.isfinite(low) else []),
-                   *([at - high - reach] if np.isfinite(high) else [])]
+            yield [
+                above - reach,
+                -above - reach,
+                *([low - reach - at] if np.isfinite(low) else []),
+                *([at - high - reach] if np.isfinite(high) else []),
+            ]
     else:
         axes = len(start)
         r, more = seen_from(np.array(other.numbers[:axes])), other.numbers[axes:]
         if other.kind == "plane":
             yield [r @ np.array(more) - reach]
         elif other.kind != "bowl":
-            yield [(r**2).sum() - (more[0] + reach)**2]
+            yield [(r**2).sum() - (more[0] + reach) ** 2]
         else:
-            yield [max(0.0, more[0] - reach)**2 - (r**2).sum()]
+            yield [max(0.0, more[0] - reach) ** 2 - (r**2).sum()]
 
 
 def _gap(first: Shape, second: Shape | Obstacle) -> float:
     """The gap; of two bodies far apart that of the circles around them, which is no larger."""
     if isinstance(second, Obstacle):
         return second.gap_from(first)
-    away, around = np.linalg.norm(first.area_centre - second.area_centre), first.reach + second.reach
+    away, around = (
+        np.linalg.norm(first.area_centre - second.area_centre),
+        first.reach + second.reach,
+    )
     return float(away - around) if away > 2 * around else gap_between(first, second)

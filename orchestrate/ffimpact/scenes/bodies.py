@@ -1,5 +1,7 @@
-"""The bodies of a scene: [[body]] tables (docs: scenes says what they hold) as outlines (or meshes) with material, place and motion, SI
-units. Shapes and motions: flat.py in plane strain, revolution.py of revolution, solids.py in three dimensions."""
+"""The bodies of a scene: [[body]] tables (docs: scenes says what they hold) as outlines (or
+meshes) with material, place and motion, SI units. Shapes and motions: flat.py in plane strain,
+revolution.py of revolution, solids.py in three dimensions.
+"""
 
 from dataclasses import dataclass, replace
 from functools import partial
@@ -24,18 +26,20 @@ from .conditions import Load, Support, read_loads, read_supports
 
 __all__ = ["Body", "DAMPED", "DAMPING", "SIZES", "STIFF", "read", "stiffened"]
 
-GEOMETRY = {PLANE_STRAIN: flat, AXISYMMETRIC: revolution, SOLID: solids}     # shape(), motion()
+GEOMETRY = {PLANE_STRAIN: flat, AXISYMMETRIC: revolution, SOLID: solids}  # shape(), motion()
 DAMPING = ("viscosity", "bulk_viscosity", "relaxation_modulus", "relaxation_time")
-DAMPED = ("viscosity", "bulk_viscosity", "relaxation_modulus", "loss")     # one of which is above 0
-STIFF = 1e5                 # young of a rigid body over that of the others: its strain is as much smaller
+DAMPED = ("viscosity", "bulk_viscosity", "relaxation_modulus", "loss")  # one of which is above 0
+STIFF = 1e5  # young of a rigid body over that of the others: its strain is as much smaller
 OPTIONAL = ("law_parameters", *DAMPING, "loss")
 SIZES = ("mesh_size", "contact_mesh_size")
 
 
 @dataclass(frozen=True)
 class Body:
-    """`outline` and `mesh` (of a mesh file, else None) are about the centre of area (or volume), not turned; angle [rad], in three
-    dimensions a vector as spin is; a mesh size of 0 is open, or that of the file."""
+    """`outline` and `mesh` (of a mesh file, else None) are about the centre of area (or
+    volume), not turned; angle [rad], in three dimensions a vector as spin is; a mesh size of 0
+    is open, or that of the file.
+    """
 
     name: str
     outline: Outline | Solid
@@ -59,8 +63,8 @@ class Body:
     supports: tuple[Support, ...] = ()
     loads: tuple[Load, ...] = ()
     rigid: bool = False
-    mass: float = 0.0                  # given, of a rigid body [kg/m; kg]; 0: by density
-    moments: tuple[float, ...] = (0.0,) * 6     # likewise, as edp/core/input/conditions.idp has them
+    mass: float = 0.0  # given, of a rigid body [kg/m; kg]; 0: by density
+    moments: tuple[float, ...] = (0.0,) * 6  # likewise, as edp/core/input/conditions.idp has them
 
     @property
     def damped(self) -> bool:
@@ -69,7 +73,9 @@ class Body:
     @property
     def driven(self) -> bool:
         """Whether a support moves it, or a stress that is given loads it (a gas does not)."""
-        return any(one.moves for one in self.supports) or any(one.kind != "gas" for one in self.loads)
+        return any(one.moves for one in self.supports) or any(
+            one.kind != "gas" for one in self.loads
+        )
 
     @property
     def carried_along(self) -> "Body":
@@ -83,8 +89,9 @@ class Body:
 
     @property
     def sides(self) -> tuple[np.ndarray, np.ndarray] | None:
-        """The boundary edges or faces of a body from a file: corners (f, axes, axes), about its centre
-        and not turned, and whether each may touch (f,)."""
+        """The boundary edges or faces of a body from a file: corners (f, axes, axes), about
+        its centre and not turned, and whether each may touch (f,).
+        """
         geometry = isinstance(self.outline, Solid) and self.outline.geometry
         found = geometry.coarse if geometry else self.mesh
         if not found:
@@ -103,8 +110,12 @@ class Body:
         return self.outline.placed(centre, self.outline.turned(self.angle, self.spin, t))
 
 
-def read(tables: list[models.Body], top: models.Top, folder: Path, dimension: Dimension) -> list[Body]:
-    """The bodies of the [[body]] tables; `top` holds the entries at the top of the file, mesh files are sought from `folder` on."""
+def read(
+    tables: list[models.Body], top: models.Top, folder: Path, dimension: Dimension
+) -> list[Body]:
+    """The bodies of the [[body]] tables; `top` holds the entries at the top of the file, mesh
+    files are sought from `folder` on.
+    """
     return gathered([partial(_body, table, top, folder, dimension) for table in tables])
 
 
@@ -112,97 +123,161 @@ def _body(table: models.Body, top: models.Top, folder: Path, of: Dimension) -> B
     geometry: ModuleType = GEOMETRY[of]
     outline, body_mesh = geometry.shape(table, folder)
     if not outline.half_thickness >= SHORTEST:
-        raise BadInput(f"{table.entry}: is {2 * outline.half_thickness:.3g} m thick (accepted: from {2 * SHORTEST:g} m)")
+        raise BadInput(
+            f"{table.entry}: is {2 * outline.half_thickness:.3g} m thick (accepted: from {2 * SHORTEST:g} m)"
+        )
     bulk, contact = _sizes(table, None if body_mesh else top)
     if body_mesh and (sizes := [key for key in SIZES if getattr(table, key)]):
-        raise BadInput(f"{table.at(sizes[0])}: '{table.given(sizes[0])}' for a mesh from a file, "
-                       f"which has its own element sizes (accepted: {', '.join(SIZES)} where gmsh makes "
-                       f"the mesh: of a shape, or of a geometry, {', '.join(GEOMETRIES)})")
+        raise BadInput(
+            f"{table.at(sizes[0])}: '{table.given(sizes[0])}' for a mesh from a file, "
+            f"which has its own element sizes (accepted: {', '.join(SIZES)} where gmsh makes "
+            f"the mesh: of a shape, or of a geometry, {', '.join(GEOMETRIES)})"
+        )
     if not table.rigid and (found := [key for key in ("mass", "inertia") if key in table]):
-        raise BadInput(f"{table.at(found[0])}: is of a rigid body (accepted: with rigid = true, or density)")
+        raise BadInput(
+            f"{table.at(found[0])}: is of a rigid body (accepted: with rigid = true, or density)"
+        )
     material = _rigid(table, top, of, outline) if table.rigid else _material(table, top)
     end_time = top.end_time or 0.0
-    return Body(table.name or table.entry.replace(".", ""), outline, body_mesh, **geometry.motion(table), **material, mesh_size=bulk,
-                contact_mesh_size=contact, supports=read_supports(table.support or [], of, end_time),
-                loads=read_loads(table.load or [], of, end_time))
+    return Body(
+        table.name or table.entry.replace(".", ""),
+        outline,
+        body_mesh,
+        **geometry.motion(table),
+        **material,
+        mesh_size=bulk,
+        contact_mesh_size=contact,
+        supports=read_supports(table.support or [], of, end_time),
+        loads=read_loads(table.load or [], of, end_time),
+    )
 
 
 def _rigid(table: models.Body, top: models.Top, of: Dimension, outline: Outline | Solid) -> dict:
-    """What a rigid body has instead of a material; its young is settled by the scene (stiffened())."""
+    """What a rigid body has instead of a material; its young is settled by the scene
+    (stiffened()).
+    """
     for key in ("law", "young", "nu", *OPTIONAL, "support"):
         if key in table:
-            raise BadInput(f"{table.at(key)}: a rigid body has none (accepted: density, or mass; without rigid = true)")
+            raise BadInput(
+                f"{table.at(key)}: a rigid body has none (accepted: density, or mass; without rigid = true)"
+            )
     if "mass" in table and "density" in table:
         raise BadInput(f"{table.at('mass')}: stands beside density (accepted: one of them)")
     mass = table.mass or 0.0
-    content = outline.volume if isinstance(outline, Solid) else outline.area      # of revolution a scale alone
+    content = (
+        outline.volume if isinstance(outline, Solid) else outline.area
+    )  # of revolution a scale alone
     if not mass and "density" not in table and "density" not in top:
-        raise BadInput(f"{table.at('density')}: is missing, here and at the top of the file (accepted: "
-                       f"{parameters.PARAMETERS['density'].accepted}, or mass)")
+        raise BadInput(
+            f"{table.at('density')}: is missing, here and at the top of the file (accepted: "
+            f"{parameters.PARAMETERS['density'].accepted}, or mass)"
+        )
     density = mass / content if mass else table.density or top.density
     found = {key: parameters.PARAMETERS[key].default for key in OPTIONAL}
-    return found | {"law": "svk", "young": 1.0, "nu": 0.0, "density": float(density), "rigid": True, "mass": mass,
-                    "moments": _moments(table, of)}
+    return found | {
+        "law": "svk",
+        "young": 1.0,
+        "nu": 0.0,
+        "density": float(density),
+        "rigid": True,
+        "mass": mass,
+        "moments": _moments(table, of),
+    }
 
 
 def _moments(table: models.Body, of: Dimension) -> tuple[float, ...]:
-    """Of the entry inertia: in the plane the polar moment of inertia; in space, from those about the body's own axes, the integrals of
-    rho X_i X_j about the centre, in the scene's axes: 11, 22, 33, 12, 23, 13. 0 where there is no such entry."""
+    """Of the entry inertia: in the plane the polar moment of inertia; in space, from those
+    about the body's own axes, the integrals of rho X_i X_j about the centre, in the scene's
+    axes: 11, 22, 33, 12, 23, 13. 0 where there is no such entry.
+    """
     if "inertia" not in table:
         return (0.0,) * 6
     if of is AXISYMMETRIC:
-        raise BadInput(f"{table.at('inertia')}: no body of revolution turns in its scene (accepted: without inertia)")
+        raise BadInput(
+            f"{table.at('inertia')}: no body of revolution turns in its scene (accepted: without inertia)"
+        )
     if of is PLANE_STRAIN:
         return (float(table.inertia), *(0.0,) * 5)
     about = np.array(table.inertia)
     own = about.sum() / 2 - about
     if not (own > 0).all():
-        raise BadInput(f"{table.at('inertia')}: '{table.given('inertia')}' has one that is no less than the others together "
-                       f"(accepted: moments about x, y, z of a body that is nowhere flat)")
+        raise BadInput(
+            f"{table.at('inertia')}: '{table.given('inertia')}' has one that is no less than the others together "
+            f"(accepted: moments about x, y, z of a body that is nowhere flat)"
+        )
     turn = tumbling.rotation(solids.motion(table)["angle"])
     E = turn @ np.diag(own) @ turn.T
-    return float(E[0, 0]), float(E[1, 1]), float(E[2, 2]), float(E[0, 1]), float(E[1, 2]), float(E[0, 2])
+    return (
+        float(E[0, 0]),
+        float(E[1, 1]),
+        float(E[2, 2]),
+        float(E[0, 1]),
+        float(E[1, 2]),
+        float(E[0, 2]),
+    )
 
 
 def stiffened(found: list[Body], penalty: Value, path: str) -> list[Body]:
-    """The bodies of a scene with the young of its rigid ones: STIFF times the largest of the others, or, where all are rigid, times the
-    stiffness of the penalty over the largest of them. BadInput where that is open then."""
+    """The bodies of a scene with the young of its rigid ones: STIFF times the largest of the
+    others, or, where all are rigid, times the stiffness of the penalty over the largest of
+    them. BadInput where that is open then.
+    """
     if not any(body.rigid for body in found):
         return found
     soft = max((body.young for body in found if not body.rigid), default=0.0)
     if not soft and penalty == "auto":
-        raise BadInput(f"{path}: 'auto' follows from a body that deforms, and all are rigid (accepted: a number, Pa/m^m)")
+        raise BadInput(
+            f"{path}: 'auto' follows from a body that deforms, and all are rigid (accepted: a number, Pa/m^m)"
+        )
     young = STIFF * (soft or float(penalty) * max(body.outline.half_thickness for body in found))
     return [replace(body, young=young) if body.rigid else body for body in found]
 
 
 def _material(table: models.Body, top: models.Top) -> dict[str, Value]:
-    """What MATERIAL names: the body's own, else those at the top of the file; BadInput where one is in neither.
-    A viscosity of its own takes the place of a loss at the top, and the other way."""
+    """What MATERIAL names: the body's own, else those at the top of the file; BadInput where
+    one is in neither. A viscosity of its own takes the place of a loss at the top, and the
+    other way.
+    """
     found = {}
-    missing = [key for key in MATERIAL if key not in table and key not in top and key not in OPTIONAL]
+    missing = [
+        key for key in MATERIAL if key not in table and key not in top and key not in OPTIONAL
+    ]
     if missing:
-        raise BadInput(*(f"{table.at(key)}: is missing, here and at the top of the file (accepted: "
-                         f"{parameters.PARAMETERS[key].accepted})" for key in missing))
+        raise BadInput(
+            *(
+                f"{table.at(key)}: is missing, here and at the top of the file (accepted: "
+                f"{parameters.PARAMETERS[key].accepted})"
+                for key in missing
+            )
+        )
     for key in MATERIAL:
-        rule, other = parameters.PARAMETERS[key], {"viscosity": "loss", "loss": "viscosity"}.get(key)
+        rule, other = (
+            parameters.PARAMETERS[key],
+            {"viscosity": "loss", "loss": "viscosity"}.get(key),
+        )
         common = rule.default if key not in top or other and other in table else getattr(top, key)
         found[key] = getattr(table, key) if key in table else common
     if found["relaxation_modulus"] == 0 and "relaxation_modulus" in table:
         found["relaxation_time"] = 0.0
     if (found["relaxation_modulus"] > 0) != (found["relaxation_time"] > 0):
-        raise BadInput(f"{table.at('relaxation_time')}: {found['relaxation_time']:g} s with relaxation_modulus "
-                       f"{found['relaxation_modulus']:g} Pa (accepted: both above 0, or none)")
+        raise BadInput(
+            f"{table.at('relaxation_time')}: {found['relaxation_time']:g} s with relaxation_modulus "
+            f"{found['relaxation_modulus']:g} Pa (accepted: both above 0, or none)"
+        )
     return found
 
 
 def _sizes(table: models.Body, top: models.Top | None) -> tuple[float, float]:
-    """Element sizes [m] in the bulk and where it may touch: its own, else those at the `top`; 0 is open."""
+    """Element sizes [m] in the bulk and where it may touch: its own, else those at the `top`; 0
+    is open.
+    """
     own = [getattr(table, key) for key in SIZES]
     common = [getattr(top, key) if top else None for key in SIZES]
-    bulk, contact = (float(one if one is not None else other or 0.0) for one, other in zip(own, common))
+    bulk, contact = (
+        float(one if one is not None else other or 0.0) for one, other in zip(own, common)
+    )
     if 0 < bulk < contact:
-        raise BadInput(f"{table.at('contact_mesh_size')}: {contact:g} is larger than mesh_size {bulk:g}")
+        raise BadInput(
+            f"{table.at('contact_mesh_size')}: {contact:g} is larger than mesh_size {bulk:g}"
+        )
     return float(bulk), float(contact)
-
-

@@ -1,9 +1,9 @@
 """Supports and loads: what a scene prescribes on the boundary beside contact.
 
 [[body.support]] tables hold or move a part of a body's boundary (Gamma_D of the paper, section
-2.2.1), [[body.load]] tables give a part a stress (Gamma_F). docs/how-to/supports-and-loads.md says what they
-hold. A part is a side of the body, a region of space where the body is at the start, or a named group
-of its file. Units are SI.
+2.2.1), [[body.load]] tables give a part a stress (Gamma_F). docs: supports and loads says what
+they hold. A part is a side of the body, a region of space where the body is at the start, or a
+named group of its file. Units are SI.
 """
 
 from dataclasses import dataclass, replace
@@ -22,13 +22,20 @@ from ..input.rules import ALIAS, number
 
 __all__ = ["Load", "Part", "Support", "inlined", "read_loads", "read_supports"]
 
-NEVER = 1e300                # s: the release of a support that holds throughout
-AMBIENT = 101325.0           # Pa: outside of a gas, the standard atmosphere
+NEVER = 1e300  # s: the release of a support that holds throughout
+AMBIENT = 101325.0  # Pa: outside of a gas, the standard atmosphere
 # sides of a body by its own axes: the axis, and the end of the body along it
-SIDES = {"left": (0, 0), "right": (0, 1), "bottom": (1, 0), "top": (1, 1), "back": (2, 0), "front": (2, 1)}
+SIDES = {
+    "left": (0, 0),
+    "right": (0, 1),
+    "bottom": (1, 0),
+    "top": (1, 1),
+    "back": (2, 0),
+    "front": (2, 1),
+}
 WHOLE = ("all", "outer", "inner")
-ON_SIDE = 1e-6               # of the body's extent: as near to its end is on a side
-KINDS = {"traction": 0, "pressure": 1, "gas": 2}              # as edp/core/input/conditions.idp
+ON_SIDE = 1e-6  # of the body's extent: as near to its end is on a side
+KINDS = {"traction": 0, "pressure": 1, "gas": 2}  # as edp/core/input/conditions.idp
 
 
 @dataclass(frozen=True)
@@ -75,7 +82,9 @@ class Support:
     @property
     def moves(self) -> bool:
         """Whether something of it is moved."""
-        return not all(one.is_constant for one, fixed in zip(self.motion, self.fixed) if fixed or self.normal)
+        return not all(
+            one.is_constant for one, fixed in zip(self.motion, self.fixed) if fixed or self.normal
+        )
 
     def path(self) -> tuple[np.ndarray, float]:
         """How far it has moved when it is farthest from the start [m], and when [s]."""
@@ -95,7 +104,9 @@ class Load:
     @property
     def largest(self) -> float:
         """The largest stress of it [Pa]."""
-        return max([abs(self.gas[0]), *(float(abs(one.knots[:, 1]).max()) for one in self.functions)])
+        return max(
+            [abs(self.gas[0]), *(float(abs(one.knots[:, 1]).max()) for one in self.functions)]
+        )
 
 
 def inlined(given: dict, folder: Path, of: Dimension) -> dict:
@@ -105,25 +116,39 @@ def inlined(given: dict, folder: Path, of: Dimension) -> dict:
         changed = dict(body)
         for key, names in (("support", ("motion",)), ("load", ("traction", "pressure"))):
             if key in body:
-                changed[key] = [_with_tables(f"body.{b}.{key}.{k}", one, names, folder, of)
-                                for k, one in enumerate(listed({f"body.{b}.{key}": body[key]}, f"body.{b}.{key}"), 1)]
+                changed[key] = [
+                    _with_tables(f"body.{b}.{key}.{k}", one, names, folder, of)
+                    for k, one in enumerate(
+                        listed({f"body.{b}.{key}": body[key]}, f"body.{b}.{key}"), 1
+                    )
+                ]
         bodies.append(changed)
-    obstacles = [_with_tables(f"obstacle.{k}", one, ("motion", "rotation"), folder, of)
-                 for k, one in enumerate(listed(given, "obstacle"), 1)]
-    return given | ({"body": bodies} if bodies else {}) | ({"obstacle": obstacles} if obstacles else {})
+    obstacles = [
+        _with_tables(f"obstacle.{k}", one, ("motion", "rotation"), folder, of)
+        for k, one in enumerate(listed(given, "obstacle"), 1)
+    ]
+    return (
+        given
+        | ({"body": bodies} if bodies else {})
+        | ({"obstacle": obstacles} if obstacles else {})
+    )
 
 
-def _with_tables(path: str, table: dict, names: tuple[str, ...], folder: Path, of: Dimension) -> dict:
+def _with_tables(
+    path: str, table: dict, names: tuple[str, ...], folder: Path, of: Dimension
+) -> dict:
     changed = dict(table)
     for name in names:
         value = table.get(name)
         if isinstance(value, str) and value.lower().endswith(".csv"):
-            columns = "p" if name == "pressure" else "xyz"[:of.axes]
+            columns = "p" if name == "pressure" else "xyz"[: of.axes]
             changed[name] = time_functions.of_csv(f"{path}.{name}", folder / value, columns)
     return changed
 
 
-def read_supports(tables: list[models.Support], of: Dimension, end_time: float) -> tuple[Support, ...]:
+def read_supports(
+    tables: list[models.Support], of: Dimension, end_time: float
+) -> tuple[Support, ...]:
     """The [[body.support]] tables of a body. BadInput for whatever is wrong in them."""
     return tuple(gathered([partial(_support, one, of, end_time) for one in tables]))
 
@@ -134,7 +159,7 @@ def read_loads(tables: list[models.Load], of: Dimension, end_time: float) -> tup
 
 
 def _support(table: models.Support, of: Dimension, end_time: float) -> Support:
-    axes = "xyz"[:of.axes]
+    axes = "xyz"[: of.axes]
     words = ("all", *axes, "normal")
     fix = table.fix or "all"
     if fix not in words:
@@ -145,22 +170,36 @@ def _support(table: models.Support, of: Dimension, end_time: float) -> Support:
         motion = functions(table.at("motion"), table.motion, axes, end_time)
         for axis, one, held in zip(axes, motion, fixed):
             if not (held or fix == "normal") and not one.is_zero:
-                raise BadInput(f"{table.at('motion')}: moves along {axis}, which fix = '{fix}' leaves free "
-                               f"(accepted: 0 there, or fix = 'all')")
-    return Support(_part(table), fixed, fix == "normal", motion, NEVER if table.release is None else table.release)
+                raise BadInput(
+                    f"{table.at('motion')}: moves along {axis}, which fix = '{fix}' leaves free "
+                    f"(accepted: 0 there, or fix = 'all')"
+                )
+    return Support(
+        _part(table),
+        fixed,
+        fix == "normal",
+        motion,
+        NEVER if table.release is None else table.release,
+    )
 
 
 def _load(table: models.Load, of: Dimension, end_time: float) -> Load:
     kinds = [kind for kind in KINDS if kind in table]
     if len(kinds) != 1:
-        raise BadInput(f"{table.entry}: has {' and '.join(kinds) or 'no stress'} (accepted: one of {', '.join(KINDS)})")
+        raise BadInput(
+            f"{table.entry}: has {' and '.join(kinds) or 'no stress'} (accepted: one of {', '.join(KINDS)})"
+        )
     kind, part = kinds[0], _part(table)
     if table.gas:
         gas = table.gas
         ambient = AMBIENT if gas.ambient_pressure is None else gas.ambient_pressure
-        gauge = replace(number(-ambient, models.MOST_PRESSURE), name=gas.at("gauge_pressure")).check(gas.gauge_pressure)
-        return Load(part, kind, (), (float(gauge), ambient, 1.0 if gas.exponent is None else gas.exponent))
-    components = "p" if kind == "pressure" else "xyz"[:of.axes]
+        gauge = replace(
+            number(-ambient, models.MOST_PRESSURE), name=gas.at("gauge_pressure")
+        ).check(gas.gauge_pressure)
+        return Load(
+            part, kind, (), (float(gauge), ambient, 1.0 if gas.exponent is None else gas.exponent)
+        )
+    components = "p" if kind == "pressure" else "xyz"[: of.axes]
     return Load(part, kind, functions(table.at(kind), getattr(table, kind), components, end_time))
 
 

@@ -1,4 +1,6 @@
-"""Entries of a scene's tables by dotted names: set, and open again where what they were fixed for is set."""
+"""Entries of a scene's tables by dotted names: set, and open again where what they were fixed for
+is set.
+"""
 
 import copy
 import re
@@ -13,14 +15,27 @@ from ..input.parameters import Value
 
 __all__ = ["release", "set_entry", "toml_value"]
 
-SHAPE = ("shape", "semi_axes", "width", "height", "depth", "inner_radius", "section", "vertices", "file",
-         "scale")     # sizes of a body, beside radius
+SHAPE = (
+    "shape",
+    "semi_axes",
+    "width",
+    "height",
+    "depth",
+    "inner_radius",
+    "section",
+    "vertices",
+    "file",
+    "scale",
+)  # sizes of a body, beside radius
 EVERYWHERE = ("penalty", "dt")
 
 
 def set_entry(given: dict, name: str, value: Value | list) -> dict:
-    """The tables of a file with one entry set: "body.2.young", "contact.pair.1.penalty", "body.1.velocity.2"; tables and
-    components of a list are counted from 1. BadInput where there is no such place."""
+    """The tables of a file with one entry set: "body.2.young", "contact.pair.1.penalty",
+    "body.1.velocity.2"; tables and components of a list are counted from 1. None removes the
+    entry of a table: the program then chooses its value. BadInput if the scene has no such
+    table or component.
+    """
     changed = copy.deepcopy(given)
     place, path = changed, ""
     *way, last = name.split(".")
@@ -30,28 +45,51 @@ def set_entry(given: dict, name: str, value: Value | list) -> dict:
             place[step] = {}
         key = _key(place, step, path, name)
         if key not in place if isinstance(place, dict) else False:
-            raise BadInput(f"{brief(name)}: there is no {brief(path)} in the scene (accepted: {', '.join(place)})")
+            raise BadInput(
+                f"{brief(name)}: there is no {brief(path)} in the scene (accepted: {', '.join(place)})"
+            )
         place = place[key]
         if not isinstance(place, dict | list):
-            raise BadInput(f"{brief(name)}: {path} is '{brief(place)}' and has no entry {brief(following)}")
-    place[_key(place, last, name, name)] = value
+            raise BadInput(
+                f"{brief(name)}: {path} is '{brief(place)}' and has no entry {brief(following)}"
+            )
+    key = _key(place, last, name, name)
+    if value is None and isinstance(place, dict):
+        place.pop(key, None)
+    else:
+        place[key] = value
     return changed
 
 
 def release(given: dict, names: list[str]) -> tuple[str, ...]:
-    """Takes out of the tables of a file what FOLLOWS says that the entries `names`, which were set, leave open; the sentences about it.
-    What is of one table (coefficients of friction, sizes of a body) follows what is set there, penalty and step whatever body it is of."""
+    """Takes out of the tables of a file what FOLLOWS says that the entries `names`, which were
+    set, leave open; the sentences about it. What is of one table (coefficients of friction,
+    sizes of a body) follows what is set there, penalty and step whatever body it is of.
+    """
     places = [_table_of(name) for name in names]
     said = []
     for path, table in list(_tables(given)):
-        for key in [key for key in parameters.FOLLOWS if key in table and (path, key) not in places]:
+        for key in [
+            key for key in parameters.FOLLOWS if key in table and (path, key) not in places
+        ]:
             causes = parameters.FOLLOWS[key]
-            found = [name for name, (where, entry) in zip(names, places) if (where == path or key in EVERYWHERE)
-                     and (entry in causes or "radius" in causes and entry in SHAPE and where.startswith("body."))]
+            found = [
+                name
+                for name, (where, entry) in zip(names, places)
+                if (where == path or key in EVERYWHERE)
+                and (
+                    entry in causes
+                    or "radius" in causes
+                    and entry in SHAPE
+                    and where.startswith("body.")
+                )
+            ]
             if found and table[key] not in ("auto", 0):
                 value, name = table.pop(key), f"{path}.{key}".lstrip(".")
                 fixed = f"{value:g}" if isinstance(value, float) else brief(value)
-                said.append(f"{name} is open again: the scene's {fixed} was for its own {', '.join(found)}")
+                said.append(
+                    f"{name} is open again: the scene's {fixed} was for its own {', '.join(found)}"
+                )
     return tuple(said)
 
 
@@ -59,27 +97,41 @@ def _tables(value, path: str = "") -> Iterator[tuple[str, dict]]:
     """All tables in a table or a list, with their dotted names."""
     if isinstance(value, dict):
         yield path, value
-    for key, one in value.items() if isinstance(value, dict) else enumerate(value, 1) if isinstance(value, list) else ():
+    for key, one in (
+        value.items()
+        if isinstance(value, dict)
+        else enumerate(value, 1)
+        if isinstance(value, list)
+        else ()
+    ):
         yield from _tables(one, f"{path}.{key}".lstrip("."))
 
 
 def _table_of(name: str) -> tuple[str, str]:
     """Of a dotted name that of its table, and the entry in it."""
     parts = name.split(".")
-    depth = 3 if parts[:2] == ["contact", "pair"] else {"body": 2, "obstacle": 2, "contact": 1}.get(parts[0], 0)
-    return ".".join(parts[:depth]), ".".join(parts[depth:depth + 1])
+    depth = (
+        3
+        if parts[:2] == ["contact", "pair"]
+        else {"body": 2, "obstacle": 2, "contact": 1}.get(parts[0], 0)
+    )
+    return ".".join(parts[:depth]), ".".join(parts[depth : depth + 1])
 
 
 def _key(place: dict | list, step: str, path: str, name: str) -> str | int:
     """The key of one step, from 0 in lists."""
     if not step:
-        raise BadInput(f"{brief(name)}: has an empty part (accepted: names and numbers with single dots between them)")
+        raise BadInput(
+            f"{brief(name)}: has an empty part (accepted: names and numbers with single dots between them)"
+        )
     if isinstance(place, dict):
         return step
     if not re.fullmatch("[0-9]{1,6}", step) or not 1 <= int(step) <= len(place):
         before = path.removesuffix(f".{step}")
         numbers = f"{before}.1 to {before}.{len(place)}" if len(place) > 1 else f"{before}.1"
-        raise BadInput(f"{brief(name)}: there is no {brief(path)} in the scene (accepted: {numbers})")
+        raise BadInput(
+            f"{brief(name)}: there is no {brief(path)} in the scene (accepted: {numbers})"
+        )
     return int(step) - 1
 
 

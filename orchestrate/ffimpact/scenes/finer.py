@@ -11,8 +11,9 @@ from .scene import Scene
 __all__ = ["scaled"]
 
 
-def scaled(scene: Scene, values: Mapping, used: Mapping, factor: float,
-           own_mesh: bool = True) -> dict[str, Value | list]:
+def scaled(
+    scene: Scene, values: Mapping, used: Mapping, factor: float, own_mesh: bool = True
+) -> dict[str, Value | list]:
     """What a scene, run as the tables `used`, is overridden by for `factor` times the elements and
     steps. Penalty, slip velocity and dynamic friction stay as they were, except the penalty of flat
     strikes. Meshes of files stay, too."""
@@ -40,9 +41,14 @@ def _pairs(scene: Scene, used: list[dict], factor: float) -> list[dict]:
     if scene.contact["penalty"] != "auto" or len(used) == len(given):
         return used
     found = [front.meeting for front in fronts(scene, meetings(scene))]
-    others = [one.name for one in [*scene.bodies, *reversed(scene.obstacles)]]      # -1 is obstacle 0
-    flat = [[others[one.first], others[one.second]] for one in found
-            if (one.first, one.second) not in given]
-    softer = factor**scene.contact["exponent"]
-    return [pair | {"penalty": pair["penalty"] / softer} if pair["bodies"] in flat else pair
-            for pair in used]
+    others = [one.name for one in [*scene.bodies, *reversed(scene.obstacles)]]  # -1 is obstacle 0
+    flat = [
+        [others[one.first], others[one.second]]
+        for one in found
+        if (one.first, one.second) not in given
+    ]
+    softer = factor ** scene.contact["exponent"]
+    return [
+        pair | {"penalty": pair["penalty"] / softer} if pair["bodies"] in flat else pair
+        for pair in used
+    ]

@@ -3,10 +3,10 @@ its body.
 
 The contact patch of a disc shrinks with the speed. A front does not, so elements, steps and penalty
 follow the front. A bar of length L (wave speed c, modulus M = rho c^2) on a penalty k has a front
-with the rise time M/(k c). It loses 0.051 M/(k L) of its rebound and leaves 1.68 M/(k c) late (exact
-solution: docs/explanation/method.md). Let tau be the time in which the front passes one element. The penalty lets
-the front rise in tau / STEEPNESS, and in LONGEST of its transit across the body at most. Then all
-errors are of first order in the element size.
+with the rise time M/(k c). It loses 0.051 M/(k L) of its rebound and leaves 1.68 M/(k c) late
+(exact solution: docs: method). Let tau be the time in which the front passes one element. The
+penalty lets the front rise in tau / STEEPNESS, and in LONGEST of its transit across the body at
+most. Then all errors are of first order in the element size.
 """
 
 import math
@@ -22,23 +22,24 @@ from .scene import Scene
 
 __all__ = ["Front", "fronts", "wave_speed"]
 
-FLAT = 0.3             # share of a body's width that lands while the front passes an element
-PER_ACCURACY = 5.0     # element size over the length along the normal, over the accuracy
-STEEPNESS = 1.5        # elements over the rise length of the front
-LONGEST = 0.02         # rise of the front over its transit across the body
-BRIEF = 30.0           # transits: a run that is asked to go on for longer is not about the front
+FLAT = 0.3  # share of a body's width that lands while the front passes an element
+PER_ACCURACY = 5.0  # element size over the length along the normal, over the accuracy
+STEEPNESS = 1.5  # elements over the rise length of the front
+LONGEST = 0.02  # rise of the front over its transit across the body
+BRIEF = 30.0  # transits: a run that is asked to go on for longer is not about the front
 # By the number of axes: unknowns of a body that no front asks to exceed; unknowns of a body of the
 # area (volume) V with quadratic elements of the size h, over V/h^2 (V/h^3); area (volume) of an
 # element over h^2 (h^3).
 MOST_UNKNOWNS, UNKNOWNS, ELEMENT = {2: 40000, 3: 60000}, {2: 9.5, 3: 36.0}, {2: 0.43, 3: 0.12}
-STIFFEST = 0.45        # nu: the rest up to 0.5 acts on the volume of elements (docs/explanation/method.md)
+STIFFEST = 0.45  # nu: the rest up to 0.5 acts on the volume of elements (docs: method)
 
 
 @dataclass(frozen=True)
 class Front:
-    """The front of one flat strike: the meeting, the time `tau` [s] in which it passes an element,
-    the shortest `transit` [s] across a body, the element sizes [m] of the bodies (by number), and the
-    bodies that are `crossed` as a whole by a plane front."""
+    """The front of one flat strike: the meeting, the time `tau` [s] in which it passes an
+    element, the shortest `transit` [s] across a body, the element sizes [m] of the bodies (by
+    number), and the bodies that are `crossed` as a whole by a plane front.
+    """
 
     meeting: Meeting
     tau: float
@@ -52,13 +53,14 @@ class Front:
         return min(self.tau / STEEPNESS, LONGEST * self.transit)
 
     def penalty(self, bodies: list[Body], exponent: float) -> float:
-        """The penalty k [Pa/m^m] that lets the front rise so: t_N = k p^m is the pressure rho c v at
-        the penetration v rise."""
-        return self._pressure(bodies) / (self.meeting.closing * self.rise)**exponent
+        """The penalty k [Pa/m^m] that lets the front rise so: t_N = k p^m is the pressure
+        rho c v at the penetration v rise.
+        """
+        return self._pressure(bodies) / (self.meeting.closing * self.rise) ** exponent
 
     def rise_on(self, penalty: float, bodies: list[Body], exponent: float) -> float:
         """The time [s] in which the front rises on a penalty [Pa/m^m]."""
-        return (self._pressure(bodies) / penalty)**(1 / exponent) / self.meeting.closing
+        return (self._pressure(bodies) / penalty) ** (1 / exponent) / self.meeting.closing
 
     def _pressure(self, bodies: list[Body]) -> float:
         """rho c v [Pa], with the impedances rho c of two bodies in series."""
@@ -86,8 +88,10 @@ def wave_speed(body: Body) -> float:
 def _front(scene: Scene, one: Meeting) -> Front | None:
     """The front of a meeting, None where no body lands flat."""
     bodies = {k: scene.bodies[k] for k in (one.first, one.second) if k >= 0}
-    sizes = {k: body.mesh_size or _size(scene, one, k) for k, body in bodies.items()}        # [m]
-    crossed = tuple(k for k, body in bodies.items() if not body.rigid and _lands_flat(one, k, body, sizes[k]))
+    sizes = {k: body.mesh_size or _size(scene, one, k) for k, body in bodies.items()}  # [m]
+    crossed = tuple(
+        k for k, body in bodies.items() if not body.rigid and _lands_flat(one, k, body, sizes[k])
+    )
     if not crossed:
         return None
     tau = min(sizes[k] / wave_speed(bodies[k]) for k in crossed)
@@ -97,15 +101,17 @@ def _front(scene: Scene, one: Meeting) -> Front | None:
 
 
 def _size(scene: Scene, one: Meeting, k: int) -> float:
-    """The element size [m] of body k: that of its file, or what the accuracy asks for. The latter is
-    no smaller than MOST_UNKNOWNS allow, and gives at least four elements across the thickness."""
+    """The element size [m] of body k: that of its file, or what the accuracy asks for. The
+    latter is no smaller than MOST_UNKNOWNS allow, and gives at least four elements across the
+    thickness.
+    """
     body, axes = scene.bodies[k], scene.dimension.axes
-    content = body.outline.volume if scene.dimension is SOLID else body.outline.area   # [m3], [m2]
+    content = body.outline.volume if scene.dimension is SOLID else body.outline.area  # [m3], [m2]
     if body.mesh:
         cells = body.mesh.cells if scene.dimension is SOLID else body.mesh.triangles
-        return (content / len(cells) / ELEMENT[axes])**(1 / axes)
+        return (content / len(cells) / ELEMENT[axes]) ** (1 / axes)
     accuracy = scene.values["accuracy"] / (1 if scene.values["accuracy_of"] == "promised" else 2)
-    least = (UNKNOWNS[axes] * content / MOST_UNKNOWNS[axes])**(1 / axes)
+    least = (UNKNOWNS[axes] * content / MOST_UNKNOWNS[axes]) ** (1 / axes)
     wanted = max(least, PER_ACCURACY * accuracy * _length(one, k))
     return min(body.outline.half_thickness / 2, wanted)
 

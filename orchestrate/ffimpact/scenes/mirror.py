@@ -1,4 +1,6 @@
-"""How much of a scene in three dimensions has to be computed: all of it, its half z >= 0, or of that the half x >= 0 (`symmetry`)."""
+"""How much of a scene in three dimensions has to be computed: all of it, its half z >= 0, or of
+that the half x >= 0 (`symmetry`).
+"""
 
 import numpy as np
 
@@ -11,12 +13,14 @@ from .obstacles import Obstacle
 __all__ = ["COPIES", "FOLDED", "copies"]
 
 COPIES = {"full": 1, "half": 2, "quarter": 4}
-FOLDED = {1: (), 2: (2,), 4: (0, 2)}      # the axes across which what is computed is one side
+FOLDED = {1: (), 2: (2,), 4: (0, 2)}  # the axes across which what is computed is one side
 AXES = "xyz"
 
 
 def copies(scene) -> int:
-    """What the computed part stands for: 1, 2 or 4 times itself; 1 in the plane. BadInput where more symmetry is asked for."""
+    """What the computed part stands for: 1, 2 or 4 times itself; 1 in the plane. BadInput where
+    more symmetry is asked for.
+    """
     if scene.dimension is not SOLID:
         return 1
     asked = scene.given.get("symmetry", "auto")
@@ -26,7 +30,9 @@ def copies(scene) -> int:
         return 1 if across_z else 2 if across_x else 4
     why = {"full": "", "half": across_z, "quarter": across_x}[asked]
     if why:
-        raise BadInput(f"symmetry: {asked}, but {why} (accepted: auto|full{'' if across_z else '|half'})")
+        raise BadInput(
+            f"symmetry: {asked}, but {why} (accepted: auto|full{'' if across_z else '|half'})"
+        )
     return COPIES[asked]
 
 
@@ -50,7 +56,7 @@ def _of_body(one: Body, axis: int, plane: str) -> str:
         return f"has its centre off {plane}"
     if one.velocity[axis] != 0:
         return f"moves along {AXES[axis]}"
-    if np.delete(one.spin, axis).any():                  # an axial vector keeps its part along the normal
+    if np.delete(one.spin, axis).any():  # an axial vector keeps its part along the normal
         return f"spins out of {plane}"
     if any(one.moments):
         return "has moments of inertia of its own"
@@ -66,8 +72,10 @@ def _of_conditions(one: Body, axis: int, plane: str) -> str:
     for kind, listed in (("support", one.supports), ("load", one.loads)):
         if not all(each.part.is_mirrored(axis, one.placed.rotation) for each in listed):
             return f"has a {kind} that is not its own mirror image in {plane}"
-    moved = [(each.fixed[axis] or each.normal) and not each.motion[axis].is_constant
-             for each in one.supports]
+    moved = [
+        (each.fixed[axis] or each.normal) and not each.motion[axis].is_constant
+        for each in one.supports
+    ]
     pushed = [each.kind == "traction" and not each.functions[axis].is_zero for each in one.loads]
     if any(moved) or any(pushed):
         return f"has a {'support' if any(moved) else 'load'} that acts along {AXES[axis]}"

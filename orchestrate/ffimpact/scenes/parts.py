@@ -1,5 +1,6 @@
-"""The boundary elements of supports and loads on the bodies' meshes, and their sections of scene.dat
-(edp/core/input/scene-file.idp)."""
+"""The boundary elements of supports and loads on the bodies' meshes, and their sections of
+scene.dat (edp/core/input/scene-file.idp).
+"""
 
 from collections.abc import Sequence
 
@@ -18,14 +19,21 @@ from .mirror import FOLDED
 
 __all__ = ["sections"]
 
-ALONG = 1e-6                 # of a unit vector: a normal as near to an axis is along it
+ALONG = 1e-6  # of a unit vector: a normal as near to an axis is along it
 Lines = list[tuple]
 
 
-def sections(bodies: Sequence[Body], meshes: Sequence[Mesh | SolidMesh], obstacles: Sequence, of: Dimension,
-             copies: int) -> Lines:
-    """The lines of functions, driven obstacles, supports and loads; none where there are none. BadInput where a part
-    is not there, touches something at the start, or cannot take what it is to."""
+def sections(
+    bodies: Sequence[Body],
+    meshes: Sequence[Mesh | SolidMesh],
+    obstacles: Sequence,
+    of: Dimension,
+    copies: int,
+) -> Lines:
+    """The lines of functions, driven obstacles, supports and loads; none where there are none.
+    BadInput where a part is not there, touches something at the start, or cannot take what it
+    is to.
+    """
     functions: list[TimeFunction] = []
     supports, loads, first = [], [], 0
     for k, (body, made) in enumerate(zip(bodies, meshes)):
@@ -34,30 +42,59 @@ def sections(bodies: Sequence[Body], meshes: Sequence[Mesh | SolidMesh], obstacl
             found = surface.elements(support.part)
             fixed = surface.fixed(support, found)
             _refuse_touching(support.part, surface.placed(found), k, bodies, obstacles)
-            numbers = _numbered(functions, [one if held else None for one, held in zip(support.motion, fixed)])
-            supports.append((k, *map(int, fixed), *[0] * (3 - of.axes), support.release, *numbers, len(found), *(first + found)))
+            numbers = _numbered(
+                functions, [one if held else None for one, held in zip(support.motion, fixed)]
+            )
+            supports.append(
+                (
+                    k,
+                    *map(int, fixed),
+                    *[0] * (3 - of.axes),
+                    support.release,
+                    *numbers,
+                    len(found),
+                    *(first + found),
+                )
+            )
         _refuse_all_held(body, surface)
-        filled: set[int] = set()                     # elements of cavities with a gas
+        filled: set[int] = set()  # elements of cavities with a gas
         for load in body.loads:
             found = surface.elements(load.part)
             if load.kind == "gas":
                 surface.refuse_open(load.part, found)
                 if filled & set(found.tolist()):
-                    raise BadInput(f"{load.part.entry}: there is a gas in this cavity of '{body.name}' already "
-                                   f"(accepted: one gas a cavity)")
+                    raise BadInput(
+                        f"{load.part.entry}: there is a gas in this cavity of '{body.name}' already "
+                        f"(accepted: one gas a cavity)"
+                    )
                 filled |= set(found.tolist())
             numbers = _numbered(functions, list(load.functions))
-            loads.append((k, KINDS[load.kind], *numbers, *load.gas[:2], load.gas[2], len(found), *(first + found)))
+            loads.append(
+                (
+                    k,
+                    KINDS[load.kind],
+                    *numbers,
+                    *load.gas[:2],
+                    load.gas[2],
+                    len(found),
+                    *(first + found),
+                )
+            )
         first += len(made.sides)
     drives = []
     for k, one in enumerate(obstacles):
         if one.drive:
             numbers = _numbered(functions, list(one.drive.way))[:3]
             turn = _numbered(functions, [one.drive.turn])[0]
-            drives.append((k, *numbers, turn, *one.drive.pivot, *[0.0] * (3 - of.axes), *one.drive.axis))
+            drives.append(
+                (k, *numbers, turn, *one.drive.pivot, *[0.0] * (3 - of.axes), *one.drive.axis)
+            )
     lines: Lines = []
     if functions:
-        lines += [("functions", len(functions)), *((len(one.knots), *one.knots.ravel().tolist()) for one in functions)]
+        lines += [
+            ("functions", len(functions)),
+            *((len(one.knots), *one.knots.ravel().tolist()) for one in functions),
+        ]
     lines += [("drives", len(drives)), *drives] if drives else []
     lines += [("supports", len(supports)), *supports] if supports else []
     return lines + ([("loads", len(loads)), *loads] if loads else [])
@@ -95,23 +132,32 @@ class _Surface:
             return self.made.labels != mesh.AXIS
         if self.of is SOLID and self.copies > 1:
             corners = self.made.points[self.made.sides] + self.body.position
-            folded = [abs(corners[:, :, axis]).max(axis=1) > ON_SIDE * np.ptp(self.own) for axis in FOLDED[self.copies]]
+            folded = [
+                abs(corners[:, :, axis]).max(axis=1) > ON_SIDE * np.ptp(self.own)
+                for axis in FOLDED[self.copies]
+            ]
             return np.all(folded, axis=0)
         return np.ones(len(self.made.sides), dtype=bool)
 
     def elements(self, part: Part) -> np.ndarray:
-        """The numbers of a part's elements among those of the body. BadInput where there is none."""
+        """The numbers of a part's elements among those of the body. BadInput where there is
+        none.
+        """
         on = self.own_labels
         if part.kind:
             found = on & part.contains(self.placed(np.arange(len(on))).mean(axis=1))
             if not found.any():
-                raise BadInput(f"{part.entry}: no boundary element of '{self.body.name}' has its middle in the region "
-                               f"(accepted: a region that holds a part of its boundary at the start)")
+                raise BadInput(
+                    f"{part.entry}: no boundary element of '{self.body.name}' has its middle in the region "
+                    f"(accepted: a region that holds a part of its boundary at the start)"
+                )
             return np.flatnonzero(found)
         sides = self.sides()
         if part.name not in sides:
-            raise BadInput(f"{part.entry}: '{self.body.name}' has no side or group '{brief(part.name)}' "
-                           f"(accepted: {', '.join(sides)}, or a region)")
+            raise BadInput(
+                f"{part.entry}: '{self.body.name}' has no side or group '{brief(part.name)}' "
+                f"(accepted: {', '.join(sides)}, or a region)"
+            )
         return sides[part.name]
 
     def sides(self) -> dict[str, np.ndarray]:
@@ -137,17 +183,26 @@ class _Surface:
         return {name: np.flatnonzero(one) for name, one in found.items() if one.any()}
 
     def _cavities(self) -> np.ndarray:
-        """Of half a section which elements bound cavities: what the axis cuts off from the outline is closed without it."""
+        """Of half a section which elements bound cavities: what the axis cuts off from the
+        outline is closed without it.
+        """
         surface = np.flatnonzero(self.made.labels != mesh.AXIS)
-        piece = mesh.pieces(len(self.made.points), self.made.sides[surface])[self.made.sides[surface, 0]]
-        reach = {one: self.made.points[self.made.sides[surface[piece == one]]][:, :, 0].max() for one in np.unique(piece)}
+        piece = mesh.pieces(len(self.made.points), self.made.sides[surface])[
+            self.made.sides[surface, 0]
+        ]
+        reach = {
+            one: self.made.points[self.made.sides[surface[piece == one]]][:, :, 0].max()
+            for one in np.unique(piece)
+        }
         outer = max(reach, key=lambda one: reach[one])
         inner = np.zeros(len(self.made.sides), dtype=bool)
         inner[surface[piece != outer]] = True
         return inner
 
     def fixed(self, support: Support, found: np.ndarray) -> tuple[bool, ...]:
-        """The components that a support holds; across the part where it says so. BadInput where that is along no axis."""
+        """The components that a support holds; across the part where it says so. BadInput
+        where that is along no axis.
+        """
         if not support.normal:
             return support.fixed
         corners = self.placed(found)
@@ -159,18 +214,28 @@ class _Surface:
         normals = abs(normals) / np.linalg.norm(normals, axis=1, keepdims=True)
         axis = int(normals.mean(axis=0).argmax())
         if abs(normals[:, axis] - 1).max() > ALONG:
-            raise BadInput(f"{support.part.entry.rpartition('.')[0]}.fix: 'normal', but the part is not flat across x, y or z "
-                           f"(accepted: all, {', '.join('xyz'[:self.of.axes])}, or a part that is)")
+            raise BadInput(
+                f"{support.part.entry.rpartition('.')[0]}.fix: 'normal', but the part is not flat across x, y or z "
+                f"(accepted: all, {', '.join('xyz'[: self.of.axes])}, or a part that is)"
+            )
         return tuple(axis == k for k in range(self.of.axes))
 
     def refuse_open(self, part: Part, found: np.ndarray) -> None:
-        """BadInput where elements do not enclose a cavity, together with planes or the axis of symmetry."""
+        """BadInput where elements do not enclose a cavity, together with planes or the axis
+        of symmetry.
+        """
         sides = self.made.sides[found]
-        ends = sides if self.of is not SOLID else np.sort(sides[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+        ends = (
+            sides
+            if self.of is not SOLID
+            else np.sort(sides[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+        )
         once = ends.ravel() if self.of is not SOLID else ends
         rims, count = np.unique(once, axis=0, return_counts=True)
         open_rims = self.made.points[rims[count == 1]] + self.body.position
-        folded = (0,) if self.of is AXISYMMETRIC else FOLDED[self.copies] if self.of is SOLID else ()
+        folded = (
+            (0,) if self.of is AXISYMMETRIC else FOLDED[self.copies] if self.of is SOLID else ()
+        )
         extent = np.ptp(self.own)
         closed = np.zeros(len(open_rims), dtype=bool)
         for axis in folded:
@@ -178,18 +243,24 @@ class _Surface:
             closed |= away.max(axis=1, initial=0.0) <= ON_SIDE * extent
         inner = self.sides().get("inner", np.array([], dtype=int))
         if not closed.all() or not np.isin(found, inner).all():
-            raise BadInput(f"{part.entry}: is no closed cavity of '{self.body.name}', which a gas is in "
-                           f"(accepted: 'inner' of a body with a hole or cavity, or a closed part of it)")
+            raise BadInput(
+                f"{part.entry}: is no closed cavity of '{self.body.name}', which a gas is in "
+                f"(accepted: 'inner' of a body with a hole or cavity, or a closed part of it)"
+            )
 
 
-def _refuse_touching(part: Part, corners: np.ndarray, k: int, bodies: Sequence[Body], obstacles: Sequence) -> None:
+def _refuse_touching(
+    part: Part, corners: np.ndarray, k: int, bodies: Sequence[Body], obstacles: Sequence
+) -> None:
     """BadInput where a part that is held touches an obstacle or another body at the start."""
     points = corners.reshape(-1, corners.shape[2])
     near = ON_SIDE * bodies[k].outline.half_thickness
     for other in [*(one for j, one in enumerate(bodies) if j != k), *obstacles]:
         gap = other.placed.gap(points) if isinstance(other, Body) else other.gap(points)
         if gap.min() <= near:
-            raise BadInput(f"{part.entry}: the part touches '{other.name}' at the start (accepted: a part that nothing touches)")
+            raise BadInput(
+                f"{part.entry}: the part touches '{other.name}' at the start (accepted: a part that nothing touches)"
+            )
 
 
 def _refuse_all_held(body: Body, surface: _Surface) -> None:
@@ -200,5 +271,6 @@ def _refuse_all_held(body: Body, surface: _Surface) -> None:
             held[surface.elements(support.part)] = True
     on = surface.own_labels
     if body.supports and held[on].all():
-        raise BadInput(f"{body.supports[0].part.entry}: the whole boundary of '{body.name}' is held (accepted: a part of it)")
-
+        raise BadInput(
+            f"{body.supports[0].part.entry}: the whole boundary of '{body.name}' is held (accepted: a part of it)"
+        )

@@ -1,4 +1,6 @@
-"""Studies: many runs of one scene, one FreeFem++ a core at most; whatever a run comes to becomes a row of a table."""
+"""Studies: many runs of one scene, one FreeFem++ a core at most; whatever a run comes to becomes a
+row of a table.
+"""
 
 import hashlib
 import os
@@ -26,41 +28,70 @@ from ..progress import Line, forward
 from ..running import run
 
 __all__ = [
-    "CORES", "Point", "cell", "complete", "outcomes", "place", "save", "side_by_side", "study",
-    "table", "there", "warned",
+    "CORES",
+    "Point",
+    "cell",
+    "complete",
+    "outcomes",
+    "place",
+    "save",
+    "side_by_side",
+    "study",
+    "table",
+    "there",
+    "warned",
 ]
 
 CORES = freefem.CORES
-POLL = 0.2                  # s between two looks at the progress of the runs
-LONGEST = 200               # characters of a folder's name
+POLL = 0.2  # s between two looks at the progress of the runs
+LONGEST = 200  # characters of a folder's name
 Key = TypeVar("Key", bound=Hashable)
-Point = dict[str, Value]    # the parameters that tell this run from the others of the study
+Point = dict[str, Value]  # the parameters that tell this run from the others of the study
 
 
-def study(points: list[Point], folder: Path, base: Point, limit: float, name: str = "disc-normal", cores: int = CORES) -> pd.DataFrame:
-    """A row for each of `points`, in their order: its parameters, exit, message, warnings (joined by "; "), reused, and
-    the numbers of its summary.
+def study(
+    points: list[Point],
+    folder: Path,
+    base: Point,
+    limit: float,
+    name: str = "disc-normal",
+    cores: int = CORES,
+) -> pd.DataFrame:
+    """A row for each of `points`, in their order: its parameters, exit, message, warnings
+    (joined by "; "), reused, and the numbers of its summary.
 
-    Every run is the scene `name` with `base` and the point's parameters on top, in folder/runs/, and may take `limit` seconds; `cores` of
-    them run at a time, none estimates its error. What is there already is not run again: finished runs, and failures of the same scene and
-    code. A run that fails is a row like any other, with its exit code and message; NotInstalled, without FreeFem++, is raised. Several
-    studies may share a folder: what one is running, the others leave to it.
+    Every run is the scene `name` with `base` and the point's parameters on top, in
+    folder/runs/, and may take `limit` seconds; `cores` of them run at a time, none estimates
+    its error. What is there already is not run again: finished runs, and failures of the same
+    scene and code. A run that fails is a row like any other, with its exit code and message;
+    NotInstalled, without FreeFem++, is raised. Several studies may share a folder: what one is
+    running, the others leave to it.
     """
     places = [place(folder, point) for point in points]
     given = scene.load(name)
     found = outcomes(points, folder, base, given)
-    tasks = {where: given.override(base | point) for where, point in zip(places, points) if where not in found}
+    tasks = {
+        where: given.override(base | point)
+        for where, point in zip(places, points)
+        if where not in found
+    }
     if tasks:
         freefem.find()
-        (folder / "runs").mkdir(parents=True, exist_ok=True)   # here: a run takes away what it had to make if it is interrupted
+        (folder / "runs").mkdir(
+            parents=True, exist_ok=True
+        )  # here: a run takes away what it had to make if it is interrupted
     acts = {where: partial(_outcome, where, wanted, limit) for where, wanted in tasks.items()}
     for where, outcome in side_by_side(acts, cores, "/".join(folder.parts[-2:]), len(found)):
         found[where] = _row(1, str(outcome), False, {}) if isinstance(outcome, Failure) else outcome
     return pd.DataFrame([point | found[where] for where, point in zip(places, points)])
 
 
-def outcomes(points: list[Point], folder: Path, base: Point, given: scene.Scene) -> dict[Path, dict]:
-    """By folder what is known of the points without a run: what is there already, and those that the scene `given` refuses."""
+def outcomes(
+    points: list[Point], folder: Path, base: Point, given: scene.Scene
+) -> dict[Path, dict]:
+    """By folder what is known of the points without a run: what is there already, and those
+    that the scene `given` refuses.
+    """
     found = {}
     for point in points:
         where = place(folder, point)
@@ -73,23 +104,29 @@ def outcomes(points: list[Point], folder: Path, base: Point, given: scene.Scene)
 
 
 def place(folder: Path, point: Point) -> Path:
-    """The result folder of a point of the study in `folder`, named after its parameters; where that is too long for a name by its hash."""
+    """The result folder of a point of the study in `folder`, named after its parameters; where
+    that is too long for a name by its hash.
+    """
     name = ",".join(f"{name}={value}" for name, value in point.items()).replace("/", "_") or "run"
     if len(name) > LONGEST:
-        name = f"{name[:LONGEST - 20]},{hashlib.sha256(name.encode()).hexdigest()[:16]}"
+        name = f"{name[: LONGEST - 20]},{hashlib.sha256(name.encode()).hexdigest()[:16]}"
     return folder / "runs" / name
 
 
-def side_by_side(acts: Mapping[Key, Callable], cores: int, name: str, before: int = 0) -> Iterator[tuple[Key, Any]]:
-    """Calls the `acts`, `cores` of them at a time, each in a thread, which mostly waits for its FreeFem++.
+def side_by_side(
+    acts: Mapping[Key, Callable], cores: int, name: str, before: int = 0
+) -> Iterator[tuple[Key, Any]]:
+    """Calls the `acts`, `cores` of them at a time, each in a thread, which mostly waits for its
+    FreeFem++.
 
-    Yields (key, what its act returns) as they end; a Failure where an act raises an error that it does not expect. An act that returns
-    None is called again later. Leaving this in any way ends the acts and their FreeFem++. A line of progress with this `name` says how
-    many of the acts are done, counting `before` that were done already.
+    Yields (key, what its act returns) as they end; a Failure where an act raises an error that
+    it does not expect. An act that returns None is called again later. Leaving this in any way
+    ends the acts and their FreeFem++. A line of progress with this `name` says how many of the
+    acts are done, counting `before` that were done already.
     """
     stop, done = threading.Event(), before
-    shares: dict[Key, float] = {}         # of the acts that are running
-    mesh.start_gmsh()                     # resets signal handlers, which only the main thread can restore
+    shares: dict[Key, float] = {}  # of the acts that are running
+    mesh.start_gmsh()  # resets signal handlers, which only the main thread can restore
 
     def told() -> str:
         return f"{done} of {before + len(acts)} done"
@@ -102,7 +139,7 @@ def side_by_side(acts: Mapping[Key, Callable], cores: int, name: str, before: in
                 for future in wait(running, POLL, FIRST_COMPLETED).done:
                     key, outcome = running.pop(future), _outcome_of(future)
                     shares.pop(key, None)
-                    if outcome is None:   # another study is running it
+                    if outcome is None:  # another study is running it
                         time.sleep(POLL)
                         running[pool.submit(_work, key, acts[key], stop, shares)] = key
                         continue
@@ -117,13 +154,17 @@ def side_by_side(acts: Mapping[Key, Callable], cores: int, name: str, before: in
 
 
 def _work(key: Key, act: Callable, stop: threading.Event, shares: dict[Key, float]) -> Any:
-    """One act in its thread: its progress goes into `shares`, and its FreeFem++ ends once `stop` is set."""
+    """One act in its thread: its progress goes into `shares`, and its FreeFem++ ends once
+    `stop` is set.
+    """
     with forward(lambda share, _: shares.update({key: share})), freefem.limited(stop=stop):
         return act()
 
 
 def _outcome_of(future: Future) -> Any:
-    """What an act has returned; a Failure where it raised an error that it does not expect, which is printed."""
+    """What an act has returned; a Failure where it raised an error that it does not expect,
+    which is printed.
+    """
     error = future.exception()
     if error is None:
         return future.result()
@@ -134,22 +175,29 @@ def _outcome_of(future: Future) -> Any:
 
 
 def there(folder: Path, wanted: scene.Scene) -> dict | None:
-    """The outcome that is in `folder` already: a finished run, or a failure of the same scene and code, which would be repeated."""
+    """The outcome that is in `folder` already: a finished run, or a failure of the same scene
+    and code, which would be repeated.
+    """
     for place in (folder, failed_beside(folder)):
         failed = read_json(place / "failure.json")
         made = failed.get("provenance") or {}
-        if failed.get("exit_code") in (11, 12) and made.get("code") == run.code_hash() and made.get("asked") == wanted.asked:
+        if (
+            failed.get("exit_code") in (11, 12)
+            and made.get("code") == run.code_hash()
+            and made.get("asked") == wanted.asked
+        ):
             return _row(failed["exit_code"], str(failed.get("message")), True, failed)
     try:
         result = run.reusable(wanted, folder)
-    except Failure:                                      # will be said by the run
+    except Failure:  # will be said by the run
         return None
     return result and _row(0, result.summary["message"], True, result.summary)
 
 
 def _outcome(folder: Path, wanted: scene.Scene, limit: float) -> dict | None:
-    """Exit code, message, whether it was there already, and the numbers of the summary, as far as the run came in `limit` seconds; None
-    where another run is at it."""
+    """Exit code, message, whether it was there already, and the numbers of the summary, as far
+    as the run came in `limit` seconds; None where another run is at it.
+    """
     if found := there(folder, wanted):
         return found
     try:
@@ -161,28 +209,50 @@ def _outcome(folder: Path, wanted: scene.Scene, limit: float) -> dict | None:
     except Failure as failure:
         record = read_json(failure.folder / "failure.json") if failure.folder else {}
         return _row(failure.code, str(failure), False, record)
-    except OSError as error:                             # a full disk
+    except OSError as error:  # a full disk
         return _row(Unreadable.code, f"{error.filename or folder}: {error.strerror}", False, {})
 
 
 def _row(code: int, message: str, reused: bool, summary: dict) -> dict:
-    numbers = {name: value for name, value in summary.items() if type(value) in (int, float) and name != "exit_code"}
-    return {"exit": code, "message": message, "warnings": "; ".join(summary.get("warnings", [])), "reused": reused} | numbers
+    numbers = {
+        name: value
+        for name, value in summary.items()
+        if type(value) in (int, float) and name != "exit_code"
+    }
+    return {
+        "exit": code,
+        "message": message,
+        "warnings": "; ".join(summary.get("warnings", [])),
+        "reused": reused,
+    } | numbers
 
 
 def warned(warnings: Iterable[str]) -> str:
-    """How many runs have which warning, from the warnings of each, joined by "; "; empty where none has any."""
+    """How many runs have which warning, from the warnings of each, joined by "; "; empty where
+    none has any.
+    """
     every = list(warnings)
-    counts = Counter(sentence.split(":")[0] for joined in every for sentence in joined.split("; ") if sentence)
-    return f"{', '.join(f'{name} in {count}' for name, count in counts.most_common())} of {len(every)} runs" if counts else ""
+    counts = Counter(
+        sentence.split(":")[0] for joined in every for sentence in joined.split("; ") if sentence
+    )
+    return (
+        f"{', '.join(f'{name} in {count}' for name, count in counts.most_common())} of {len(every)} runs"
+        if counts
+        else ""
+    )
 
 
 def table(frame: pd.DataFrame, formats: dict[str, str]) -> str:
-    """The columns named in `formats` (column: format, such as ".3f"; "" as it is) as a table of text in markdown."""
+    """The columns named in `formats` (column: format, such as ".3f"; "" as it is) as a table of
+    text in markdown.
+    """
     cells = [[cell(value, form) for value in frame[name]] for name, form in formats.items()]
     widths = [max(map(len, [name, *column])) for name, column in zip(formats, cells)]
     lines = [list(formats), ["-" * (width - 1) + ":" for width in widths], *zip(*cells)]
-    return "\n".join("| " + " | ".join(f"{cell:>{width}}" for cell, width in zip(line, widths)) + " |" for line in lines)
+    return "\n".join(
+        "| " + " | ".join(f"{cell:>{width}}" for cell, width in zip(line, widths)) + " |"
+        for line in lines
+    )
 
 
 def cell(value, form: str) -> str:
@@ -198,7 +268,9 @@ def save(frame: pd.DataFrame, path: Path) -> None:
 
 @contextmanager
 def complete(path: Path) -> Iterator[Path]:
-    """A name to write to, which takes the name `path` in the end: a reader or a second writer never sees half a file."""
+    """A name to write to, which takes the name `path` in the end: a reader or a second writer
+    never sees half a file.
+    """
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(f"part-{os.getpid()}-{path.name}")
     try:

@@ -1,22 +1,16 @@
-"""Sweeps as data: a TOML file names a scene, the values of its parameters, what to collect and how to draw it.
+"""Sweeps as data: a TOML file names a scene, the values of its parameters, what to collect and how
+to draw it.
 
-    scene = "disc-normal"                       # a built-in scene, or a scene file beside this one
-    collect = ["contact_time", "rebound_vy"]    # numbers of summary.json; left out: all of them
-    limit = 600                                 # seconds a run may take
-    [set]                                       # for every run; of a scene with bodies any entry: body.2.young, contact.penalty ...
-    law = "svk"
-    [product]                                   # every combination: lists, or ranges
-    nu = [0.30, 0.45]
-    speed = { from = 0.5, to = 11, points = 43 }             # spacing = "log" where it is wanted
-    [[zip]]                                     # goes together: one more axis of the product, any number of them
-    mesh_size = [0.01, 0.005]
-    dt = [4e-5, 2e-5]
-    [refine]                                    # every run again with these: the answer; the difference is its error bar
-    accuracy = 2.5e-3
-    [figure]                                    # see sweep_figures.py
-    x = "speed"
-    y = "contact_time"
-    by = "nu"
+scene = "disc-normal"                       # a built-in scene, or a scene file beside this one
+collect = ["contact_time", "rebound_vy"]    # numbers of summary.json; left out: all of them limit =
+600                                 # seconds a run may take [set]
+# for every run; of a scene with bodies any entry: body.2.young, contact.penalty ... law = "svk"
+[product]                                   # every combination: lists, or ranges nu = [0.30, 0.45]
+speed = { from = 0.5, to = 11, points = 43 }             # spacing = "log" where it is wanted
+[[zip]]                                     # goes together: one more axis of the product, any
+number of them mesh_size = [0.01, 0.005] dt = [4e-5, 2e-5] [refine]
+# every run again with these: the answer; the difference is its error bar accuracy = 2.5e-3 [figure]
+# see sweep_figures.py x = "speed" y = "contact_time" by = "nu"
 """
 
 import argparse
@@ -43,20 +37,22 @@ from . import study, sweep_figures
 
 __all__ = ["Sweep", "built_in", "collect", "load", "main", "report", "table"]
 
-SWEEPS = Path(__file__).resolve().parent   # the built-in sweeps are beside us
-LIMIT = 600.0                   # seconds a run may take
-MOST_RUNS = 20_000              # more than that is a slip of the pen
+SWEEPS = Path(__file__).resolve().parent  # the built-in sweeps are beside us
+LIMIT = 600.0  # seconds a run may take
+MOST_RUNS = 20_000  # more than that is a slip of the pen
 RANGE = ("from", "to", "points", "spacing")
 KEYS = ("title", "scene", "collect", "limit", "set", "product", "zip", "refine", "figure")
-SHOWN = 8                       # collected columns in the printed table; all are in sweep.csv
-RECORDED = (0, 11, 12)          # exit codes that are answers: finished, no step, the material broke down
-LASTING = (*RECORDED, 10)       # and bad input: the same run would end with them again
-FINER = ("accuracy", "mesh_size", "contact_mesh_size", "dt")   # a refinement makes these smaller
+SHOWN = 8  # collected columns in the printed table; all are in sweep.csv
+RECORDED = (0, 11, 12)  # exit codes that are answers: finished, no step, the material broke down
+LASTING = (*RECORDED, 10)  # and bad input: the same run would end with them again
+FINER = ("accuracy", "mesh_size", "contact_mesh_size", "dt")  # a refinement makes these smaller
 
 
 @dataclass(frozen=True)
 class Sweep:
-    """`points` are the parameters that tell the rows apart; `base` holds for all; `refine` is empty without error bars."""
+    """`points` are the parameters that tell the rows apart; `base` holds for all; `refine` is
+    empty without error bars.
+    """
 
     name: str
     title: str
@@ -67,8 +63,8 @@ class Sweep:
     collect: list[str]
     limit: float
     figure: dict
-    sample: scene.Scene      # a point's scene
-    text: str                   # the file
+    sample: scene.Scene  # a point's scene
+    text: str  # the file
 
     @property
     def axes(self) -> list[str]:
@@ -82,58 +78,95 @@ class Sweep:
 
 
 def main(argv: list[str]) -> int:
-    """Runs what is not there yet, writes DIR/sweep.csv and DIR/sweep.png; Failure where a run has no answer (10, 14, killed...)."""
-    parser = argparse.ArgumentParser(prog="ffimpact sweep", description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("sweep", metavar="SWEEP", help=f"a built-in sweep ({', '.join(built_in())}) or the path of a TOML file")
-    parser.add_argument("--out", metavar="DIR", type=Path, help="the result folder (default: results/sweeps/NAME)")
+    """Runs what is not there yet, writes DIR/sweep.csv and DIR/sweep.png; Failure where a run
+    has no answer (10, 14, killed...).
+    """
+    parser = argparse.ArgumentParser(
+        prog="ffimpact sweep",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        "sweep",
+        metavar="SWEEP",
+        help=f"a built-in sweep ({', '.join(built_in())}) or the path of a TOML file",
+    )
+    parser.add_argument(
+        "--out", metavar="DIR", type=Path, help="the result folder (default: results/sweeps/NAME)"
+    )
     parser.add_argument("--list", action="store_true", help="only list the runs")
-    parser.add_argument("--open", action="store_true", help="only list the runs that are not there yet")
-    parser.add_argument("--run", metavar="NAME", help="only this run of the list, without table and figure")
+    parser.add_argument(
+        "--open", action="store_true", help="only list the runs that are not there yet"
+    )
+    parser.add_argument(
+        "--run", metavar="NAME", help="only this run of the list, without table and figure"
+    )
     options = parser.parse_args(argv)
     wanted = load(options.sweep)
     out = result_folder(options.out or RESULTS / "sweeps" / wanted.name)
     names = {study.place(out, point).name: point for point in wanted.runs}
     if options.list or options.open:
-        there = study.outcomes([*names.values()], out, wanted.base, scene.load(wanted.scene)) if options.open else {}
-        print("\n".join(name for name, point in names.items() if study.place(out, point) not in there))
+        there = (
+            study.outcomes([*names.values()], out, wanted.base, scene.load(wanted.scene))
+            if options.open
+            else {}
+        )
+        print(
+            "\n".join(name for name, point in names.items() if study.place(out, point) not in there)
+        )
         return 0
     if options.run is not None and options.run not in names:
-        raise BadInput(f"--run: '{brief(options.run)}' is no run of {wanted.name} (accepted: see --list)")
+        raise BadInput(
+            f"--run: '{brief(options.run)}' is no run of {wanted.name} (accepted: see --list)"
+        )
     with _ours(wanted, out):
         if options.run is not None:
-            row = study.study([names[options.run]], out, wanted.base, wanted.limit, wanted.scene).iloc[0]
+            row = study.study(
+                [names[options.run]], out, wanted.base, wanted.limit, wanted.scene
+            ).iloc[0]
             print(f"{options.run}: {row.message or 'finished'}")
             return 0 if row.exit in LASTING else int(row.exit)
         rows = collect(wanted, out)
         print(report(wanted, rows, out))
     bad = rows[~rows.exit.isin(RECORDED)]
     if len(bad):
-        again = "" if bad.exit.isin(LASTING).all() else "; the same command runs again what was killed or did not end"
+        again = (
+            ""
+            if bad.exit.isin(LASTING).all()
+            else "; the same command runs again what was killed or did not end"
+        )
         first = study.place(Path(), bad[wanted.axes].iloc[0].to_dict()).name
-        raise Failure(f"{wanted.name}: {len(bad)} of {len(rows)} points have no answer, first: {first}: {bad.message.iloc[0]}{again}",
-                      code=int(bad.exit.iloc[0]) if bad.exit.nunique() == 1 else 1)
+        raise Failure(
+            f"{wanted.name}: {len(bad)} of {len(rows)} points have no answer, first: {first}: {bad.message.iloc[0]}{again}",
+            code=int(bad.exit.iloc[0]) if bad.exit.nunique() == 1 else 1,
+        )
     return 0
 
 
 @contextmanager
 def _ours(wanted: Sweep, out: Path) -> Iterator[None]:
-    """Keeps drivers of another sweep out of the folder while this one runs; drivers of the same sweep share it."""
+    """Keeps drivers of another sweep out of the folder while this one runs; drivers of the same
+    sweep share it.
+    """
     try:
         out.mkdir(parents=True, exist_ok=True)
         lock = os.open(out, os.O_RDONLY)
     except OSError as error:
         raise Unreadable(f"{out} cannot be made: {error.strerror}; choose another --out") from None
     try:
-        for _ in range(2):                                            # again where one died before it had written the file
+        for _ in range(2):  # again where one died before it had written the file
             try:
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)      # nobody here: the folder is ours
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)  # nobody here: the folder is ours
                 with study.complete(out / "sweep.toml") as part:
                     part.write_text(wanted.text)
             except BlockingIOError:
                 pass
-            fcntl.flock(lock, fcntl.LOCK_SH)  # waits for one who is just writing the file; from here on nobody changes it
-            if (out / "sweep.toml").exists() and (out / "sweep.toml").read_bytes() == wanted.text.encode():
+            fcntl.flock(
+                lock, fcntl.LOCK_SH
+            )  # waits for one who is just writing the file; from here on nobody changes it
+            if (out / "sweep.toml").exists() and (
+                out / "sweep.toml"
+            ).read_bytes() == wanted.text.encode():
                 break
         else:
             raise Busy(f"{out} is being written by another sweep; wait, or choose another --out")
@@ -144,13 +177,16 @@ def _ours(wanted: Sweep, out: Path) -> Iterator[None]:
 
 # ---- the file
 
+
 def built_in() -> list[str]:
     """Names of the sweeps that come with the program."""
     return sorted(path.stem for path in SWEEPS.glob("*.toml"))
 
 
 def load(name: str) -> Sweep:
-    """A built-in sweep, or that of a TOML file; BadInput names the file, the field, the value and what is accepted."""
+    """A built-in sweep, or that of a TOML file; BadInput names the file, the field, the value
+    and what is accepted.
+    """
     path = SWEEPS / f"{name}.toml" if name in built_in() else Path(name)
     text, given = scene.read_toml(path, scene.absent(name, "sweep", built_in()))
     try:
@@ -162,27 +198,46 @@ def load(name: str) -> Sweep:
 def _sweep(path: Path, given: dict, text: str) -> Sweep:
     for key in given:
         if key not in KEYS:
-            raise BadInput(f"{brief(key)}: no such entry{suggestion(key, KEYS)} (accepted: {', '.join(KEYS)})")
-    tables = {key: _is(given.get(key, {}), dict, key, "a table") for key in ("set", "product", "refine", "figure")}
+            raise BadInput(
+                f"{brief(key)}: no such entry{suggestion(key, KEYS)} (accepted: {', '.join(KEYS)})"
+            )
+    tables = {
+        key: _is(given.get(key, {}), dict, key, "a table")
+        for key in ("set", "product", "refine", "figure")
+    }
     groups = _is(given.get("zip", []), list, "zip", "tables [[zip]]")
     name = given.get("scene", "disc-normal")
     if _is(name, str, "scene", "a name") not in scene.built_in():
         name = os.path.join(path.parent.resolve(), name)
     of = scene.load(name)
     base, refine = (of.check(_flat(tables[key])) for key in ("set", "refine"))
-    axes = [[{name: value} for value in _values(name, values, of)] for name, values in _flat(tables["product"]).items()]
+    axes = [
+        [{name: value} for value in _values(name, values, of)]
+        for name, values in _flat(tables["product"]).items()
+    ]
     axes += [_together(_flat(_is(group, dict, "zip", "tables [[zip]]")), of) for group in groups]
     count = int(np.prod([len(axis) for axis in axes])) * (2 if refine else 1)
     if not axes:
-        raise BadInput("product: nothing varies (accepted: at least one parameter in [product] or [[zip]])")
+        raise BadInput(
+            "product: nothing varies (accepted: at least one parameter in [product] or [[zip]])"
+        )
     if count > MOST_RUNS:
         raise BadInput(f"product: {count} runs (accepted: up to {MOST_RUNS})")
     varied = [name for axis in axes for name in axis[0]]
     for where, names in (("set", base), ("product", varied), ("refine", refine)):
-        twice = sorted(name for name in names if (varied.count(name) > 1 if where == "product" else name in varied))
+        twice = sorted(
+            name
+            for name in names
+            if (varied.count(name) > 1 if where == "product" else name in varied)
+        )
         if twice:
-            raise BadInput(f"{where}: {brief(twice[0])} is given twice (accepted: once, in [set], [product] or [[zip]])")
-    points = [{name: value for part in parts for name, value in part.items()} for parts in itertools.product(*axes)]
+            raise BadInput(
+                f"{where}: {brief(twice[0])} is given twice (accepted: once, in [set], [product] or [[zip]])"
+            )
+    points = [
+        {name: value for part in parts for name, value in part.items()}
+        for parts in itertools.product(*axes)
+    ]
     if len({tuple(point.values()) for point in points}) < len(points):
         raise BadInput("zip: two points are the same (accepted: every combination once)")
     sample = _sample(of, {"fields": 0} | base, points)
@@ -193,19 +248,38 @@ def _sweep(path: Path, given: dict, text: str) -> Sweep:
         if each not in known:
             raise BadInput(f"collect: {unknown(each, known, ', ')}")
         if wanted.count(each) > 1:
-            raise BadInput(f"collect: '{brief(each)}' is given twice (accepted: {', '.join(known)})")
+            raise BadInput(
+                f"collect: '{brief(each)}' is given twice (accepted: {', '.join(known)})"
+            )
     limit = given.get("limit", LIMIT)
     if type(limit) not in (int, float) or not 1 <= limit <= 1e6:
         raise BadInput(f"limit: {brief(limit)} (accepted: 1 to 1e6 seconds)")
-    figure = sweep_figures.check(tables["figure"], points, wanted,
-                                 of.columns) | {"per": dimension.per_metre(of.script)} if tables["figure"] else {}
+    figure = (
+        sweep_figures.check(tables["figure"], points, wanted, of.columns)
+        | {"per": dimension.per_metre(of.script)}
+        if tables["figure"]
+        else {}
+    )
     base = {"fields": 0} | base
-    return Sweep(path.stem, str(given.get("title", path.stem)), name, base, points, refine, wanted, float(limit), figure, sample, text)
+    return Sweep(
+        path.stem,
+        str(given.get("title", path.stem)),
+        name,
+        base,
+        points,
+        refine,
+        wanted,
+        float(limit),
+        figure,
+        sample,
+        text,
+    )
 
 
 def _sample(of: scene.Scene, base: study.Point, points: list[study.Point]) -> scene.Scene:
-    """The scene of the first point that is accepted; BadInput, as of the first point, where none is. One that is refused keeps no other
-    from its run."""
+    """The scene of the first point that is accepted; BadInput, as of the first point, where
+    none is. One that is refused keeps no other from its run.
+    """
     refused = None
     for point in points:
         try:
@@ -217,12 +291,21 @@ def _sample(of: scene.Scene, base: study.Point, points: list[study.Point]) -> sc
 
 def _finer(refine: study.Point, values: study.Point, points: list[study.Point]) -> None:
     """BadInput where `refine` changes nothing, or makes coarser what it should make finer."""
-    if refine and all(all((values | point).get(name) == value for name, value in refine.items()) for point in points):
-        raise BadInput(f"refine: {', '.join(refine)} as in the runs themselves (accepted: other values, or no [refine])")
+    if refine and all(
+        all((values | point).get(name) == value for name, value in refine.items())
+        for point in points
+    ):
+        raise BadInput(
+            f"refine: {', '.join(refine)} as in the runs themselves (accepted: other values, or no [refine])"
+        )
     for name in set(refine) & set(FINER):
-        coarse = min((values | point)[name] for point in points)       # of bodies the largest that one gives
+        coarse = min(
+            (values | point)[name] for point in points
+        )  # of bodies the largest that one gives
         if coarse > 0 and not 0 < refine[name] < coarse:
-            raise BadInput(f"refine: {brief(name)} = {refine[name]:g} is not finer (accepted: above 0, below {coarse:g})")
+            raise BadInput(
+                f"refine: {brief(name)} = {refine[name]:g} is not finer (accepted: above 0, below {coarse:g})"
+            )
 
 
 def _is(value, kind: type, name: str, words: str):
@@ -232,7 +315,9 @@ def _is(value, kind: type, name: str, words: str):
 
 
 def _flat(table: dict, path: str = "") -> dict:
-    """The entries of a table by dotted names: body.2.young stands in nested tables where its name is not in quotes."""
+    """The entries of a table by dotted names: body.2.young stands in nested tables where its
+    name is not in quotes.
+    """
     found = {}
     for name, value in table.items():
         nested = isinstance(value, dict) and not set(value) & set(RANGE)
@@ -244,20 +329,34 @@ def _values(name: str, given: list | dict, of: scene.Scene) -> list[Value]:
     """The checked values of an axis of a sweep of the scene `of`, from a list or a range."""
     if isinstance(given, dict):
         if not set(RANGE[:3]) <= set(given) <= set(RANGE):
-            raise BadInput(f"{brief(name)}: {brief(given)} is no range (accepted: from, to, points and perhaps spacing)")
-        low, high, points, spacing = *(given[key] for key in ("from", "to", "points")), given.get("spacing", "linear")
+            raise BadInput(
+                f"{brief(name)}: {brief(given)} is no range (accepted: from, to, points and perhaps spacing)"
+            )
+        low, high, points, spacing = (
+            *(given[key] for key in ("from", "to", "points")),
+            given.get("spacing", "linear"),
+        )
         if spacing not in ("linear", "log"):
             raise BadInput(f"{brief(name)}: spacing {unknown(spacing, ('linear', 'log'))}")
         rule = parameters.PARAMETERS.get(name.rpartition(".")[2])
         if rule and rule.kind == "word" or not {type(low), type(high)} <= {int, float}:
-            raise BadInput(f"{brief(name)}: a range needs a parameter that is a number, from and to numbers")
+            raise BadInput(
+                f"{brief(name)}: a range needs a parameter that is a number, from and to numbers"
+            )
         low, high = (of.check({name: number})[name] for number in (low, high))
         if spacing == "log" and min(low, high) <= 0:
-            raise BadInput(f"{brief(name)}: from {brief(low)} to {brief(high)} (accepted for log: above 0)")
+            raise BadInput(
+                f"{brief(name)}: from {brief(low)} to {brief(high)} (accepted for log: above 0)"
+            )
         if type(points) is not int or not 2 <= points <= MOST_RUNS:
             raise BadInput(f"{brief(name)}: points = {brief(points)} (accepted: 2 to {MOST_RUNS})")
-        given = [float(f"{value:.10g}") for value in (np.geomspace if spacing == "log" else np.linspace)(low, high, points)]
-    values = [_single(name, value, of) for value in _is(given, list, name, "a list of values, or a range")]
+        given = [
+            float(f"{value:.10g}")
+            for value in (np.geomspace if spacing == "log" else np.linspace)(low, high, points)
+        ]
+    values = [
+        _single(name, value, of) for value in _is(given, list, name, "a list of values, or a range")
+    ]
     if not values or len(set(values)) < len(values):
         raise BadInput(f"{brief(name)}: {brief(given)} (accepted: at least one value, none twice)")
     return values
@@ -266,21 +365,32 @@ def _values(name: str, given: list | dict, of: scene.Scene) -> list[Value]:
 def _single(name: str, value, of: scene.Scene) -> Value:
     """A checked value of an axis: a number or a word."""
     if isinstance(value, list | dict):
-        raise BadInput(f"{brief(name)}: {brief(value)} (accepted: single numbers and words, as body.1.velocity.2 for one of two)")
+        raise BadInput(
+            f"{brief(name)}: {brief(value)} (accepted: single numbers and words, as body.1.velocity.2 for one of two)"
+        )
     return of.check({name: value})[name]
 
 
 def _together(group: dict, of: scene.Scene) -> list[study.Point]:
     """A [[zip]]: its parameters go through their values together."""
-    columns = {name: [_single(name, value, of) for value in _is(values, list, name, "a list of values")]
-               for name, values in group.items()}
-    if not columns or len({len(values) for values in columns.values()}) > 1 or not all(columns.values()):
-        raise BadInput(f"zip: {', '.join(f'{name} has {len(values)} values' for name, values in columns.items()) or 'nothing in it'} "
-                       "(accepted: lists of one length)")
+    columns = {
+        name: [_single(name, value, of) for value in _is(values, list, name, "a list of values")]
+        for name, values in group.items()
+    }
+    if (
+        not columns
+        or len({len(values) for values in columns.values()}) > 1
+        or not all(columns.values())
+    ):
+        raise BadInput(
+            f"zip: {', '.join(f'{name} has {len(values)} values' for name, values in columns.items()) or 'nothing in it'} "
+            "(accepted: lists of one length)"
+        )
     return [dict(zip(columns, values)) for values in zip(*columns.values())]
 
 
 # ---- the table
+
 
 def collect(wanted: Sweep, out: Path) -> pd.DataFrame:
     """Runs what is not there yet; the table, saved as sweep.csv, with its figure."""
@@ -291,13 +401,14 @@ def collect(wanted: Sweep, out: Path) -> pd.DataFrame:
 
 
 def table(wanted: Sweep, out: Path) -> pd.DataFrame:
-    """Runs what is not there yet; a row a point, tidy: what varies, exit, message, warnings, what is collected, with `refine` of the
-    refined run and beside it <name>_error [same unit], |refined - plain|; seconds.
+    """Runs what is not there yet; a row a point, tidy: what varies, exit, message, warnings,
+    what is collected, with `refine` of the refined run and beside it <name>_error [same unit],
+    |refined - plain|; seconds.
 
     A point of which a run failed keeps that run's exit code and message, and has no numbers.
     """
     runs = study.study(wanted.runs, out, wanted.base, wanted.limit, wanted.scene)
-    for name in wanted.collect:                       # where no run came so far
+    for name in wanted.collect:  # where no run came so far
         if name not in runs:
             runs[name] = np.nan
     n = len(wanted.points)
@@ -305,24 +416,39 @@ def table(wanted: Sweep, out: Path) -> pd.DataFrame:
     rows = fine[wanted.axes + ["exit", "message", "warnings"] + wanted.collect].copy()
     if wanted.refine:
         worse = (plain.exit != 0) & (fine.exit == 0)
-        rows.loc[worse, ["exit", "message", "warnings"]] = plain.loc[worse, ["exit", "message", "warnings"]]
+        rows.loc[worse, ["exit", "message", "warnings"]] = plain.loc[
+            worse, ["exit", "message", "warnings"]
+        ]
         errors = {f"{name}_error": (fine[name] - plain[name]).abs() for name in wanted.collect}
         rows = pd.concat([rows, pd.DataFrame(errors)], axis=1)
     rows[wanted.collect] = rows[wanted.collect].where(rows.exit == 0)
-    rows["seconds"] = plain.get("wall_seconds", np.nan) + (fine.get("wall_seconds", np.nan) if wanted.refine else 0)
+    rows["seconds"] = plain.get("wall_seconds", np.nan) + (
+        fine.get("wall_seconds", np.nan) if wanted.refine else 0
+    )
     return rows
 
 
 def _units(wanted: Sweep, names: list[str]) -> str:
-    """The units of columns of sweep.csv: parameters' and those of the summary, as they stand there."""
+    """The units of columns of sweep.csv: parameters' and those of the summary, as they stand
+    there.
+    """
     said = describe_results(script=wanted.sample.script)["meanings"]["summary"]
-    units = {name: said[key][0] if (key := re.sub("_[0-9]+$", "", name)) in said else sweep_figures.unit_of(name) for name in names}
-    found = ", ".join(f"{name} {unit}" for name, unit in units.items() if unit not in ("", "-", "1"))
+    units = {
+        name: said[key][0]
+        if (key := re.sub("_[0-9]+$", "", name)) in said
+        else sweep_figures.unit_of(name)
+        for name in names
+    }
+    found = ", ".join(
+        f"{name} {unit}" for name, unit in units.items() if unit not in ("", "-", "1")
+    )
     return f"units: {found}" if found else "units: none"
 
 
 def report(wanted: Sweep, rows: pd.DataFrame, out: Path) -> str:
-    """What was found, point by point where the table is short, failures with their reasons, where the files are."""
+    """What was found, point by point where the table is short, failures with their reasons,
+    where the files are.
+    """
     lines = [wanted.title]
     if len(rows) <= 60:
         text = rows[wanted.axes].copy()
@@ -331,16 +457,31 @@ def report(wanted: Sweep, rows: pd.DataFrame, out: Path) -> str:
             if wanted.refine:
                 errors = sweep_figures.bars_of_all(wanted, rows, name)
                 text[name] += ["" if np.isnan(error) else f" ± {error:.2g}" for error in errors]
-        lines += [study.table(text, {name: "g" if name in wanted.axes and pd.api.types.is_numeric_dtype(rows[name]) else ""
-                                     for name in text}), _units(wanted, list(text)), ""]
+        lines += [
+            study.table(
+                text,
+                {
+                    name: "g"
+                    if name in wanted.axes and pd.api.types.is_numeric_dtype(rows[name])
+                    else ""
+                    for name in text
+                },
+            ),
+            _units(wanted, list(text)),
+            "",
+        ]
     failed = rows[rows.exit != 0]
     for (code, message), group in failed.groupby(["exit", "message"], sort=False):
-        where = "; ".join(study.place(Path(), point).name for point in group[wanted.axes].to_dict("records"))
+        where = "; ".join(
+            study.place(Path(), point).name for point in group[wanted.axes].to_dict("records")
+        )
         lines.append(f"failed, exit {code}: {where}: {message}")
     lines += [f"released: {sentence}" for sentence in wanted.sample.released]
     if found := study.warned(rows.warnings):
         lines.append(f"warnings: {found}")
     lines += sweep_figures.findings(wanted, rows, out)
     files = ", ".join(path.name for path in (out / "sweep.csv", out / "sweep.png") if path.exists())
-    lines.append(f"{len(rows) - len(failed)} of {len(rows)} points finished; {shown(out)}/: {files}")
+    lines.append(
+        f"{len(rows) - len(failed)} of {len(rows)} points finished; {shown(out)}/: {files}"
+    )
     return "\n".join(lines)

@@ -5,8 +5,9 @@
                         level, band: where colour = level +- band
     kind = "histories"  y (a column of history.csv), panel, by: y over time, a panel a value of `panel`, a line a value of `by`
 
-x, y of a map, by and panel are parameters that vary and together tell all points apart; the y of lines and colour are numbers
-that are collected. The x of lines is logarithmic where its values span a decade and are spaced so.
+x, y of a map, by and panel are parameters that vary and together tell all points apart; the y of
+lines and colour are numbers that are collected. The x of lines is logarithmic where its values span
+a decade and are spaced so.
 """
 
 import itertools
@@ -42,20 +43,45 @@ from ..report.figures import (
 from . import study
 
 __all__ = [
-    "FALLS", "LEVEL", "MAXIMUM", "MINIMUM", "RISES", "Trend", "UNEVEN", "bars", "bars_of_all",
-    "check", "course", "distance", "distances", "draw", "findings", "force", "label", "level_set",
-    "ranges", "spans", "steps_against", "trend", "unit_of",
+    "FALLS",
+    "LEVEL",
+    "MAXIMUM",
+    "MINIMUM",
+    "RISES",
+    "Trend",
+    "UNEVEN",
+    "bars",
+    "bars_of_all",
+    "check",
+    "course",
+    "distance",
+    "distances",
+    "draw",
+    "findings",
+    "force",
+    "label",
+    "level_set",
+    "ranges",
+    "spans",
+    "steps_against",
+    "trend",
+    "unit_of",
 ]
 
-KINDS = {"lines": ("x", "y", "by"), "map": ("x", "y", "colour", "by", "panel", "level", "band"), "histories": ("y", "panel", "by")}
+KINDS = {
+    "lines": ("x", "y", "by"),
+    "map": ("x", "y", "colour", "by", "panel", "level", "band"),
+    "histories": ("y", "panel", "by"),
+}
 WORDS = {"nu": "ν", "penalty": "k"}
-SPAN = 1e3       # of the values over an axis from which it is logarithmic
+SPAN = 1e3  # of the values over an axis from which it is logarithmic
 COLOURS, MARKERS = (BLUE, ORANGE, GREEN, PURPLE, GREY), "osd^v"
 
 
 def check(given: dict, points: list[dict], collected: list[str], columns: list[str]) -> dict:
-    """The [figure] of a sweep, completed; empty if none was given; `columns` are those of its histories. BadInput where it cannot be drawn
-    or would mix points up."""
+    """The [figure] of a sweep, completed; empty if none was given; `columns` are those of its
+    histories. BadInput where it cannot be drawn or would mix points up.
+    """
     if not given:
         return {}
     kind, varied = given.get("kind", "lines"), list(points[0])
@@ -63,12 +89,18 @@ def check(given: dict, points: list[dict], collected: list[str], columns: list[s
         raise BadInput(f"figure: kind {unknown(kind, KINDS)}")
     for key in given:
         if key not in ("kind", *KINDS[kind]):
-            raise BadInput(f"figure: {brief(key)}: no such entry for {kind}{suggestion(key, KINDS[kind])} "
-                           f"(accepted: {', '.join(KINDS[kind])})")
+            raise BadInput(
+                f"figure: {brief(key)}: no such entry for {kind}{suggestion(key, KINDS[kind])} "
+                f"(accepted: {', '.join(KINDS[kind])})"
+            )
     figure = {"kind": kind, "by": None, "panel": None, "level": None, "band": 0.0} | given
     if kind != "map" and isinstance(figure.get("y"), str):
         figure["y"] = [figure["y"]]
-    axes, results = {"lines": (("x",), ("y",)), "map": (("x", "y"), ("colour",)), "histories": ((), ("y",))}[kind]
+    axes, results = {
+        "lines": (("x",), ("y",)),
+        "map": (("x", "y"), ("colour",)),
+        "histories": ((), ("y",)),
+    }[kind]
     telling = [*axes, *(key for key in ("by", "panel") if figure[key] is not None)]
     for key in telling:
         _name(key, figure.get(key), varied)
@@ -76,14 +108,20 @@ def check(given: dict, points: list[dict], collected: list[str], columns: list[s
     for key in results:
         names = figure.get(key) if key == "y" else [figure.get(key)]
         if not isinstance(names, list) or not names:
-            raise BadInput(f"figure: {key} is missing (accepted: one or several of {', '.join(accepted)})")
+            raise BadInput(
+                f"figure: {key} is missing (accepted: one or several of {', '.join(accepted)})"
+            )
         for name in names:
             _name(key, name, accepted)
     used = [figure[key] for key in telling]
-    if len(set(used)) < len(used) or len({tuple(point[name] for name in used) for point in points}) < len(points):
-        raise BadInput(f"figure: {', '.join(used) or 'nothing'} does not tell the points apart (accepted: different names for "
-                       f"{', '.join((*axes, *(key for key in ('by', 'panel') if key in KINDS[kind])))}, that together do; "
-                       f"{', '.join(varied)} vary)")
+    if len(set(used)) < len(used) or len(
+        {tuple(point[name] for name in used) for point in points}
+    ) < len(points):
+        raise BadInput(
+            f"figure: {', '.join(used) or 'nothing'} does not tell the points apart (accepted: different names for "
+            f"{', '.join((*axes, *(key for key in ('by', 'panel') if key in KINDS[kind])))}, that together do; "
+            f"{', '.join(varied)} vary)"
+        )
     if kind == "map":
         _check_map(figure, points)
     return figure
@@ -91,7 +129,9 @@ def check(given: dict, points: list[dict], collected: list[str], columns: list[s
 
 def _name(key: str, name, accepted: list[str]) -> None:
     if not isinstance(name, str) or name not in accepted:
-        raise BadInput(f"figure: {key} {'is missing' if name is None else f'= {brief(repr(name))}'} (accepted: {', '.join(accepted)})")
+        raise BadInput(
+            f"figure: {key} {'is missing' if name is None else f'= {brief(repr(name))}'} (accepted: {', '.join(accepted)})"
+        )
 
 
 def _check_map(figure: dict, points: list[dict]) -> None:
@@ -99,13 +139,17 @@ def _check_map(figure: dict, points: list[dict]) -> None:
     for key in ("x", "y"):
         values = {point[figure[key]] for point in points}
         if len(values) < 2 or any(isinstance(value, str) for value in values):
-            raise BadInput(f"figure: {key} = '{brief(figure[key])}' (accepted for a map: a parameter with at least two numbers)")
+            raise BadInput(
+                f"figure: {key} = '{brief(figure[key])}' (accepted for a map: a parameter with at least two numbers)"
+            )
     for key in ("level", "band"):
         value = figure[key]
         if value is not None and (type(value) not in (int, float) or not 0 <= value < 1e300):
             raise BadInput(f"figure: {key} = {brief(value)} (accepted: a number from 0 on)")
     if figure["level"] is not None and min(point[figure["y"]] for point in points) <= 0:
-        raise BadInput(f"figure: y = '{brief(figure['y'])}' has values up to 0 (accepted with a level: above 0)")
+        raise BadInput(
+            f"figure: y = '{brief(figure['y'])}' has values up to 0 (accepted with a level: above 0)"
+        )
 
 
 def draw(sweep, rows: pd.DataFrame, out: Path) -> None:
@@ -113,39 +157,59 @@ def draw(sweep, rows: pd.DataFrame, out: Path) -> None:
     if not sweep.figure:
         return
     with plt.rc_context(STYLE):
-        figure = {"lines": _lines, "map": _map, "histories": _histories}[sweep.figure["kind"]](sweep, rows, out)
+        figure = {"lines": _lines, "map": _map, "histories": _histories}[sweep.figure["kind"]](
+            sweep, rows, out
+        )
         figure.suptitle("\n".join(filter(None, [as_written(sweep.title), _constants(sweep)])))
         with study.complete(out / "sweep.png") as part:
             save(figure, part)
 
 
 def _constants(sweep) -> str:
-    """What is the same in all runs of a body: law, nu, speed, contact stiffness and, with friction, the slip velocity."""
+    """What is the same in all runs of a body: law, nu, speed, contact stiffness and, with
+    friction, the slip velocity.
+    """
     used = sweep.sample.given
-    names = ("law", "nu", "speed", "penalty") + ("slip_velocity",) * (used.get("friction_static", 0) > 0)
-    words = ", ".join(_value(name, used[name]) for name in names if name in used and name not in sweep.axes)
+    names = ("law", "nu", "speed", "penalty") + ("slip_velocity",) * (
+        used.get("friction_static", 0) > 0
+    )
+    words = ", ".join(
+        _value(name, used[name]) for name in names if name in used and name not in sweep.axes
+    )
     return words.replace("Pa/m^m", "Pa/m") if used.get("exponent", 1) == 1 else words
 
 
 def findings(sweep, rows: pd.DataFrame, out: Path) -> list[str]:
-    """What the figure shows, in words: trends over x, the set that meets a level, the distances of histories."""
+    """What the figure shows, in words: trends over x, the set that meets a level, the distances
+    of histories.
+    """
     if not sweep.figure:
         return []
     kind = sweep.figure["kind"]
     if kind == "lines":
         if not pd.api.types.is_numeric_dtype(rows[sweep.figure["x"]]):
             return []
-        return [trend(group, sweep.figure["x"], y, words, sweep.figure["per"]) for y in sweep.figure["y"]
-                for words, group in _groups(sweep, rows, "by")]
+        return [
+            trend(group, sweep.figure["x"], y, words, sweep.figure["per"])
+            for y in sweep.figure["y"]
+            for words, group in _groups(sweep, rows, "by")
+        ]
     if kind == "map":
-        return [line for words, group in _maps(sweep, rows) for line in _set(sweep.figure, words, group)]
-    return [f"{panel}: ".removeprefix(": ") + f"relative L2 difference of {y.replace('_', ' ')}, {a} and {b}: {100 * value:.1f} %"
-            + (f" (mesh and step change {100 * bar:.1f} %)" if sweep.refine else "")
-            for panel, y, a, b, value, bar in distances(sweep, rows, out)]
+        return [
+            line for words, group in _maps(sweep, rows) for line in _set(sweep.figure, words, group)
+        ]
+    return [
+        f"{panel}: ".removeprefix(": ")
+        + f"relative L2 difference of {y.replace('_', ' ')}, {a} and {b}: {100 * value:.1f} %"
+        + (f" (mesh and step change {100 * bar:.1f} %)" if sweep.refine else "")
+        for panel, y, a, b, value, bar in distances(sweep, rows, out)
+    ]
 
 
 def label(name: str, per: str = "/m") -> str:
-    """The words and the unit of a parameter or a number of the summary, for an axis; per: "/m" in plane strain, "" of a ball."""
+    """The words and the unit of a parameter or a number of the summary, for an axis; per: "/m"
+    in plane strain, "" of a ball.
+    """
     unit = _quantity(name, per).unit or unit_of(name)
     return _words(name) if unit in ("-", "", "of the start") else f"{_words(name)} [{unit}]"
 
@@ -155,9 +219,14 @@ def _words(name: str) -> str:
 
 
 def _quantity(name: str, per: str = "/m") -> report.Quantity:
-    """The row of the report, also of one of several bodies; of what is in none one without a unit."""
+    """The row of the report, also of one of several bodies; of what is in none one without a
+    unit.
+    """
     key = re.sub("_[0-9]+$", "", name)
-    return next((quantity for quantity in report.rows(per) if quantity.key == key), report.Quantity(key, key))
+    return next(
+        (quantity for quantity in report.rows(per) if quantity.key == key),
+        report.Quantity(key, key),
+    )
 
 
 def _unit(name: str, per: str) -> str:
@@ -182,7 +251,9 @@ def unit_of(name: str) -> str:
 
 
 def _groups(sweep, rows: pd.DataFrame, key: str) -> Iterator[tuple[str, pd.DataFrame]]:
-    """(words, rows) for each value of the parameter that [figure] names as `key`; all rows where it names none."""
+    """(words, rows) for each value of the parameter that [figure] names as `key`; all rows
+    where it names none.
+    """
     name = sweep.figure.get(key)
     if name is None:
         yield "", rows
@@ -193,23 +264,54 @@ def _groups(sweep, rows: pd.DataFrame, key: str) -> Iterator[tuple[str, pd.DataF
 
 # ---- lines
 
+
 def _lines(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
     x, names = sweep.figure["x"], sweep.figure["y"]
-    figure, grid = plt.subplots(len(names), figsize=(6.4, 3.9 if len(names) == 1 else 2.6 * len(names)), sharex=True, squeeze=False)
+    figure, grid = plt.subplots(
+        len(names),
+        figsize=(6.4, 3.9 if len(names) == 1 else 2.6 * len(names)),
+        sharex=True,
+        squeeze=False,
+    )
     for axes, y in zip(grid[:, 0], names):
-        for k, ((words, group), colour,
-                marker) in enumerate(zip(_groups(sweep, rows, "by"), itertools.cycle(COLOURS), itertools.cycle(MARKERS))):
+        for k, ((words, group), colour, marker) in enumerate(
+            zip(_groups(sweep, rows, "by"), itertools.cycle(COLOURS), itertools.cycle(MARKERS))
+        ):
             group = group.sort_values(x)
             there = group.exit == 0
             errors = _quantity(y).factor * bars(group[there], y)
-            axes.errorbar(group[x][there], _quantity(y).factor * group[y][there], None if np.isnan(errors).all() else errors, color=colour,
-                          marker=marker, markersize=3, linewidth=1.1, elinewidth=0.9, capsize=1.5, label=words or None)
+            axes.errorbar(
+                group[x][there],
+                _quantity(y).factor * group[y][there],
+                None if np.isnan(errors).all() else errors,
+                color=colour,
+                marker=marker,
+                markersize=3,
+                linewidth=1.1,
+                elinewidth=0.9,
+                capsize=1.5,
+                label=words or None,
+            )
             if not there.all():
-                why = "broke down (det F ≤ 0), no value" if (group.exit[~there] == 12).all() else "failed, no value"
-                axes.plot(group[x][~there], np.full((~there).sum(), -0.03 - 0.03 * k), marker="x", linestyle="", markersize=4, color=colour,
-                          transform=axes.get_xaxis_transform(), clip_on=False,
-                          label=f"{words}: {why}".removeprefix(": "))
-                axes.tick_params(axis="x", pad=3.5 + 9 * (k + 1))     # its row of marks is below the axis, where no value can be
+                why = (
+                    "broke down (det F ≤ 0), no value"
+                    if (group.exit[~there] == 12).all()
+                    else "failed, no value"
+                )
+                axes.plot(
+                    group[x][~there],
+                    np.full((~there).sum(), -0.03 - 0.03 * k),
+                    marker="x",
+                    linestyle="",
+                    markersize=4,
+                    color=colour,
+                    transform=axes.get_xaxis_transform(),
+                    clip_on=False,
+                    label=f"{words}: {why}".removeprefix(": "),
+                )
+                axes.tick_params(
+                    axis="x", pad=3.5 + 9 * (k + 1)
+                )  # its row of marks is below the axis, where no value can be
         _published(axes, sweep, x, y)
         axes.set_ylabel(label(y, sweep.figure["per"]))
         axes.grid(alpha=0.3)
@@ -221,42 +323,61 @@ def _lines(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
             axes.xaxis.set_major_formatter("{x:g}")
             axes.xaxis.set_minor_locator(NullLocator())
     grid[-1, 0].set_xlabel(label(x))
-    handles = sorted(zip(*grid[0, 0].get_legend_handles_labels()), key=lambda each: isinstance(each[0], plt.Line2D))      # the curves first
+    handles = sorted(
+        zip(*grid[0, 0].get_legend_handles_labels()),
+        key=lambda each: isinstance(each[0], plt.Line2D),
+    )  # the curves first
     if handles:
         grid[0, 0].legend(*zip(*handles))
     return figure
 
 
 def _published(axes: plt.Axes, sweep, x: str, y: str) -> None:
-    """The numbers of the paper for y, whose contact time is that while the force is not zero: a star
-    at its x, or a line over all x where it states none. Only numbers of a scene that the sweep has,
-    law included, for some value of x."""
-    name, (factor, unit) = y.removeprefix("thresholded_"), (_quantity(y).factor, _unit(y, sweep.figure["per"]))
+    """The numbers of the paper for y, whose contact time is that while the force is not zero: a
+    star at its x, or a line over all x where it states none. Only numbers of a scene that the
+    sweep has, law included, for some value of x.
+    """
+    name, (factor, unit) = (
+        y.removeprefix("thresholded_"),
+        (_quantity(y).factor, _unit(y, sweep.figure["per"])),
+    )
     scenes = (sweep.sample.given | point for point in sweep.points)
-    for at, value, words in dict.fromkeys(found for scene in scenes for found in numbers_of_the_paper(scene, name, over=x)):
+    for at, value, words in dict.fromkeys(
+        found for scene in scenes for found in numbers_of_the_paper(scene, name, over=x)
+    ):
         style = dict(color=BLACK, label=f"{words}: {factor * value:.3g}{unit}")
         if at is None:
             axes.axhline(factor * value, linestyle="-.", linewidth=0.9, **style)
         else:
-            axes.plot(at, factor * value, marker="*", linestyle="", markersize=8, zorder=10, **style)
+            axes.plot(
+                at, factor * value, marker="*", linestyle="", markersize=8, zorder=10, **style
+            )
 
 
 def _is_logarithmic(values: pd.Series) -> bool:
-    """Whether five values or more span a decade and are spaced evenly in their logarithm rather than linearly."""
-    if not pd.api.types.is_numeric_dtype(values) or (values <= 0).any() or values.nunique() < 5 or values.max() < 10 * values.min():
+    """Whether five values or more span a decade and are spaced evenly in their logarithm rather
+    than linearly.
+    """
+    if (
+        not pd.api.types.is_numeric_dtype(values)
+        or (values <= 0).any()
+        or values.nunique() < 5
+        or values.max() < 10 * values.min()
+    ):
         return False
-    spread = lambda steps: steps.std() / steps.mean()   # noqa: E731
+    spread = lambda steps: steps.std() / steps.mean()  # noqa: E731
     ordered = np.sort(values.unique())
     return spread(np.diff(np.log(ordered))) < spread(np.diff(ordered))
 
 
 @dataclass(frozen=True)
 class Trend:
-    """How y goes with x: its course (see course()), the first, last, smallest and largest value with
-    the x of the latter two, and the typical error of a point (nan without). Of the steps between
-    neighbours: how many there are, how many go against the way from the first to the last value, how
-    many of those by more than one and than two error bars of the step, the largest of them, the
-    typical error bar of a step, and the typical step."""
+    """How y goes with x: its course (see course()), the first, last, smallest and largest value
+    with the x of the latter two, and the typical error of a point (nan without). Of the steps
+    between neighbours: how many there are, how many go against the way from the first to the
+    last value, how many of those by more than one and than two error bars of the step, the
+    largest of them, the typical error bar of a step, and the typical step.
+    """
 
     course: str
     first: float
@@ -283,8 +404,10 @@ class Trend:
 
 
 def bars(group: pd.DataFrame, y: str) -> np.ndarray:
-    """Error bars of the points of a curve (n,): the larger of a point's own and the root mean square of all, as one difference of
-    two runs can be small by chance; nan without [refine]."""
+    """Error bars of the points of a curve (n,): the larger of a point's own and the root mean
+    square of all, as one difference of two runs can be small by chance; nan without
+    [refine].
+    """
     if f"{y}_error" not in group:
         return np.full(len(group), np.nan)
     own = group[f"{y}_error"].to_numpy(dtype=float)
@@ -293,8 +416,9 @@ def bars(group: pd.DataFrame, y: str) -> np.ndarray:
 
 
 def bars_of_all(sweep, rows: pd.DataFrame, y: str) -> pd.Series:
-    """The same of every row of the table, each in its own curve or map of the figure; nan where a run
-    failed. Without a figure all points are one curve."""
+    """The same of every row of the table, each in its own curve or map of the figure; nan where
+    a run failed. Without a figure all points are one curve.
+    """
     found = pd.Series(np.nan, rows.index)
     for _, panel in _groups(sweep, rows, "panel"):
         for _, group in _groups(sweep, panel, "by"):
@@ -308,16 +432,18 @@ MINIMUM, MAXIMUM, UNEVEN = "has a minimum", "has a maximum", "goes up and down"
 
 
 def course(values: np.ndarray, errors: np.ndarray) -> str:
-    """What a curve does from its first to its last point. A value is above another one where it is by
-    more than twice their error bars, added in squares; nan counts as 0.
+    """What a curve does from its first to its last point. A value is above another one where it
+    is by more than twice their error bars, added in squares; nan counts as 0.
 
-    The curve does not change where its largest value is not above its smallest. It falls where no value
-    is above the first or below the last, and the first is above the last, whatever rises are between;
-    it rises likewise. It has a minimum where both ends are above the smallest value and nothing is
-    above both ends; a maximum likewise. Else it goes up and down."""
+    The curve does not change where its largest value is not above its smallest. It falls where
+    no value is above the first or below the last, and the first is above the last, whatever
+    rises are between; it rises likewise. It has a minimum where both ends are above the
+    smallest value and nothing is above both ends; a maximum likewise. Else it goes up and
+    down.
+    """
     errors, ends = np.nan_to_num(errors), (0, len(values) - 1)
     low, high = int(np.argmin(values)), int(np.argmax(values))
-    above = lambda i, j: values[i] - values[j] > 2 * np.hypot(errors[i], errors[j])   # noqa: E731
+    above = lambda i, j: values[i] - values[j] > 2 * np.hypot(errors[i], errors[j])  # noqa: E731
     first_low, last_low = (not above(end, low) for end in ends)
     first_high, last_high = (not above(high, end) for end in ends)
     if not above(high, low):
@@ -332,8 +458,9 @@ def course(values: np.ndarray, errors: np.ndarray) -> str:
 
 
 def steps_against(group: pd.DataFrame, x: str, y: str) -> Trend | None:
-    """The trend of the finished points of `group`, SI units; None for fewer than three. The error bar of a step is the sum of its
-    ends' in squares."""
+    """The trend of the finished points of `group`, SI units; None for fewer than three. The
+    error bar of a step is the sum of its ends' in squares.
+    """
     there = group[(group.exit == 0) & group[y].notna()].sort_values(x)
     if len(there) < 3:
         return None
@@ -341,9 +468,21 @@ def steps_against(group: pd.DataFrame, x: str, y: str) -> Trend | None:
     steps = np.hypot(errors[1:], errors[:-1])
     against = np.diff(values) * (1 if values[-1] < values[0] else -1)
     low, high = ((there[x].iloc[k], values[k]) for k in (np.argmin(values), np.argmax(values)))
-    return Trend(course(values, errors), values[0], values[-1], low, high, float(np.min(errors)), len(against),
-                 int((against > 0).sum()), int((against > steps).sum()), int((against > 2 * steps).sum()), float(against.max()),
-                 float(np.median(steps)), float(np.median(np.abs(against))))
+    return Trend(
+        course(values, errors),
+        values[0],
+        values[-1],
+        low,
+        high,
+        float(np.min(errors)),
+        len(against),
+        int((against > 0).sum()),
+        int((against > steps).sum()),
+        int((against > 2 * steps).sum()),
+        float(against.max()),
+        float(np.median(steps)),
+        float(np.median(np.abs(against))),
+    )
 
 
 def trend(group: pd.DataFrame, x: str, y: str, words: str, per: str = "/m") -> str:
@@ -362,16 +501,26 @@ def trend(group: pd.DataFrame, x: str, y: str, words: str, per: str = "/m") -> s
         text += f", {found.beyond} of them by more than their error bar, {found.established} by more than twice that"
         if found.largest > 0:
             text += f"; the largest by {factor * found.largest:.2g}{unit} ({100 * found.largest / size:.2f} %)"
-    return text + f"; error of a point {factor * found.typical:.2g}{unit} ({100 * found.typical / size:.2f} %, rms)"
+    return (
+        text
+        + f"; error of a point {factor * found.typical:.2g}{unit} ({100 * found.typical / size:.2f} %, rms)"
+    )
 
 
 def _extremes(found: Trend, x: str, factor: float) -> str:
-    """The extreme values of a curve that neither falls nor rises throughout, with their x, in words."""
-    low, high = (f"{factor * value:.5g} at {_value(x, at)}" for at, value in (found.low, found.high))
-    return {MINIMUM: f", {low},", MAXIMUM: f", {high},", UNEVEN: f" between {low} and {high},"}.get(found.course, "")
+    """The extreme values of a curve that neither falls nor rises throughout, with their x, in
+    words.
+    """
+    low, high = (
+        f"{factor * value:.5g} at {_value(x, at)}" for at, value in (found.low, found.high)
+    )
+    return {MINIMUM: f", {low},", MAXIMUM: f", {high},", UNEVEN: f" between {low} and {high},"}.get(
+        found.course, ""
+    )
 
 
 # ---- maps
+
 
 def _maps(sweep, rows: pd.DataFrame) -> Iterator[tuple[str, pd.DataFrame]]:
     """(words, rows) of each map, column by column of a row of them."""
@@ -384,29 +533,63 @@ def _map(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
     wanted = sweep.figure
     x, y, colour = (wanted[key] for key in ("x", "y", "colour"))
     maps, height = list(_maps(sweep, rows)), len(list(_groups(sweep, rows, "panel")))
-    widths = [max(2.5, group[x].nunique()) for _, group in maps[:len(maps) // height]]   # a panel has the x of its runs
-    figure, grid = plt.subplots(height, len(widths), figsize=(1.2 + 3.4 * sum(widths) / max(widths), 0.8 + 2.8 * height),
-                                sharex="col", sharey=True, squeeze=False, width_ratios=widths, layout="constrained")
+    widths = [
+        max(2.5, group[x].nunique()) for _, group in maps[: len(maps) // height]
+    ]  # a panel has the x of its runs
+    figure, grid = plt.subplots(
+        height,
+        len(widths),
+        figsize=(1.2 + 3.4 * sum(widths) / max(widths), 0.8 + 2.8 * height),
+        sharex="col",
+        sharey=True,
+        squeeze=False,
+        width_ratios=widths,
+        layout="constrained",
+    )
     values = _quantity(colour).factor * rows[colour]
     low, high = values.min(), values.max()
     for axes, (words, group) in zip(grid.flat, maps):
         table = group.pivot(index=y, columns=x, values=colour) * _quantity(colour).factor
-        cells = np.where(group.pivot(index=y, columns=x, values="exit") == 0, table, np.nan)   # evenly spaced, whatever the values
-        picture = axes.imshow(cells, origin="lower", aspect="auto", cmap="viridis", vmin=low, vmax=high)
+        cells = np.where(
+            group.pivot(index=y, columns=x, values="exit") == 0, table, np.nan
+        )  # evenly spaced, whatever the values
+        picture = axes.imshow(
+            cells, origin="lower", aspect="auto", cmap="viridis", vmin=low, vmax=high
+        )
         for (row, column), value in np.ndenumerate(cells):
             share = (value - low) / (high - low or 1.0)
-            axes.text(column, row, "failed" if np.isnan(value) else f"{value:#.3g}", ha="center", va="center", fontsize=SMALL,
-                      color="black" if np.isnan(value) or share > 0.5 else "white", zorder=5,       # above the lines of the level
-                      bbox=dict(facecolor="white" if np.isnan(value) else plt.get_cmap("viridis")(share), edgecolor="none", pad=1.2))
+            axes.text(
+                column,
+                row,
+                "failed" if np.isnan(value) else f"{value:#.3g}",
+                ha="center",
+                va="center",
+                fontsize=SMALL,
+                color="black" if np.isnan(value) or share > 0.5 else "white",
+                zorder=5,  # above the lines of the level
+                bbox=dict(
+                    facecolor="white" if np.isnan(value) else plt.get_cmap("viridis")(share),
+                    edgecolor="none",
+                    pad=1.2,
+                ),
+            )
         if wanted["level"] is not None:
             level, band = (_quantity(colour).factor * wanted[key] for key in ("level", "band"))
-            alone = cells.shape[1] == 1                                          # its level runs across all of the column
+            alone = cells.shape[1] == 1  # its level runs across all of the column
             across = [-0.5, 0.5] if alone else np.arange(cells.shape[1])
             drawn = across, np.arange(len(cells)), cells.repeat(2, axis=1) if alone else cells
             axes.contour(*drawn, levels=[level], colors=[ORANGE], linewidths=2)
             if band:
-                axes.contour(*drawn, levels=[level - band, level + band], colors=[ORANGE], linewidths=1, linestyles="--")
-        axes.set_xticks(range(len(table.columns)), [f"{value:g}" for value in table.columns], fontsize=SMALL)
+                axes.contour(
+                    *drawn,
+                    levels=[level - band, level + band],
+                    colors=[ORANGE],
+                    linewidths=1,
+                    linestyles="--",
+                )
+        axes.set_xticks(
+            range(len(table.columns)), [f"{value:g}" for value in table.columns], fontsize=SMALL
+        )
         axes.set_yticks(range(len(table.index)), [_tick(value) for value in table.index])
         axes.set_title(words)
         axes.spines[:].set_visible(False)
@@ -425,14 +608,19 @@ def _tick(value: float) -> str:
 
 
 def level_set(figure: dict, group: pd.DataFrame) -> dict[float, list[tuple[float, float]]]:
-    """For each value of x the ranges of y in which colour meets its level within the band and the error bar; between the points
-    interpolated in the logarithm of y."""
+    """For each value of x the ranges of y in which colour meets its level within the band and
+    the error bar; between the points interpolated in the logarithm of y.
+    """
     x, y, colour = (figure[key] for key in ("x", "y", "colour"))
     found, band = {}, figure["band"] + _typical(group, colour)
     for value, column in group[group.exit == 0].groupby(x):
         column = column.sort_values(y)
         fine = np.geomspace(column[y].iloc[0], column[y].iloc[-1], 2001)
-        found[value] = ranges(fine, np.abs(np.interp(np.log(fine), np.log(column[y]), column[colour]) - figure["level"]) <= band)
+        found[value] = ranges(
+            fine,
+            np.abs(np.interp(np.log(fine), np.log(column[y]), column[colour]) - figure["level"])
+            <= band,
+        )
     return found
 
 
@@ -454,10 +642,16 @@ def _set(figure: dict, words: str, group: pd.DataFrame) -> list[str]:
         return []
     x, y, colour = (figure[key] for key in ("x", "y", "colour"))
     unit, factor = _unit(colour, figure.get("per", "/m")), _quantity(colour).factor
-    lines = [f"{words}: " * bool(words) + f"{colour.replace('_', ' ')} = {factor * figure['level']:g} ± {factor * figure['band']:g}{unit} "
-             f"is met, within an error bar of {factor * _typical(group, colour):.2g}{unit}, for"]
+    lines = [
+        f"{words}: "
+        * bool(words)
+        + f"{colour.replace('_', ' ')} = {factor * figure['level']:g} ± {factor * figure['band']:g}{unit} "
+        f"is met, within an error bar of {factor * _typical(group, colour):.2g}{unit}, for"
+    ]
     for value, met in level_set(figure, group).items():
-        lines.append(f"  {_value(x, value)}: " + (f"{label(y)} " + spans(met) if met else f"no {label(y)}"))
+        lines.append(
+            f"  {_value(x, value)}: " + (f"{label(y)} " + spans(met) if met else f"no {label(y)}")
+        )
     return lines
 
 
@@ -468,26 +662,46 @@ def spans(ranges: list[tuple[float, float]]) -> str:
 
 # ---- histories
 
+
 def _histories(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
     panels, names = list(_groups(sweep, rows, "panel")), sweep.figure["y"]
-    figure, grid = plt.subplots(len(names), len(panels), figsize=(1 + 3.4 * len(panels), 0.6 + 2.8 * len(names)), squeeze=False)
+    figure, grid = plt.subplots(
+        len(names),
+        len(panels),
+        figsize=(1 + 3.4 * len(panels), 0.6 + 2.8 * len(names)),
+        squeeze=False,
+    )
     for k, (title, part) in enumerate(panels):
         for axes, y in zip(grid[:, k], names):
-            for (words, group), colour, line in zip(_groups(sweep, part, "by"), itertools.cycle(COLOURS), itertools.cycle(("-", "--"))):
+            for (words, group), colour, line in zip(
+                _groups(sweep, part, "by"), itertools.cycle(COLOURS), itertools.cycle(("-", "--"))
+            ):
                 for _, row in group[group.exit == 0].iterrows():
                     t, values = _history(sweep, row, out, y, refined=bool(sweep.refine))
-                    axes.plot(1e3 * t, 1e-3 * values if "force" in y else values, color=colour, linestyle=line, label=words)
+                    axes.plot(
+                        1e3 * t,
+                        1e-3 * values if "force" in y else values,
+                        color=colour,
+                        linestyle=line,
+                        label=words,
+                    )
             axes.set(xlabel="time [ms]", title=title)
             axes.margins(x=0)
             axes.grid(alpha=0.3)
             if k == 0:
-                axes.set_ylabel(f"{y.replace('_', ' ')}" + f" [kN{sweep.figure['per']}]" * ("force" in y))
+                axes.set_ylabel(
+                    f"{y.replace('_', ' ')}" + f" [kN{sweep.figure['per']}]" * ("force" in y)
+                )
     legend(grid[0, 0])
     return figure
 
 
-def _history(sweep, row: pd.Series, out: Path, y: str, refined: bool) -> tuple[np.ndarray, np.ndarray]:
-    """(t, values) of a point's run; forces, which are means of a step, at the middle of the step."""
+def _history(
+    sweep, row: pd.Series, out: Path, y: str, refined: bool
+) -> tuple[np.ndarray, np.ndarray]:
+    """(t, values) of a point's run; forces, which are means of a step, at the middle of the
+    step.
+    """
     point = row[sweep.axes].to_dict() | (sweep.refine if refined else {})
     history = read_history(study.place(out, point))
     if y not in history:
@@ -495,26 +709,48 @@ def _history(sweep, row: pd.Series, out: Path, y: str, refined: bool) -> tuple[n
     return force(history, y) if y.endswith("_force") else (history["t"], history[y])
 
 
-def force(history: dict[str, np.ndarray], name: str = "normal_force") -> tuple[np.ndarray, np.ndarray]:
+def force(
+    history: dict[str, np.ndarray], name: str = "normal_force"
+) -> tuple[np.ndarray, np.ndarray]:
     """(t, force); the force is the mean of a step, at its middle."""
     return history["t"] - history["dt"] / 2, history[name]
 
 
-def distances(sweep, rows: pd.DataFrame, out: Path) -> Iterator[tuple[str, str, str, str, float, float]]:
-    """(panel, y, a, b, distance, error): ||y_b - y_a|| / ||y_a|| over time, of each line b and the first one a; error: the largest
-    such distance of a run and its refined run, nan without [refine]."""
+def distances(
+    sweep, rows: pd.DataFrame, out: Path
+) -> Iterator[tuple[str, str, str, str, float, float]]:
+    """(panel, y, a, b, distance, error): ||y_b - y_a|| / ||y_a|| over time, of each line b and
+    the first one a; error: the largest such distance of a run and its refined run, nan without
+    [refine].
+    """
     refined = bool(sweep.refine)
     for panel, part in _groups(sweep, rows, "panel"):
-        runs = [(words, row) for words, group in _groups(sweep, part, "by") for _, row in group[group.exit == 0].iterrows()]
+        runs = [
+            (words, row)
+            for words, group in _groups(sweep, part, "by")
+            for _, row in group[group.exit == 0].iterrows()
+        ]
         for y, (b, row) in itertools.product(sweep.figure["y"], runs[1:]):
             a, first = runs[0]
-            bars = [distance(_history(sweep, each, out, y, True), _history(sweep, each, out, y, False))
-                    for each in (first, row) if refined]
-            yield panel, y, a, b, distance(*(_history(sweep, each, out, y, refined) for each in (first, row))), max(bars, default=np.nan)
+            bars = [
+                distance(_history(sweep, each, out, y, True), _history(sweep, each, out, y, False))
+                for each in (first, row)
+                if refined
+            ]
+            yield (
+                panel,
+                y,
+                a,
+                b,
+                distance(*(_history(sweep, each, out, y, refined) for each in (first, row))),
+                max(bars, default=np.nan),
+            )
 
 
 def distance(first: tuple[np.ndarray, np.ndarray], second: tuple[np.ndarray, np.ndarray]) -> float:
-    """||second - first|| / ||first|| in L2 over time; both are zero outside their times; nan where the first is zero."""
+    """||second - first|| / ||first|| in L2 over time; both are zero outside their times; nan
+    where the first is zero.
+    """
     t = np.union1d(first[0], second[0])
     if not first[1].any():
         return np.nan
