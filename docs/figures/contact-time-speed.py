@@ -1,7 +1,7 @@
 """Contact time over speed for both laws, nu = 0.45 (figures 6b and 8 of the paper); where ellipticity is lost, open marks."""
 
 import numpy as np
-from style import BLUE, FOLDER, GREY, RED, graph, save
+from style import BLUE, FOLDER, RED, graph, save
 
 import ffimpact as ff
 
