@@ -27,6 +27,7 @@ ORDINARY = {term: re.compile(pattern, re.IGNORECASE) for term, pattern in (
     ("copies", r"\bcopies\b"), ("way", r"\bways?\b"), ("bar", r"(?<!error )\bbars?\b"), ("hold", r"\bholds?\b"), ("rule", r"\brules?\b"), ("course", r"\bcourse\b"),
     ("far", r"\bfar\b"), ("says", r"\bsays?\b"))}
 PAGES = ("tutorial", "how-to", "explanation")
+MEASURED = {"comparison.md"}  # tables of measurements there
 
 
 def prose(text: str) -> str:
@@ -44,33 +45,43 @@ def messages(path: Path) -> list[tuple[int, str]]:
             and id(one) not in documented and len(one.value.split()) > 2]
 
 
-def count(lines: list[tuple[str, str]], terms: dict[str, re.Pattern], where: bool) -> Counter:
+def pages() -> list[Path]:
+    """The pages written by hand."""
+    return [ROOT / "README.md", *(path for name in PAGES for path in sorted((ROOT / "docs" / name).glob("*.md"))
+                                    if path.name not in MEASURED)]
+
+
+def lines(path: Path) -> list[tuple[str, str]]:
+    """The prose of a page, line by line with its place."""
+    return [(f"{path.relative_to(ROOT)}:{k}", line) for k, line in enumerate(prose(path.read_text()).splitlines(), 1)]
+
+
+def count(found: list[tuple[str, str]], terms: dict[str, re.Pattern], where: bool = False) -> Counter:
     """How often each term is in lines, a list of place and text."""
-    found = Counter()
-    for place, text in lines:
+    total = Counter()
+    for place, text in found:
         for term, pattern in terms.items():
             for match in pattern.finditer(text):
-                found[term] += 1
+                total[term] += 1
                 if where:
                     print(f"    {place}: {match[0]}: {text.strip()[:110]}")
-    return found
+    return total
 
 
 def main(where: bool) -> int:
-    pages = [ROOT / "README.md", *(path for name in PAGES for path in sorted((ROOT / "docs" / name).glob("*.md")))]
-    total, pictures, lines = 0, 0, []
-    for path in pages:
+    total, pictures, written = 0, 0, []
+    for path in pages():
         text = path.read_text()
-        drawn, words = len(re.findall(r"!\[", text)), len(text.split())
-        total, pictures = total + words, pictures + drawn
-        lines += [(f"{path.relative_to(ROOT)}:{k}", line) for k, line in enumerate(prose(text).splitlines(), 1)]
-        print(f"{words:6} words {drawn:3} pictures  {path.relative_to(ROOT)}")
-    print(f"{total:6} words {pictures:3} pictures  on {len(pages)} pages")
-    own = count(lines, TERMS, where)
+        drawn, number = len(re.findall(r"!\[", text)), len(text.split())
+        total, pictures = total + number, pictures + drawn
+        written += lines(path)
+        print(f"{number:6} words {drawn:3} pictures  {path.relative_to(ROOT)}")
+    print(f"{total:6} words {pictures:3} pictures  on {len(pages())} pages")
+    own = count(written, TERMS, where)
     print(f"private terms on these pages: {own.total()}  {dict(own)}")
-    print(f"to look at: {dict(count(lines, ORDINARY, False))}")
-    said = [(f"{path.relative_to(ROOT)}:{k}", text) for path in sorted((ROOT / "orchestrate").rglob("*.py")) for k, text in messages(path)]
-    theirs = count(said, TERMS, where)
+    print(f"ordinary words to look at: {dict(count(written, ORDINARY))}")
+    printed = [(f"{path.relative_to(ROOT)}:{k}", text) for path in sorted((ROOT / "orchestrate").rglob("*.py")) for k, text in messages(path)]
+    theirs = count(printed, TERMS, where)
     print(f"private terms in texts of orchestrate/: {theirs.total()}  {dict(theirs)}")
     return int(own.total() > 0)
 
