@@ -365,7 +365,7 @@ def sentences(description: str) -> str:
     """A description as text; a block whose lines begin with spaces is an example."""
     text = []
     for block in re.split(r"\n\s*\n", description.strip("\n")):
-        if block.startswith("    "):
+        if all(line.startswith("    ") for line in block.splitlines()):
             text.append(f"```toml\n{inspect.cleandoc(chr(10) + block)}\n```")
         else:
             words = " ".join(block.split())
