@@ -1,7 +1,7 @@
 """Kinds of obstacles in the plane, solid region hatched: plane, circle, bowl, polyline with its direction, implicit surface."""
 
 import numpy as np
-from style import BLUE, BODY, GREEN, GREY, INK, RED, SOLID, WIDTH, arrow, circle, plt, save, shape
+from style import BLUE, GREEN, GREY, INK, RED, SOLID, WIDTH, arrow, circle, plt, save, shape
 
 figure, axes = plt.subplots(1, 5, figsize=(WIDTH, 1.75), layout="constrained")
 for ax, name in zip(axes, ("plane", "circle", "bowl", "polyline", "implicit")):
