@@ -171,7 +171,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     command.set_defaults(command=_kernels)
     command = commands.add_parser("figures", help="draw the figures of a result folder again")
-    command.add_argument("folder", metavar="DIR", type=Path)
+    command.add_argument("folder", metavar="DIR", type=Path, help="the result folder")
     command.set_defaults(command=_figures)
     for name in OWN_MAIN:  # for the list of what is accepted; main() calls them itself
         commands.add_parser(name, help=HELP[name])

@@ -21,6 +21,7 @@ from .freefem.describe import describe_results
 from .output import vtu
 from .output.errors import errors
 from .output.results import Record, numbers, read_record, read_summary
+from .places import shown
 from .report import report
 
 if TYPE_CHECKING:
@@ -156,7 +157,7 @@ class Result:
         ]
         told = [line for line in report.told(self.summary) if line.startswith("  warning")]
         more = [f"  and {len(rows) - LINES} more: result.table"] if len(rows) > LINES else []
-        return "\n".join([f"Result in {self.folder}", *rows[:LINES], *more, *told])
+        return "\n".join([f"Result in {shown(self.folder)}", *rows[:LINES], *more, *told])
 
     def _repr_html_(self) -> str:
         rows = "".join(
@@ -164,7 +165,7 @@ class Result:
             for name, row in self.table.iterrows()
         )
         told = "".join(f"<p>{escape(sentence)}</p>" for sentence in self.warnings)
-        return f"<table><caption>{escape(str(self.folder))}</caption>{rows}</table>{told}"
+        return f"<table><caption>{escape(str(shown(self.folder)))}</caption>{rows}</table>{told}"
 
     @property
     def plot(self) -> Plots:
@@ -221,7 +222,7 @@ class Fields(Sequence["pyvista.UnstructuredGrid"]):
         return len(self.series)
 
     def __repr__(self) -> str:
-        return f"{len(self)} states of {self.folder}"
+        return f"{len(self)} states of {shown(self.folder)}"
 
     def __getitem__(self, index: Any) -> Any:
         try:
