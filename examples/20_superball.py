@@ -50,6 +50,10 @@ result.plot.force(ax=ax)
 ax.axhline(0, color="grey", linewidth=0.6)
 
 # %%
+# The player. Half of the ball is computed, so that one sees into it.
+result.view()
+
+# %%
 # The spin over the speed, S, beside the measured one. The direction is known to 1 degree, and S
 # follows its sine: this adds 3.7 per cent to the uncertainty of 0.1 rad/m that Cross states.
 spin, slip = -result["rebound_spin"], result["rebound_vx"] + radius * result["rebound_spin"]

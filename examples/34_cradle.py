@@ -7,7 +7,6 @@ because each impact leaves vibration in the discs; momentum and energy are kept 
 """
 
 import matplotlib.pyplot as plt
-import numpy as np
 import pandas as pd
 
 import ffimpact as ff
@@ -42,6 +41,10 @@ result
 # Velocities of the five centres: the momentum is handed on.
 fig, ax = plt.subplots(figsize=(6, 4), layout="constrained")
 result.plot.velocities(ax=ax)
+
+# %%
+# The player:
+result.view()
 
 # %%
 # The row at the largest force.
