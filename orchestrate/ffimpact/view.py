@@ -1,28 +1,105 @@
-"""An animation of the states of a run: k3d, in a notebook or as one HTML file."""
+"""The player of a run: the deforming bodies over time with a field, the obstacles, and figures of
+force and energies with a cursor; one HTML page that needs no network.
+
+The bodies and obstacles are a k3d plot. The states are packed: places as 16-bit shares of the box
+around all of them, fields as 8-bit shares of their range. player.js unpacks and shows them.
+"""
 
 from __future__ import annotations
 
+import base64
+import io
+import json
+import zlib
+from dataclasses import dataclass
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .failure import BadInput, NotInstalled, Unreadable, unknown
+from .input import dimension
 from .output import vtu
+from .places import PACKAGE
+from .report.bodies import obstacles_of
+from .report.figures import is_half
 
 if TYPE_CHECKING:
     from .result import Result
+    from .scenes.obstacles import Obstacle
 
-__all__ = ["view"]
+__all__ = ["FIELDS", "Player", "view"]
 
-SECONDS = 5.0  # that the animation takes
+# name: its label, the field of a state that it is made from, and the units it may be shown in
+FIELDS = {
+    "von_mises": ("von Mises stress", "von_mises", ("Pa", "kPa", "MPa", "GPa")),
+    "pressure": ("pressure", "pressure", ("Pa", "kPa", "MPa", "GPa")),
+    "speed": ("speed", "velocity", ("m/s", "km/s")),
+    "energy_density": ("energy density", "energy_density", ("J/m³", "kJ/m³", "MJ/m³", "GJ/m³")),
+}
+SECONDS = 6.0  # that the animation takes
+DARKEST = (
+    0.999  # quantile of a field that has the end of the colours: one spot does not hide the rest
+)
+TURN = np.radians(270)  # by which a body of revolution is shown: cut open
+SECTIONS = 37  # around the axis
+GRID = 40  # points along each side of the box in which the surface of an obstacle is looked for
+GROUND = 0xB8B8B8
+STYLE = """
+<style>
+ html, body { background: #fff; font: 14px system-ui, sans-serif; }
+ #canvasTarget { width: 62% !important; height: calc(100% - 44px) !important; }
+ #figure { position: absolute; right: 0; top: 0; width: 38%; height: calc(100% - 44px);
+           display: flex; align-items: center; justify-content: center; }
+ #figure > div { position: relative; max-height: 100%; }
+ #figure img { max-width: 38vw; max-height: calc(100vh - 50px); display: block; }
+ #cursor { position: absolute; top: 2%; bottom: 9%; left: 0; border-left: 2px solid #c00; }
+ #controls { position: absolute; bottom: 0; left: 0; right: 0; height: 44px; display: flex;
+             align-items: center; gap: 10px; padding: 0 10px; }
+ #controls #state { flex: 1; min-width: 60px; }
+ #legend i { display: inline-block; width: 70px; height: 10px;
+   background: linear-gradient(to right, #440154, #3b528b, #21918c, #5ec962, #fde725); }
+ @media (max-width: 760px) {
+   #canvasTarget { width: 100% !important; height: calc(60% - 44px) !important; }
+   #figure { width: 100%; height: 40%; top: auto; bottom: 76px; }
+   #figure img { max-width: 100vw; max-height: 40vh; }
+   #controls { height: 76px; flex-wrap: wrap; } #controls #state { min-width: 60%; }
+ }
+</style>
+"""
 
 
-def view(result: Result, path: str | Path | None = None, field: str = "von_mises") -> Any:
-    """The deforming bodies over time with a field of the states: a k3d plot, or `path`, the
-    HTML file that was written.
+class Player:
+    """The player of a run as one HTML page: `page`. A notebook shows it; `save(path)` writes it."""
 
-    The time of the player is that of the run, slowed down so that all of it takes some seconds.
+    def __init__(self, page: str):
+        self.page = page
+
+    def _repr_html_(self) -> str:
+        return (
+            f'<iframe srcdoc="{escape(self.page)}" '
+            'style="width: 100%; height: 480px; border: 0"></iframe>'
+        )
+
+    def save(self, path: str | Path) -> Path:
+        """Writes the page; returns its path."""
+        path = Path(path)
+        path.write_text(self.page, "utf-8")
+        return path
+
+
+def view(
+    result: Result,
+    path: str | Path | None = None,
+    field: str = "von_mises",
+    revolved: bool = True,
+) -> Any:
+    """The Player of a run, or `path`, the HTML file that was written.
+
+    `field` is the one of FIELDS that is shown at first. A body of revolution is shown cut open,
+    or with `revolved=False` as its section. A body in space that has a plane of symmetry is shown
+    cut along it.
     """
     try:
         import k3d
@@ -30,52 +107,293 @@ def view(result: Result, path: str | Path | None = None, field: str = "von_mises
         raise NotInstalled("view: needs k3d; install it: pip install k3d") from None
     if path is not None and Path(path).suffix.lower() not in (".html", ".htm"):
         raise BadInput(f"view: '{path}' is no HTML file (accepted: a name that ends in .html)")
-    series = vtu.series(result.folder / "fields.pvd")
-    if not series:
-        raise Unreadable(f"{result.folder}: has no states (accepted: a run with fields = 60, say)")
-    states = [vtu.read(file) for _, file in series]
-    if field not in states[0].fields:
-        raise BadInput(f"field: {unknown(field, states[0].fields, ', ')}")
-    times = np.array([time for time, _ in series])
-    slow = SECONDS / (np.ptp(times) or 1.0)
-    vertices = {f"{slow * t}": _places(one).astype(np.float32) for t, one in zip(times, states)}
-    values = {
-        f"{slow * t}": _scalar(one.fields[field]).astype(np.float32)
-        for t, one in zip(times, states)
-    }
-    top = max(float(value.max()) for value in values.values())
-    low = min(float(value.min()) for value in values.values())
-    plot = k3d.plot(
-        camera_auto_fit=False, grid_visible=False, name=f"{result.folder.name}: {field}"
-    )
-    plot += k3d.mesh(
-        vertices,
-        states[0].triangles.astype(np.uint32),
-        attribute=values,
-        color_range=[low, top],
+    if field not in FIELDS:
+        raise BadInput(f"field: {unknown(field, FIELDS, ', ')}")
+    states = _states(result, revolved)
+    points = states.places.reshape(-1, 3)
+    low, high = points.min(axis=0), points.max(axis=0)
+
+    plot = k3d.plot(camera_auto_fit=False, grid_visible=False, menu_visibility=False, axes_helper=0)
+    plot.background_color, plot.colorbar_object_id = 0xFFFFFF, 0
+    body = k3d.mesh(
+        states.places[0].astype(np.float32),
+        states.triangles.astype(np.uint32),
+        attribute=np.zeros(len(states.places[0]), np.float32),
+        color_range=[0, 1],
         color_map=k3d.colormaps.matplotlib_color_maps.Viridis,
         side="double",
         flat_shading=False,
     )
-    every = np.vstack([_places(one) for one in states])
-    centre, size = (every.min(axis=0) + every.max(axis=0)) / 2, np.ptp(every, axis=0).max()
-    plot.camera = [*(centre + [0, 0, 1.6 * size]), *centre, 0, 1, 0]
-    plot.fps = 25
-    if path is None:
-        return plot
-    path = Path(path)
-    path.write_text(plot.get_snapshot(), "utf-8")
-    return path
+    plot += body
+    obstacles = []
+    for one in obstacles_of(result.scene):
+        if drawn := _obstacle(k3d, one, states.kind, low, high):
+            plot += drawn
+            moving = np.r_[one.velocity, np.zeros(3 - len(one.velocity))]
+            obstacles.append({"id": drawn.id, "velocity": moving.tolist()})
+    plot.camera_fov = 20
+    plot.camera = _camera(states.kind, low, high)
+    picture, cursor = _figure(result)
+    run = _packed(states, low, high) | {
+        "id": body.id,
+        "obstacles": obstacles,
+        "field": field,
+        "seconds": SECONDS,
+        "cursor": cursor,
+    }
+    code = f"const RUN = {json.dumps(run)};\n{(PACKAGE / 'player.js').read_text('utf-8')}"
+    page = plot.get_snapshot(additional_js_code=code)
+    figure = f'<div id="figure"><div><img src="{picture}"><div id="cursor"></div></div></div>'
+    page = page.replace("</head>", f"{STYLE}</head>", 1)
+    page = page.replace("<body>", f"<body>{figure}", 1)
+    player = Player(page)
+    return player if path is None else player.save(path)
 
 
-def _places(state: vtu.Snapshot) -> np.ndarray:
-    """Deformed places (n, 3) [m]."""
-    return (
-        state.points + state.fields["displacement"]
-        if state.points.shape[1] == 3
-        else np.pad(state.points + state.fields["displacement"][:, :2], [(0, 0), (0, 1)])
+# ---- the states
+
+
+@dataclass(frozen=True)
+class States:
+    """`places` (states, n, 3) deformed [m] at `times` (states,) [s], `triangles` (t, 3), `fields` by
+    name (states, n) in SI units. `kind` is plane, revolved or space.
+    """
+
+    times: np.ndarray
+    places: np.ndarray
+    triangles: np.ndarray
+    fields: dict[str, np.ndarray]
+    kind: str
+
+
+def _states(result: Result, revolved: bool) -> States:
+    """What the player shows of each state that was kept."""
+    series = vtu.series(result.folder / "fields.pvd")
+    if not series:
+        raise Unreadable(
+            f"{result.folder}: has no states (accepted: a run with fields = 60, for example)"
+        )
+    script = result["provenance"]["script"]
+    of_revolution = script in (dimension.AXISYMMETRIC.script, *dimension.AXISYMMETRIC.cases)
+    solid = vtu.read_solid(series[0][1])
+    if solid:
+        kind, shown = "space", _skin(solid, str(result.scene.get("symmetry")))
+    elif of_revolution and revolved:
+        kind, shown = "revolved", _revolution(vtu.read(series[0][1]))
+    else:
+        mirrored = is_half(result.scene) or of_revolution
+        kind, shown = "plane", _section(vtu.read(series[0][1]), mirrored)
+    reader = vtu.read_solid if solid else vtu.read
+    found = [reader(path) for _, path in series]
+    places = np.array(
+        [shown.places(_three(one.points) + _three(one.fields["displacement"])) for one in found]
     )
+    fields = {
+        name: np.array([shown.values(_scalar(one.fields[source])) for one in found])
+        for name, (_, source, _) in FIELDS.items()
+        if source in found[0].fields
+    }
+    return States(np.array([t for t, _ in series]), places, shown.triangles, fields, kind)
+
+
+@dataclass(frozen=True)
+class Shown:
+    """How the vertices that are shown come from the nodes of a state: the value at vertex i is that
+    of `nodes[i]`, its place that of the node, turned about the y-axis by `angle[i]`, times the signs
+    `mirror[i]` (3,); `skin` first takes a field to the vertices of curved faces. Triangles turn
+    counter-clockwise as seen from outside.
+    """
+
+    triangles: np.ndarray
+    nodes: np.ndarray
+    angle: np.ndarray
+    mirror: np.ndarray
+    skin: vtu.Skin | None = None
+
+    def values(self, field: np.ndarray) -> np.ndarray:
+        """A field (nodes, ...) at the vertices."""
+        return (self.skin.at(field) if self.skin else field)[self.nodes]
+
+    def places(self, places: np.ndarray) -> np.ndarray:
+        """The places (vertices, 3) [m] of the vertices."""
+        x, y, z = self.values(places).T
+        turned = [np.cos(self.angle) * x, y, np.sin(self.angle) * x + z]
+        return np.stack(turned, axis=1) * self.mirror
+
+
+def _section(state: vtu.Snapshot, mirrored: bool) -> Shown:
+    """A state in the plane, with its mirror image."""
+    n = len(state.points)
+    images = [[1, 1, 1], [-1, 1, 1]] if mirrored else [[1, 1, 1]]
+    return _images(state.triangles, n, images)
+
+
+def _images(
+    triangles: np.ndarray, n: int, images: list[list[int]], skin: vtu.Skin | None = None
+) -> Shown:
+    """Triangles of n vertices with mirror images of them, each by the signs of the coordinates."""
+    found = [
+        (triangles if np.prod(signs) > 0 else triangles[:, ::-1]) + k * n
+        for k, signs in enumerate(images)
+    ]
+    nodes = np.tile(np.arange(n), len(images))
+    return Shown(np.vstack(found), nodes, np.zeros(len(nodes)), np.repeat(images, n, axis=0), skin)
+
+
+def _revolution(state: vtu.Snapshot) -> Shown:
+    """Two sections of a body of revolution and the surface between them."""
+    edges = state.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+    _, first, count = np.unique(
+        np.sort(edges, axis=1), axis=0, return_index=True, return_counts=True
+    )
+    outline, ends = np.unique(edges[first[count == 1]], return_inverse=True)
+    ends = ends.reshape(-1, 2)
+    n, m = len(state.points), len(outline)
+    triangles = [state.triangles[:, ::-1], state.triangles + n]
+    for k in range(SECTIONS - 1):
+        (a, b), (c, d) = (2 * n + (k + i) * m + ends.T for i in (0, 1))
+        triangles += [np.stack([a, c, b], axis=1), np.stack([b, c, d], axis=1)]
+    nodes = np.concatenate([np.arange(n), np.arange(n), np.tile(outline, SECTIONS)])
+    angle = np.concatenate(
+        [np.zeros(n), np.full(n, TURN), np.repeat(np.linspace(0, TURN, SECTIONS), m)]
+    )
+    return Shown(np.vstack(triangles), nodes, angle, np.ones((len(nodes), 3)))
+
+
+def _skin(solid: vtu.Solid, symmetry: str) -> Shown:
+    """The faces that bound a body in space. Of a symmetric one the half with z < 0, so that one looks
+    into it: the image of the half or quarter with positive coordinates that was computed.
+    """
+    faces = solid.tetrahedra[:, vtu.FACES]
+    corners = solid.points[faces[..., :3]]
+    edges = corners[:, :, 1:] - corners[:, :, :1]
+    outward = np.cross(edges[:, :, 0], edges[:, :, 1])
+    inner = solid.points[solid.tetrahedra[:, :4]].mean(axis=1)[:, None]
+    inward = np.einsum("tfi,tfi->tf", outward, inner - corners.mean(axis=2)) > 0
+    faces = np.where(inward[..., None], faces[..., [0, 2, 1, 5, 4, 3]], faces).reshape(-1, 6)
+    _, first, count = np.unique(
+        np.sort(faces[:, :3], axis=1), axis=0, return_index=True, return_counts=True
+    )
+    skin = vtu.split(faces[first[count == 1]].tobytes(), 2)
+    images = {"half": [[1, 1, -1]], "quarter": [[1, 1, -1], [-1, 1, -1]]}
+    return _images(skin.triangles, len(skin.nodes), images.get(symmetry, [[1, 1, 1]]), skin)
+
+
+def _three(vectors: np.ndarray) -> np.ndarray:
+    """Vectors (n, 2 or 3) with three components."""
+    return np.pad(vectors, [(0, 0), (0, 3 - vectors.shape[1])])
 
 
 def _scalar(field: np.ndarray) -> np.ndarray:
     return np.linalg.norm(field, axis=1) if field.ndim > 1 else field
+
+
+def _packed(states: States, low: np.ndarray, high: np.ndarray) -> dict[str, Any]:
+    """The states as player.js reads them."""
+    extent = np.maximum(high - low, 1e-12 * (high - low).max())
+    places = np.rint(65535 * (states.places - low) / extent).astype("<u2")
+    fields, values = [], {}
+    for name, field in states.fields.items():
+        label, _, units = FIELDS[name]
+        bottom, top = min(0.0, float(np.quantile(field, 1 - DARKEST))), np.quantile(field, DARKEST)
+        top = float(top) if top > bottom else bottom + 1.0
+        size = max(abs(bottom), abs(top))
+        power = int(np.clip(np.log10(size) // 3 if size > 0 else 0, 0, len(units) - 1))
+        share = np.clip((field - bottom) / (top - bottom), 0, 1)
+        values[name] = _text(np.rint(255 * share).astype(np.uint8))
+        fields.append(
+            {
+                "name": name,
+                "label": f"{label} [{units[power]}]",
+                "low": bottom / 1000**power,
+                "high": top / 1000**power,
+            }
+        )
+    return {
+        "times": states.times.tolist(),
+        "low": low.tolist(),
+        "extent": extent.tolist(),
+        "vertices": _text(places),
+        "fields": fields,
+        "values": values,
+    }
+
+
+def _text(array: np.ndarray) -> str:
+    """The differences between states, compressed, as text: neighbours in time are alike."""
+    steps = np.diff(array, axis=0, prepend=np.zeros_like(array[:1]))
+    return base64.b64encode(zlib.compress(steps.tobytes(), 9)).decode()
+
+
+# ---- what stands around them
+
+
+def _obstacle(k3d: Any, one: Obstacle, kind: str, low: np.ndarray, high: np.ndarray) -> Any:
+    """An obstacle where it is at t = 0: a line in the plane, else a surface; None out of sight."""
+    margin = 0.25 * (high - low).max()
+    left, right = low - margin, high + margin
+    count = 3 if one.kind == "plane" else GRID  # the distance from a plane is linear
+    x, y, z = (np.linspace(a, b, count) for a, b in zip(left, right))
+    if kind == "plane":
+        from contourpy import contour_generator
+
+        points = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+        gap = one.gap_in_plane(points, 0.0).reshape(count, count)
+        lines = contour_generator(x, y, gap).lines(0.0)
+        if not lines:
+            return None
+        longest = max(lines, key=len)
+        return k3d.line(
+            _three(np.asarray(longest)).astype(np.float32),
+            shader="mesh",
+            width=0.012 * margin * 4,
+            color=0x606060,
+        )
+    zs, ys, xs = np.meshgrid(z, y, x, indexing="ij")
+    points = np.stack([xs, ys, zs], axis=-1).reshape(-1, 3)
+    if kind == "revolved":
+        points = np.stack([np.hypot(points[:, 0], points[:, 2]), points[:, 1]], axis=-1)
+        gap = one.gap_in_plane(points, 0.0)
+    else:
+        gap = one.gap(points)
+    if not gap.min() < 0 < gap.max():
+        return None
+    return k3d.marching_cubes(
+        gap.reshape(count, count, count).astype(np.float32),
+        level=0.0,
+        color=GROUND,
+        opacity=0.6,
+        xmin=float(x[0]),
+        xmax=float(x[-1]),
+        ymin=float(y[0]),
+        ymax=float(y[-1]),
+        zmin=float(z[0]),
+        zmax=float(z[-1]),
+        flat_shading=False,
+    )
+
+
+def _camera(kind: str, low: np.ndarray, high: np.ndarray) -> list[float]:
+    """Eye, target and upward direction: from the front in the plane, else from above and aside."""
+    centre, size = (low + high) / 2, float(np.linalg.norm(high - low))
+    towards = {"plane": (0, 0, 1), "revolved": (0.9, 0.45, -1.0), "space": (0.35, 0.3, 1)}[kind]
+    eye = centre + 3.2 * size * np.array(towards) / np.linalg.norm(towards)
+    return [*eye.tolist(), *centre.tolist(), 0, 1, 0]
+
+
+def _figure(result: Result) -> tuple[str, dict[str, float]]:
+    """Force and energies over time as a picture, and where in it the time axis lies: its ends in
+    shares of the width, and their times [s].
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(4.4, 4.8), layout="constrained")
+    above, below = figure.subplots(2, 1, sharex=True)
+    result.plot.force(ax=above)
+    result.plot.energies(ax=below)
+    above.set_xlabel("")
+    picture = io.BytesIO()
+    figure.savefig(picture, format="svg")
+    box, (start, end) = below.get_position(), below.get_xlim()
+    cursor = {"left": box.x0, "right": box.x1, "start": 1e-3 * start, "end": 1e-3 * end}
+    return f"data:image/svg+xml;base64,{base64.b64encode(picture.getvalue()).decode()}", cursor

@@ -121,6 +121,13 @@ def test_a_player_is_one_file(result, tmp_path):
     assert path.stat().st_size > 1e5 and "<script" in path.read_text()[:10_000]
 
 
+def test_a_player_shows_itself_as_html(result):
+    """A notebook, and a page that keeps its output, has the whole animation."""
+    pytest.importorskip("k3d")
+    shown = result.view()._repr_html_()
+    assert len(shown) > 1e5 and shown.startswith("<iframe") and "&lt;script" in shown[:10_000]
+
+
 def test_a_run_that_is_there_is_not_made_again(result):
     assert ff.run(drop(), accuracy=0.1, fields=6, out=result.folder).reused
     assert ff.load(result.folder)["impulse"] == result["impulse"]

@@ -1,0 +1,92 @@
+"""python -m examples.gallery: runs the pages examples/NN_name.py, writes docs/gallery-numbers.csv.
+
+The runs go to results/gallery, where a second call finds them.
+"""
+
+import argparse
+import os
+import runpy
+import sys
+import time
+import warnings
+from pathlib import Path
+
+import matplotlib
+import matplotlib.pyplot as plt
+import pandas as pd
+
+from ffimpact.__main__ import start
+from ffimpact.failure import Failure
+
+ROOT = Path(__file__).resolve().parents[1]
+TABLE = ROOT / "docs/gallery-numbers.csv"
+COLUMNS = "quantity unit computed error reference uncertainty source note".split()
+
+
+def pages() -> list[Path]:
+    """The files of the gallery, in order."""
+    return sorted((ROOT / "examples").glob("[0-9][0-9]_*.py"))
+
+
+def numbers(page: Path) -> pd.DataFrame:
+    """The table of a page, which is run in the working folder without a window."""
+    matplotlib.use("Agg")
+    try:
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", message=".*cannot be shown")
+            return runpy.run_path(str(page))["numbers"]
+    finally:
+        plt.close("all")
+
+
+def is_consistent(row: pd.Series) -> bool:
+    """|computed - reference| <= error + uncertainty; also true where there is no reference."""
+    if pd.isna(row.reference):
+        return True
+    return bool(abs(row.computed - row.reference) <= row.error + row.uncertainty)
+
+
+def complaints(table: pd.DataFrame) -> list[str]:
+    """What is wrong with the table of a page, a line for each row. The note of a row that is not
+    consistent has to begin with "misses:" and give the reason."""
+    if list(table.columns) != COLUMNS:
+        return [f"columns {', '.join(table.columns)} (accepted: {', '.join(COLUMNS)})"]
+    found = [] if len(table) else ["no rows"]
+    for _, row in table.iterrows():
+        if not pd.notna(row.computed) or abs(row.computed) == float("inf"):
+            found.append(f"{row.quantity}: computed is {row.computed}")
+        elif not row.quantity or not row.unit:
+            found.append(f"'{row.quantity}': no name or no unit")
+        elif not is_consistent(row) and len(row.note.removeprefix("misses:")) in (0, len(row.note)):
+            found.append(
+                f"{row.quantity}: {row.computed:g} +- {row.error:g} against {row.reference:g} "
+                f"+- {row.uncertainty:g} ({row.source}), and the note does not say why"
+            )
+    return found
+
+
+def main(argv: list[str]) -> int:
+    """Runs every page; Failure if a table is not consistent."""
+    parser = argparse.ArgumentParser(prog="python -m examples.gallery", description=__doc__)
+    parser.parse_args(argv)
+    place = ROOT / "results/gallery"
+    place.mkdir(parents=True, exist_ok=True)
+    os.chdir(place)
+    tables, wrong, began = [], [], time.monotonic()
+    for page in pages():
+        since = time.monotonic()
+        table = numbers(page)
+        tables.append(table.assign(page=page.stem)[["page", *COLUMNS]])
+        wrong += [f"{page.stem}: {line}" for line in complaints(table)]
+        missed = sum(not is_consistent(row) for _, row in table.iterrows())
+        took = f"{time.monotonic() - since:6.1f} s"
+        print(f"{page.stem:<24}{took}{len(table):5d} numbers, {missed} miss", flush=True)
+    pd.concat(tables).to_csv(TABLE, index=False, float_format="%.6g")
+    print(f"{'all pages':<24}{time.monotonic() - began:6.1f} s  {TABLE.relative_to(ROOT)}")
+    if wrong:
+        raise Failure("gallery: " + "; ".join(wrong))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(start(main))

@@ -1,0 +1,81 @@
+// The player of a run, on the k3d plot K3DInstance: play, slider, choice of the field, and the
+// cursor of the figure. `RUN` holds: id of the mesh; times [s]; vertices, the places of all states as
+// uint16 shares of the box at `low` [m] of size `extent` [m]: (states, n, 3); fields, each with name,
+// label, low and high; values by name, uint8 shares of low ... high: (states, n); obstacles, each with
+// id and velocity [m/s]; cursor: where in the figure its time axis begins and ends, and at what times.
+// Arrays are compressed differences between one state and the next.
+const world = K3DInstance.getWorld();
+const element = (name, attributes = {}) => Object.assign(document.createElement(name), attributes);
+
+function unpacked(text, Kind) {
+  const data = new Kind(fflate.unzlibSync(Uint8Array.from(atob(text), (c) => c.charCodeAt(0))).slice().buffer);
+  const size = data.length / RUN.times.length;
+  for (let k = size; k < data.length; k++) data[k] += data[k - size];
+  return data;
+}
+
+const vertices = unpacked(RUN.vertices, Uint16Array);
+const shares = Object.fromEntries(RUN.fields.map((one) => [one.name, unpacked(RUN.values[one.name], Uint8Array)]));
+const n = vertices.length / RUN.times.length / 3;
+
+function places(state) { // deformed places (n, 3) [m]
+  const found = new Float32Array(3 * n);
+  for (let k = 0; k < 3 * n; k++)
+    found[k] = RUN.low[k % 3] + RUN.extent[k % 3] * vertices[3 * n * state + k] / 65535;
+  return { data: found, shape: [n, 3] };
+}
+
+function values(field, state) { // (n,) of the field, in its unit
+  const found = new Float32Array(n);
+  for (let k = 0; k < n; k++)
+    found[k] = field.low + (field.high - field.low) * shares[field.name][n * state + k] / 255;
+  return { data: found, shape: [n] };
+}
+
+const controls = element("div", { id: "controls" });
+const play = element("button", { id: "play", textContent: "▶", title: "play or stop" });
+const slider = element("input", { id: "state", type: "range", min: 0, max: RUN.times.length - 1, value: 0 });
+const choice = element("select", { id: "field", title: "field" });
+const clock = element("span", { id: "clock" });
+const legend = element("span", { id: "legend" });
+for (const one of RUN.fields) choice.append(element("option", { value: one.name, textContent: one.label }));
+choice.value = RUN.field;
+controls.append(play, slider, clock, choice, legend);
+document.body.append(controls);
+
+function show() {
+  const state = Number(slider.value), t = RUN.times[state];
+  const field = RUN.fields.find((one) => one.name === choice.value);
+  const json = world.ObjectsListJson[RUN.id];
+  const color_range = [field.low, field.high];
+  Object.assign(json, { vertices: places(state), attribute: values(field, state), color_range });
+  K3DInstance.reload(json, null, true).then(() => K3DInstance.render());
+  for (const one of RUN.obstacles) {
+    if (!one.velocity.some((v) => v)) continue;
+    const obstacle = world.ObjectsListJson[one.id];
+    const [x, y, z] = one.velocity.map((v) => v * t);
+    obstacle.model_matrix = { data: new Float32Array([1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z, 0, 0, 0, 1]), shape: [4, 4] };
+    K3DInstance.reload(obstacle, null, true);
+  }
+  clock.textContent = `${(1e3 * t).toPrecision(4)} ms`;
+  legend.innerHTML = `${field.low.toPrecision(3)} <i></i> ${field.high.toPrecision(3)}`;
+  const { left, right, start, end } = RUN.cursor;
+  const share = Math.min(1, Math.max(0, (t - start) / (end - start)));
+  document.getElementById("cursor").style.left = `${100 * (left + (right - left) * share)}%`;
+  document.body.dataset.state = state;
+}
+
+let timer = null;
+function stop() { clearInterval(timer); timer = null; play.textContent = "▶"; }
+play.onclick = () => {
+  if (timer) return stop();
+  play.textContent = "❚❚";
+  timer = setInterval(() => {
+    slider.value = (Number(slider.value) + 1) % RUN.times.length;
+    show();
+  }, 1000 * RUN.seconds / RUN.times.length);
+};
+slider.oninput = () => { stop(); show(); };
+choice.onchange = show;
+show();
+window.dispatchEvent(new Event("resize"));
