@@ -14,6 +14,8 @@ import pandas as pd
 import ffimpact as ff
 
 # %%
+# The ball
+# --------
 # Mass, radius, speed and angle are measured. The modulus of the ball is not given: 5 MPa is
 # chosen here. The loss factor is fitted to the normal restitution of 0.78. Nothing else is tuned.
 radius, mass, speed, angle = 0.029, 0.103, 4.0, np.radians(25)
@@ -34,6 +36,8 @@ def superball(loss, young=5e6):
 
 
 # %%
+# The loss factor
+# ---------------
 # Two quick runs give the restitution over the loss factor, and the loss factor at 0.78.
 losses = np.array([0.4, 0.6])
 found = [ff.run(superball(loss), estimate=False)["restitution"] for loss in losses]
@@ -43,17 +47,24 @@ print(f"loss factor {fitted:.3f}")
 result
 
 # %%
+# Forces
+# ------
 # Early in the contact friction brakes the ball. Later the sheared ball springs back, friction
 # changes its sign, and part of the tangential momentum returns as spin.
 fig, ax = plt.subplots(figsize=(6, 4), layout="constrained")
 result.plot.force(ax=ax)
 ax.axhline(0, color="grey", linewidth=0.6)
+plt.show()
 
 # %%
-# The player. Half of the ball is computed, so that one sees into it.
+# The player
+# ----------
+# Half of the ball is computed, so that one sees into it.
 result.view()
 
 # %%
+# Spin
+# ----
 # The spin over the speed, S, beside the measured one. The direction is known to 1 degree, and S
 # follows its sine: this adds 3.7 per cent to the uncertainty of 0.1 rad/m that Cross states.
 spin, slip = -result["rebound_spin"], result["rebound_vx"] + radius * result["rebound_spin"]
@@ -66,15 +77,19 @@ fig, ax = plt.subplots(figsize=(6, 4), layout="constrained")
 bars = [0, result.errors["rebound_spin"] / speed, 0.1 + by_angle]
 ax.bar(["rigid, sticking", "computed", "measured"], [rigid, spin / speed, 14.9], yerr=bars)
 ax.set_ylabel("spin over speed S [rad/m]")
+plt.show()
 
 # %%
+# The unknown modulus
+# -------------------
 # The modulus was chosen. A ball twice as stiff shows how much this matters.
 stiffer = ff.run(superball(fitted, young=10e6), estimate=False)
 print(f"S of a ball twice as stiff: {-stiffer['rebound_spin'] / speed:.2f} rad/m")
 
 # %%
-# What to try next: less friction (``contact.friction_static``), the other balls of the table of
-# Cross, or a plane of rubber, which is a second body.
+# Comparison
+# ----------
+# The table has the three numbers that Cross measured.
 cross, errors = "Cross 2010, Phys. Teach. 48", result.errors
 rows = [
     ("restitution e_n", "1", result["restitution"], errors["restitution"], 0.78, 0.01, cross,
@@ -87,3 +102,10 @@ rows = [
 columns = "quantity unit computed error reference uncertainty source note".split()
 numbers = pd.DataFrame(rows, columns=columns)
 numbers
+
+# %%
+# What to try next
+# ----------------
+# * Less friction, ``friction_static=0.2``: from where on does the ball slide throughout?
+# * Spin before the impact, ``spin=(0, 0, 100)``.
+# * A plane of rubber, which is a second body (``ff.Cylinder``).

@@ -14,6 +14,8 @@ import pandas as pd
 import ffimpact as ff
 
 # %%
+# The ball
+# --------
 # Mass, radius, speed and direction are measured, the friction 0.18 is that of Cross (2002). The
 # modulus is chosen, 80 MPa, and the loss factor is fitted to the normal restitution of 0.87.
 radius, mass, speed, angle = 0.0214, 0.045, 4.0, np.radians(25)
@@ -34,6 +36,8 @@ def golf_ball(loss, friction=0.18):
 
 
 # %%
+# The loss factor
+# ---------------
 # Two quick runs give the restitution over the loss factor, and the loss factor at 0.87.
 losses = np.array([0.3, 0.6])
 found = [ff.run(golf_ball(loss), estimate=False)["restitution"] for loss in losses]
@@ -43,13 +47,18 @@ print(f"loss factor {fitted:.3f}")
 result
 
 # %%
+# Forces
+# ------
 # The friction force changes its sign: the sheared ball springs back. A rigid ball that comes to
 # roll needs friction only until it rolls.
 fig, ax = plt.subplots(figsize=(6, 4), layout="constrained")
 result.plot.force(ax=ax)
 ax.axhline(0, color="grey", linewidth=0.6)
+plt.show()
 
 # %%
+# Grip
+# ----
 # Tangential restitution and spin over speed. Cross states 0.01 and 0.1 rad/m; the direction is
 # known to 1 degree, which adds 3.7 per cent to the uncertainty of the spin.
 spin, slip = -result["rebound_spin"], result["rebound_vx"] + radius * result["rebound_spin"]
@@ -63,10 +72,13 @@ bars = [0, e_t_error, 0.01]
 ax.bar(["rigid, rolling", "elastic, homogeneous", "measured"], [0, e_t, 0.03], yerr=bars)
 ax.axhline(0, color="grey", linewidth=0.6)
 ax.set_ylabel("tangential restitution [-]")
+plt.show()
 
 # %%
-# What to try next: a ball of two layers from a mesh file of two bodies, or a loss factor of shear
-# alone (``viscosity``) beside one of volume (``bulk_viscosity``).
+# Comparison
+# ----------
+# The spin misses by half of itself, far beyond all error bars. A golf ball has a stiff core in a
+# soft cover, and this ball is homogeneous.
 cross, errors = "Cross 2010, Phys. Teach. 48", result.errors
 layered = "misses: likely the layers, a stiff core in a soft cover; this ball is homogeneous"
 rows = [
@@ -79,3 +91,9 @@ rows = [
 columns = "quantity unit computed error reference uncertainty source note".split()
 numbers = pd.DataFrame(rows, columns=columns)
 numbers
+
+# %%
+# What to try next
+# ----------------
+# * More friction: does it change anything where the ball grips?
+# * Another Poisson's ratio, on which the ratio of tangential to normal stiffness depends.

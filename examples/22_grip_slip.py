@@ -14,6 +14,8 @@ import pandas as pd
 import ffimpact as ff
 
 # %%
+# The ball
+# --------
 # Mass, radius, speed and direction are measured. The ball met a block that rolls freely; its
 # mass is not at hand, and the plane here is fixed. Not given are the modulus, 5 MPa here, and the
 # friction: at least 0.9 for the superball of the same author. The loss factor is fitted.
@@ -38,6 +40,8 @@ def superball(loss):
 
 
 # %%
+# The loss factor
+# ---------------
 # Two quick runs give the restitution over the loss factor, and the loss factor at 0.91.
 losses = np.array([0.1, 0.3])
 found = [ff.run(superball(loss), estimate=False)["restitution"] for loss in losses]
@@ -47,6 +51,8 @@ print(f"loss factor {fitted:.3f}")
 result
 
 # %%
+# Grip and slip
+# -------------
 # Friction over normal force: 0.9 where the ball slides, less where it grips. Below zero friction
 # drives the ball forwards and adds spin, until the ball slides backwards at -0.9.
 history = result.history
@@ -58,8 +64,11 @@ ax.plot(1e3 * history.t[loaded], history.sliding_fraction[loaded], label="share 
 ax.axhline(0, color="grey", linewidth=0.6)
 ax.set(xlabel="time [ms]", ylabel="ratio [-]")
 ax.legend()
+plt.show()
 
 # %%
+# Spin and speed
+# --------------
 # Spin and tangential speed beside the measured ones, which Cross gives to 2 to 3 per cent: 3 per
 # cent are taken. A rigid sphere that sticks has 67.6 rad/s, and 0.71 of its tangential speed.
 spin, ratio = -result["rebound_spin"], result["rebound_vx"] / along
@@ -69,12 +78,13 @@ axes[0].bar(names, [67.6, spin, 98.4], yerr=[0, errors["rebound_spin"], 0.03 * 9
 axes[0].set_ylabel("spin [rad/s]")
 axes[1].bar(names, [5 / 7, ratio, 0.59], yerr=[0, errors["rebound_vx"] / along, 0.03 * 0.59])
 axes[1].set_ylabel("tangential speed, after over before [-]")
+plt.show()
 
 # %%
+# Comparison
+# ----------
 # The computed ball overspins more than the measured one, a little beyond the error bars. A block
 # that rolls takes part of the shear; friction and modulus of the ball are unknown, too.
-#
-# What to try next: the direction of the throw, or less friction, with which the ball only slides.
 cross = "Cross 2002, Am. J. Phys. 70 1093"
 block = "misses: likely the block, which rolled freely, and the unknown modulus and friction"
 rows = [
@@ -89,3 +99,9 @@ rows = [
 columns = "quantity unit computed error reference uncertainty source note".split()
 numbers = pd.DataFrame(rows, columns=columns)
 numbers
+
+# %%
+# What to try next
+# ----------------
+# * A flatter throw, at 20 degrees: does the ball still grip?
+# * Less friction, ``friction_static=0.2``, with which the ball only slides.

@@ -13,6 +13,8 @@ import pandas as pd
 import ffimpact as ff
 
 # %%
+# The ball
+# --------
 # Mass, radius, friction 0.18 and about 4 m/s are given by Cross, and a normal restitution of
 # 0.90 +- 0.02 at all angles. The modulus of the ball is chosen, 80 MPa. The loss factor is fitted
 # to the restitution in a normal impact, which is cheap for a body of revolution.
@@ -35,6 +37,8 @@ found = [ff.run(drop, estimate=False)["restitution"] for drop in drops]
 fitted = np.interp(0.90, found[::-1], losses[::-1])
 
 # %%
+# The throws
+# ----------
 # The same ball in space, thrown at angles from 20 to 60 degrees to the surface. The first
 # run has an error estimate.
 angles = np.array([20, 30, 40, 50, 60])
@@ -53,6 +57,8 @@ print(flat)
 error = flat.errors["rebound_spin"]
 
 # %%
+# Spin over the angle
+# -------------------
 # Spin over the angle, beside a rigid ball: friction 0.18 while it slides, rolling afterwards.
 theta = np.radians(np.linspace(10, 80, 100))
 slides = 5 / 2 * friction * 1.9 * speed * np.sin(theta) / radius
@@ -63,8 +69,11 @@ ax.plot(np.degrees(theta), np.minimum(slides, rolls), "k--", label="rigid ball, 
 ax.axvline(40, color="grey", linewidth=0.8, label="most spin, measured")
 ax.set(xlabel="angle to the surface [degrees]", ylabel="spin [rad/s]")
 ax.legend()
+plt.show()
 
 # %%
+# The angle of most spin
+# ----------------------
 # A parabola through the three largest values gives the angle of most spin. A rigid ball has it
 # where it begins to roll, at 40 degrees like the golf ball. The homogeneous elastic ball gives back
 # shear where it grips, and therefore spins most at a steeper angle. The
@@ -76,9 +85,10 @@ most = -curve[1] / (2 * curve[0])
 spread = table.restitution.max() - table.restitution.min()
 
 # %%
-# What to try next: another friction moves the angle. For a rigid ball its cotangent is
-# :math:`7/2\,\mu (1 + e)`. In the table the error of the angle is half a step of the sweep, and
-# "about 40 degrees" is read as known to 5 degrees.
+# Comparison
+# ----------
+# In the table the error of the angle is half a step of the sweep, and "about 40 degrees" is read as
+# known to 5 degrees.
 impulses = (speed * np.cos(np.radians(20)) - flat["rebound_vx"]) * mass / flat["impulse"]
 impulse_error = flat.errors["rebound_vx"] * mass / flat["impulse"]
 cross = "Cross 2002, Am. J. Phys. 70 1093"
@@ -95,3 +105,9 @@ rows = [
 columns = "quantity unit computed error reference uncertainty source note".split()
 numbers = pd.DataFrame(rows, columns=columns)
 numbers
+
+# %%
+# What to try next
+# ----------------
+# * Another friction moves the angle. Of a rigid ball its cotangent is :math:`7/2\,\mu (1 + e)`.
+# * Backspin before the impact: ``spin=(0, 0, 100)``.

@@ -14,6 +14,8 @@ import pandas as pd
 import ffimpact as ff
 
 # %%
+# The sphere
+# ----------
 # Sphere, friction 0.092, resultant speed and restitution 0.98 are those of the test; the plate is
 # rigid here. The measured rebounds are not at hand, so the references below are theories. The
 # viscosity is fitted to the restitution. Elements in the contact have two thirds of its radius.
@@ -35,6 +37,8 @@ normal = ff.run(sphere(position=1.0001 * radius, velocity=-speed))
 print(f"restitution {normal['restitution']:.3f}")
 
 # %%
+# Four angles
+# -----------
 # In space, at four angles to the normal. The incidence is
 # :math:`\psi_1 = 2(1-\nu)/(\mu(2-\nu))\,\tan\theta`, and
 # :math:`\beta` is the slip after over that before, reversed.
@@ -56,6 +60,8 @@ errors = runs[0].errors["rebound_vx"] + radius * runs[0].errors["rebound_spin"]
 errors = errors / (speed * np.sin(angles))
 
 # %%
+# Theory
+# ------
 # The theory for small contacts, by a row of independent springs under a parabola, each with
 # Coulomb's law (Popov and Hess 2015). Lengths are in radii, and modulus, mass and speed are 1.
 ratio = 2 * (1 - nu) / (2 - nu)
@@ -84,16 +90,20 @@ ax.plot(psi[1:], exact[1:], "s", mfc="none", label="exact where it slides, e = 0
 ax.errorbar(psi, beta, errors, fmt="o", capsize=3, label="computed")
 ax.set(xlabel=r"incidence $\psi_1$ [-]", ylabel=r"reversed slip $\beta$ [-]")
 ax.legend()
+plt.show()
 
 # %%
+# The onset of grip
+# -----------------
 # At 5.5 the sphere is close to the onset of grip, at 5.1. Its friction impulse is below friction
 # times normal impulse, so part of the load slides backwards before the end.
 short = 1 - runs[1]["impulse_ratio"] / friction
 print(f"at 5.5 the friction impulse is {100 * short:.1f} per cent short of sliding")
 
 # %%
-# What to try next: the aluminium alloy of the same test (70 GPa, Poisson's ratio 0.33,
-# 2700 kg/m3), or smaller elements where the sphere grips.
+# Comparison
+# ----------
+# The exact line holds where the sphere slides throughout, beyond the onset of grip at 5.1.
 kharaz, slides = "Kharaz et al. 2001, Powder Technol. 120 281", "exact: slides throughout"
 grip = theory(psi[0])
 rows = [
@@ -108,3 +118,9 @@ rows = [
 columns = "quantity unit computed error reference uncertainty source note".split()
 numbers = pd.DataFrame(rows, columns=columns)
 numbers
+
+# %%
+# What to try next
+# ----------------
+# * The aluminium alloy of the same test: 70 GPa, Poisson's ratio 0.33, 2700 kg/m3.
+# * Smaller elements at 3.3, where the sphere grips and the mesh matters most.

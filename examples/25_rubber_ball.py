@@ -14,6 +14,8 @@ import pandas as pd
 import ffimpact as ff
 
 # %%
+# The ball
+# --------
 # Sizes, moduli and relaxation are those of the verification manual (VM-LSDYNA-IMPACT-001), and
 # the speeds are the measured ones. The plate is rigid here. Shear modulus
 # :math:`2(C_{10} + C_{01})`, share of the second invariant 0.2.
@@ -36,6 +38,8 @@ study = ff.sweep(scene, {"body.1.velocity.2": [-speed for speed in speeds]})
 study
 
 # %%
+# Force
+# -----
 # The force over time: the harder the impact, the shorter the contact.
 fig, ax = plt.subplots(figsize=(6, 4), layout="constrained")
 for height, run in zip(heights, study.results):
@@ -43,13 +47,19 @@ for height, run in zip(heights, study.results):
     ax.plot(1e3 * history.t, history.normal_force, label=f"fall of {height} m")
 ax.set(xlabel="time [ms]", ylabel="normal force [N]")
 ax.legend()
+plt.show()
 
 # %%
+# Shape
+# -----
 # The ball of the middle height at the largest force.
 fig, ax = plt.subplots(figsize=(6, 4), layout="constrained")
 study.results[1].plot.shapes(ax=ax)
+plt.show()
 
 # %%
+# Restitution
+# -----------
 # The restitution. The same rubber that never relaxes is nearly elastic: the branch takes the rest.
 elastic = ff.run(scene, {"body.1.velocity.2": -speeds[1], "body.1.relaxation_time": 1.0})
 restitutions = study.table.restitution
@@ -60,13 +70,14 @@ ax.errorbar(speeds[1], elastic["restitution"], elastic.errors["restitution"], fm
             label="relaxes in 1 s")  # fmt: skip
 ax.set(xlabel="speed [m/s]", ylabel="restitution [-]", ylim=(0, 1.05))
 ax.legend()
+plt.show()
 
 # %%
+# Comparison
+# ----------
 # The measured restitutions (Wang et al. 2025, AIP Advances 15 025104) are not at hand, so the
 # table leaves them open. What is exact: relaxation takes what the ball does not keep, and the
 # impulse is the change of momentum.
-#
-# What to try next: another relaxation time. Most is lost where it is near the contact time.
 rows = [
     (f"restitution, fall of {height} m", "1", value, bar, np.nan, np.nan,
      "Wang et al. 2025", "measured value not at hand")
@@ -86,3 +97,9 @@ for height, speed, run in zip(heights, speeds, study.results):
 columns = "quantity unit computed error reference uncertainty source note".split()
 numbers = pd.DataFrame(rows, columns=columns)
 numbers
+
+# %%
+# What to try next
+# ----------------
+# * Another relaxation time. Most is lost where it is near the contact time.
+# * A harder fall, and the largest stretch, ``min_stretch``.

@@ -13,6 +13,8 @@ import pandas as pd
 import ffimpact as ff
 
 # %%
+# The bodies
+# ----------
 # Three rows of four bodies with random velocities. Elements are coarse and the contact is soft:
 # warnings say so. This page is for the eye, and its balances hold on any mesh.
 rubber = ff.NeoHookean(young=3e5, nu=0.3, density=1100)
@@ -53,25 +55,33 @@ result = ff.run(scene, estimate=False)
 print(f"{len(result.contacts)} intervals of contact, {result['dofs']} unknowns")
 
 # %%
-# Four instants:
+# Four instants
+# -------------
+# The colour is the von Mises stress.
 fig, axes = plt.subplots(2, 2, figsize=(9, 6), layout="constrained")
 for ax, time in zip(axes.flat, (0.007, 0.020, 0.040, 0.060)):
     result.plot.shapes(ax=ax, time=time)
+plt.show()
 
 # %%
-# The player:
+# The player
+# ----------
+# The states as an animation.
 result.view()
 
 # %%
+# Energies
+# --------
 # Energies of all bodies together:
 fig, ax = plt.subplots(figsize=(6, 4), layout="constrained")
 result.plot.energies(ax=ax)
+plt.show()
 
 # %%
+# Comparison
+# ----------
 # Contacts between bodies have no resultant: the total momentum changes by the forces of the box
 # and by weight alone.
-#
-# What to try next: another seed of the random numbers, or a second dozen above the first.
 history, everyone = result.history, range(1, 13)
 first, last = history.iloc[0], history.iloc[-1]
 weight = 9.81 * result["mass"]
@@ -93,3 +103,9 @@ rows = [
 columns = "quantity unit computed error reference uncertainty source note".split()
 numbers = pd.DataFrame(rows, columns=columns)
 numbers
+
+# %%
+# What to try next
+# ----------------
+# * Another seed of the random numbers.
+# * No friction, ``friction_static=0``: which bodies still turn?

@@ -13,6 +13,8 @@ import pandas as pd
 import ffimpact as ff
 
 # %%
+# The strip
+# ---------
 # The outline is a polygon: two straight legs of 6 mm and an arc between them. The program sees
 # that the legs may meet, so that ``contact.self_contact`` can be left open.
 thickness, length, gap = 0.006, 0.08, 0.012
@@ -49,27 +51,34 @@ result = ff.run(scene, estimate=False)
 result
 
 # %%
+# Six instants
+# ------------
 # It flattens, closes, opens again and flies off with its legs apart.
 fig, axes = plt.subplots(3, 2, figsize=(6, 6), layout="constrained")
 for ax, time in zip(axes.flat, (0.003, 0.0043, 0.0058, 0.008, 0.010, 0.030)):
     result.plot.shapes(ax=ax, time=time)
+plt.show()
 
 # %%
-# The player:
+# The player
+# ----------
+# The states as an animation.
 result.view()
 
 # %%
+# Energies
+# --------
 # Energies: friction between the legs, friction on the floor and the damping of the rubber take
 # part of them. The sum of all stays constant.
 fig, ax = plt.subplots(figsize=(6, 4), layout="constrained")
 result.plot.energies(ax=ax)
+plt.show()
 
 # %%
+# Comparison
+# ----------
 # A contact of the body with itself has no resultant: the floor alone changes the momentum, in the
 # time in which the legs hit each other, too.
-#
-# What to try next: ``contact.self_contact = "off"``, and the warning that the legs overlap. Or
-# more friction, with which the legs stick to each other for longer.
 history, mass = result.history, result["mass"]
 start = mass * 6.0**2 / 2
 spent = history.friction_work.iloc[-1] + history.viscous_work.iloc[-1]
@@ -90,3 +99,9 @@ rows = [
 columns = "quantity unit computed error reference uncertainty source note".split()
 numbers = pd.DataFrame(rows, columns=columns)
 numbers
+
+# %%
+# What to try next
+# ----------------
+# * ``self_contact="off"`` in ``ff.Contact``, and the warning that the legs overlap.
+# * More friction, with which the legs stick to each other.

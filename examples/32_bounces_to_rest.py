@@ -14,6 +14,8 @@ import pandas as pd
 import ffimpact as ff
 
 # %%
+# The scene
+# ---------
 # The scene is built in. Its loss factor is 0.5 and its end is open: the run ends when all rests.
 # Free flight costs nothing, because the program skips it once the disc has ceased to vibrate.
 result = ff.run("disc-rest", estimate=False)
@@ -21,31 +23,40 @@ print(f"ended by {result['ended']} after {result['bounces']} bounces, {result['s
 result
 
 # %%
+# Height
+# ------
 # Height of the centre over time.
 history = result.history
 gravity, radius, fall = 9.81, result.scene["radius"], result.scene["height"]
 fig, ax = plt.subplots(figsize=(6, 4), layout="constrained")
 ax.plot(history.t, 1e3 * (history.y - radius), ".-", markersize=3)
 ax.set(xlabel="time [s]", ylabel="height of the lowest point [mm]", ylim=(-10, 250))
+plt.show()
 
 # %%
+# Restitution
+# -----------
 # The restitution over the speed of approach, from the table of contacts.
 contacts = result.contacts[result.contacts.restitution.notna()]
 fig, ax = plt.subplots(figsize=(6, 4), layout="constrained")
 ax.semilogx(contacts.approach, contacts.restitution, "o-")
 ax.set(xlabel="speed of approach [m/s]", ylabel="restitution [-]")
+plt.show()
 
 # %%
+# At rest
+# -------
 # The disc as it rests, pressed flat by its own weight.
 fig, ax = plt.subplots(figsize=(6, 4), layout="constrained")
 result.plot.shapes(ax=ax, time=float(history.t.iloc[-1]))
+plt.show()
 
 # %%
+# Comparison
+# ----------
 # At rest the half-width of the contact is that of Hertz, in plane strain
 # :math:`b^2 = 4 W R / (\pi E^*)`. Half an element of the contact is taken as its error. The first
 # touch and the balance of energy are exact; their error is the length of a step and round-off.
-#
-# What to try next: ``entries={"loss": 0.1}``, a disc that bounces for longer.
 weight = gravity * result["mass"]
 modulus = result.scene["young"] / (1 - result.scene["nu"] ** 2)
 hertz = np.sqrt(4 * weight * radius / (np.pi * modulus))
@@ -65,3 +76,9 @@ rows = [
 columns = "quantity unit computed error reference uncertainty source note".split()
 numbers = pd.DataFrame(rows, columns=columns)
 numbers
+
+# %%
+# What to try next
+# ----------------
+# * A smaller loss: ``ff.run("disc-rest", loss=0.3)``. How many bounces are there?
+# * Gravity of the moon, ``gravity=1.62``.

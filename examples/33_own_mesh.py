@@ -16,6 +16,8 @@ import pandas as pd
 import ffimpact as ff
 
 # %%
+# The mesh
+# --------
 # The mesh in millimetres. Boundary elements in the physical group ``contact`` may touch; without
 # groups, as here, all of them may.
 radius, hole, offset, size = 20.0, 4.0, 8.0, 2.0
@@ -39,6 +41,8 @@ gmsh.write(str(folder / "button.msh"))
 gmsh.finalize()
 
 # %%
+# The scene
+# ---------
 # The body is the file, with the length of its unit.
 rubber = ff.NeoHookean(young=5e6, nu=0.4, density=1200)
 button = ff.Mesh(
@@ -57,22 +61,28 @@ result = ff.run(scene)
 result
 
 # %%
+# Shapes
+# ------
 # The button before, at the largest force and after.
 fig, axes = plt.subplots(1, 3, figsize=(9, 3), layout="constrained")
 peak = float(result.history.t[result.history.normal_force.idxmax()])
 for ax, time in zip(axes, (0.0, peak, float(result.history.t.iloc[-1]))):
     result.plot.shapes(ax=ax, time=time)
+plt.show()
 
 # %%
+# Forces
+# ------
 # Normal force and friction. While all points slide, their ratio is the coefficient of friction.
 fig, ax = plt.subplots(figsize=(6, 4), layout="constrained")
 result.plot.force(ax=ax)
+plt.show()
 
 # %%
+# Comparison
+# ----------
 # The mass is that of the exact outline, up to the arcs that the mesh cuts off: a chord of length
 # s of a circle of radius r leaves out about :math:`s^2/(6 r^2)` of the area. Momentum is exact.
-#
-# What to try next: a ``.step`` or ``.geo`` file, which the program meshes itself.
 mm2, history = 1e-6, result.history
 area = np.pi * (radius**2 - 4 * hole**2) * mm2
 cut = np.pi * (size**2 / 6 + 4 * size**2 / 6) * mm2
@@ -91,3 +101,9 @@ rows = [
 columns = "quantity unit computed error reference uncertainty source note".split()
 numbers = pd.DataFrame(rows, columns=columns)
 numbers
+
+# %%
+# What to try next
+# ----------------
+# * A ``.step`` or ``.geo`` file in place of the mesh, which the program meshes itself.
+# * More friction: does the button still slide throughout?

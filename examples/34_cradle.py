@@ -12,6 +12,8 @@ import pandas as pd
 import ffimpact as ff
 
 # %%
+# The row
+# -------
 # Five discs with gaps of 2 mm, so that each impact is over before the next one begins.
 rubber = ff.NeoHookean(young=5e6, nu=0.3, density=1200)
 radius, gap, speed = 0.03, 0.002, 2.0
@@ -38,30 +40,41 @@ result = ff.run(cradle(5), estimate=False)
 result
 
 # %%
+# Velocities
+# ----------
 # Velocities of the five centres: the momentum is handed on.
 fig, ax = plt.subplots(figsize=(6, 4), layout="constrained")
 result.plot.velocities(ax=ax)
+plt.show()
 
 # %%
-# The player:
+# The player
+# ----------
+# The states as an animation.
 result.view()
 
 # %%
+# Stress
+# ------
 # The row at the largest force.
 fig, ax = plt.subplots(figsize=(6, 4), layout="constrained")
 result.plot.shapes(ax=ax)
+plt.show()
 
 # %%
+# Energies
+# --------
 # Energies: a part of the elastic energy stays in the discs as vibration.
 fig, ax = plt.subplots(figsize=(6, 4), layout="constrained")
 result.plot.energies(ax=ax)
+plt.show()
 
 # %%
+# Comparison
+# ----------
 # Two discs alone give the restitution e of one impact. If all four impacts had the same, the last
 # disc would leave with :math:`v ((1 + e)/2)^4`. The discs of the row vibrate when they hit, so this
 # is an estimate. Four times the error of one impact is taken as its error.
-#
-# What to try next: no gap, where the impacts overlap, or ``loss`` of the rubber.
 history, mass = result.history, result["mass_1"]
 momentum = sum(history[f"momentum_x_{k}"].iloc[-1] for k in range(1, 6))
 energy = sum(history[name].iloc[-1] for name in ("kinetic", "elastic", "contact"))
@@ -79,3 +92,9 @@ rows = [
 columns = "quantity unit computed error reference uncertainty source note".split()
 numbers = pd.DataFrame(rows, columns=columns)
 numbers
+
+# %%
+# What to try next
+# ----------------
+# * No gap, so that the impacts overlap.
+# * Two discs that come from the left. How many leave on the right?

@@ -13,6 +13,8 @@ import pandas as pd
 import ffimpact as ff
 
 # %%
+# The block
+# ---------
 # The top goes down by 0.6 mm in 10 ms, and then along at 0.1 m/s. Friction is 0.8 at rest and 0.2
 # in motion.
 width, height, static, dynamic = 0.03, 0.015, 0.8, 0.2
@@ -42,6 +44,8 @@ result = ff.run(scene, estimate=False)
 history = result.history
 
 # %%
+# Friction
+# --------
 # Friction over normal force, and the share of the load that slides. The first slip is the largest:
 # the block springs forward so far that friction holds it back afterwards.
 ratio = -history.friction_force / history.normal_force.where(history.normal_force > 10)
@@ -52,21 +56,24 @@ axes[0].axhline(dynamic, color="grey", linewidth=0.8, linestyle="--")
 axes[0].set(ylabel="friction over\nnormal force [-]")
 axes[1].plot(1e3 * history.t, history.sliding_fraction)
 axes[1].set(xlabel="time [ms]", ylabel="share that\nslides [-]")
+plt.show()
 
 # %%
+# Shapes
+# ------
 # The block just before its first slip and just after it.
 slips = history.index[(history.sliding_fraction > 0.9999) & (history.t > 0.015)]
 first = float(history.t[slips[0]])
 fig, axes = plt.subplots(1, 2, figsize=(9, 3), layout="constrained")
 for ax, time in zip(axes, (first - 0.002, first + 0.004)):
     result.plot.shapes(ax=ax, time=time)
+plt.show()
 
 # %%
+# Comparison
+# ----------
 # All of the face never reaches 0.8 at once: one edge of the block has less pressure, lets go first
 # and unloads onto the rest. While all of it slides, the ratio is the dynamic coefficient.
-#
-# What to try next: a faster drive, with which the block slides steadily, or
-# ``friction_static=0.2``, with which it does from the start.
 run = slips[: np.argmax(np.diff(slips, append=slips[-1] + 2) > 1) + 1]
 sliding = ratio[run[1:-1]]
 final = history.iloc[-1]
@@ -89,3 +96,9 @@ rows = [
 columns = "quantity unit computed error reference uncertainty source note".split()
 numbers = pd.DataFrame(rows, columns=columns)
 numbers
+
+# %%
+# What to try next
+# ----------------
+# * A faster drive, 0.5 m/s: does the block still stick?
+# * Equal coefficients, ``friction_dynamic=0.8``.
