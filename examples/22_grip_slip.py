@@ -78,6 +78,8 @@ axes[0].bar(names, [67.6, spin, 98.4], yerr=[0, errors["rebound_spin"], 0.03 * 9
 axes[0].set_ylabel("spin [rad/s]")
 axes[1].bar(names, [5 / 7, ratio, 0.59], yerr=[0, errors["rebound_vx"] / along, 0.03 * 0.59])
 axes[1].set_ylabel("tangential speed, after over before [-]")
+for ax in axes:
+    ax.tick_params(labelsize=8)
 plt.show()
 
 # %%

@@ -59,7 +59,7 @@ print(f"{len(result.contacts)} intervals of contact, {result['dofs']} unknowns")
 # -------------
 # The colour is the von Mises stress.
 fig, axes = plt.subplots(2, 2, figsize=(9, 6), layout="constrained")
-for ax, time in zip(axes.flat, (0.007, 0.020, 0.040, 0.060)):
+for ax, time in zip(axes.flat, (0.011, 0.020, 0.040, 0.060)):
     result.plot.shapes(ax=ax, time=time)
 plt.show()
 

@@ -54,8 +54,8 @@ result
 # Six instants
 # ------------
 # It flattens, closes, opens again and flies off with its legs apart.
-fig, axes = plt.subplots(3, 2, figsize=(6, 6), layout="constrained")
-for ax, time in zip(axes.flat, (0.003, 0.0043, 0.0058, 0.008, 0.010, 0.030)):
+fig, axes = plt.subplots(3, 2, figsize=(9, 6), layout="constrained")
+for ax, time in zip(axes.flat, (0.0037, 0.0043, 0.0058, 0.008, 0.010, 0.030)):
     result.plot.shapes(ax=ax, time=time)
 plt.show()
 

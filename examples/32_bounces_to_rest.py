@@ -25,12 +25,17 @@ result
 # %%
 # Height
 # ------
-# Height of the centre over time.
+# Height of the centre over time. A flight is one step of the table, so the parabola is drawn from
+# place and velocity at its start.
 history = result.history
 gravity, radius, fall = 9.81, result.scene["radius"], result.scene["height"]
 fig, ax = plt.subplots(figsize=(6, 4), layout="constrained")
-ax.plot(history.t, 1e3 * (history.y - radius), ".-", markersize=3)
-ax.set(xlabel="time [s]", ylabel="height of the lowest point [mm]", ylim=(-10, 250))
+times = np.linspace(0, history.t.iloc[-1], 2000)
+before = history.iloc[np.searchsorted(history.t, times, side="right") - 1]
+since = times - before.t
+height = before.y + before.vy * since - gravity * since**2 / 2
+ax.plot(times, 1e3 * (height - radius))
+ax.set(xlabel="time [s]", ylabel="height above the plane [mm]")
 plt.show()
 
 # %%

@@ -3,7 +3,7 @@ A mesh of your own: a button
 ============================
 
 Any body that gmsh can mesh can be thrown. Here a button with four holes is meshed in Python,
-written to a file and thrown on the floor, where it slides and picks up spin.
+written to a file and thrown on the floor, where it shears, springs back and picks up spin.
 """
 
 from pathlib import Path
@@ -21,6 +21,8 @@ import ffimpact as ff
 # The mesh in millimetres. Boundary elements in the physical group ``contact`` may touch; without
 # groups, as here, all of them may.
 radius, hole, offset, size = 20.0, 4.0, 8.0, 2.0
+if gmsh.isInitialized():
+    gmsh.finalize()  # ends what another page has left
 gmsh.initialize(interruptible=False)
 gmsh.option.setNumber("General.Terminal", 0)
 gmsh.model.add("button")
@@ -73,7 +75,8 @@ plt.show()
 # %%
 # Forces
 # ------
-# Normal force and friction. While all points slide, their ratio is the coefficient of friction.
+# Normal force and friction. Friction changes its sign, as the sheared button springs back along the
+# floor.
 fig, ax = plt.subplots(figsize=(6, 4), layout="constrained")
 result.plot.force(ax=ax)
 plt.show()
@@ -106,4 +109,4 @@ numbers
 # What to try next
 # ----------------
 # * A ``.step`` or ``.geo`` file in place of the mesh, which the program meshes itself.
-# * More friction: does the button still slide throughout?
+# * Less friction: from where on does the button slide throughout?

@@ -44,7 +44,11 @@ result
 # ----------
 # Velocities of the five centres: the momentum is handed on.
 fig, ax = plt.subplots(figsize=(6, 4), layout="constrained")
-result.plot.velocities(ax=ax)
+history = result.history
+for k in range(1, 6):
+    ax.plot(1e3 * history.t, history[f"vx_{k}"], label=f"disc {k}")
+ax.set(xlabel="time [ms]", ylabel="velocity [m/s]")
+ax.legend()
 plt.show()
 
 # %%
@@ -75,7 +79,7 @@ plt.show()
 # Two discs alone give the restitution e of one impact. If all four impacts had the same, the last
 # disc would leave with :math:`v ((1 + e)/2)^4`. The discs of the row vibrate when they hit, so this
 # is an estimate. Four times the error of one impact is taken as its error.
-history, mass = result.history, result["mass_1"]
+mass = result["mass_1"]
 momentum = sum(history[f"momentum_x_{k}"].iloc[-1] for k in range(1, 6))
 energy = sum(history[name].iloc[-1] for name in ("kinetic", "elastic", "contact"))
 start = mass * speed**2 / 2
