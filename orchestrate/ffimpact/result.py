@@ -18,6 +18,7 @@ import pandas as pd
 
 from .failure import BadInput, NotInstalled, Unreadable, unknown
 from .freefem.describe import describe_results
+from .input.dimension import per_metre
 from .output import vtu
 from .output.errors import errors
 from .output.results import Record, numbers, read_record, read_summary
@@ -122,9 +123,10 @@ class Result:
 
     @cached_property
     def units(self) -> Mapping[str, str]:
-        """The unit of each number and column."""
-        said = describe_results(script=self.summary["provenance"]["script"])["meanings"]
-        return {
+        """The unit of each number and column; per metre of thickness in plane strain alone."""
+        script = self.summary["provenance"]["script"]
+        said = describe_results(script=script)["meanings"]
+        found = {
             name: entry[0]
             for table in ("summary", "history", "contacts")
             for name, entry in said[table].items()
@@ -133,6 +135,8 @@ class Result:
             for name in self.summary
             if (bare := re.sub(r"_[0-9]+$", "", name)) in said["summary"]
         }
+        suffix = "" if per_metre(script) else "/m"
+        return {name: unit.removesuffix(suffix) for name, unit in found.items()}
 
     @property
     def table(self) -> pd.DataFrame:

@@ -69,6 +69,18 @@ def test_numbers_have_errors_and_units(result):
         result.plot.shapes(field="von_mise")
 
 
+def test_units_of_a_ball_are_those_of_the_whole(tmp_path):
+    """Only plane strain is per metre of thickness; speeds keep their unit."""
+    ball = ff.run("ball-axisymmetric", accuracy=0.2, estimate=False, out=tmp_path / "ball")
+    assert [ball.units[name] for name in ("impulse", "peak_force", "energy_initial", "mass")] == [
+        "N s",
+        "N",
+        "J",
+        "kg",
+    ]
+    assert ball.units["rebound_vy"] == "m/s"
+
+
 def test_tables(result):
     assert isinstance(
         result.history, pd.DataFrame

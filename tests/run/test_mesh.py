@@ -149,3 +149,11 @@ def test_sizes_follow_the_accuracy():
     assert finer_bulk < bulk and finer_contact < contact < bulk
     assert sizes(mesh_size=1e-3) == (1e-3, 1e-3)
     assert sizes(contact_mesh_size=1e-2)[1] == 1e-2 and sizes(contact_mesh_size=4e-2) == (4e-2, 4e-2)
+
+
+def test_gmsh_starts_again_where_a_script_has_ended_it():
+    """A script that uses gmsh itself may call finalize() between two runs."""
+    gmsh = mesh.start_gmsh()
+    gmsh.finalize()
+    assert mesh.start_gmsh().isInitialized()
+    assert len(mesh.disc(0.05, 0.02, 0.01, True).points)

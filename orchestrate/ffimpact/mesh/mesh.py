@@ -308,26 +308,35 @@ _alone = threading.RLock()  # gmsh has one model, and serves one thread at a tim
 
 
 def start_gmsh() -> ModuleType:
-    """The module gmsh, started once in the life of this program; NotInstalled where a system
-    library is missing.
+    """The module gmsh, started, also where a script that uses gmsh itself has ended it;
+    NotInstalled where a system library is missing.
     """
     with _alone:
-        return _started()
+        gmsh = _loaded()
+        if not gmsh.isInitialized():
+            _initialize(gmsh)
+        return gmsh
 
 
 @cache
-def _started() -> ModuleType:
-    """The same, for the first thread that asks.
-
-    For a moment gmsh sets signal handlers back to their defaults: a run starts it before it
-    makes anything that a signal could leave behind.
-    """
+def _loaded() -> ModuleType:
+    """The module gmsh, which ends with this program."""
     try:
         import gmsh
     except OSError as error:
         raise NotInstalled(
             f"gmsh does not load ({error}); run: {LIBRARIES if INSTALLED else 'make setup'}"
         ) from None
+    atexit.register(lambda: gmsh.finalize() if gmsh.isInitialized() else None)
+    return gmsh
+
+
+def _initialize(gmsh: ModuleType) -> None:
+    """Starts gmsh.
+
+    For a moment gmsh sets signal handlers back to their defaults: a run starts it before it
+    makes anything that a signal could leave behind.
+    """
     handlers = {
         number: signal.getsignal(number)
         for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGPIPE)
@@ -336,8 +345,6 @@ def _started() -> ModuleType:
     if threading.current_thread() is threading.main_thread():
         for number, handler in handlers.items():
             signal.signal(number, handler)
-    atexit.register(gmsh.finalize)
-    return gmsh
 
 
 def in_own_process(read: Callable, path: Path, *given):
