@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from .result import Result
     from .scenes.obstacles import Obstacle
 
-__all__ = ["FIELDS", "Player", "view"]
+__all__ = ["FIELDS", "Player", "Shown", "States", "view"]
 
 # name: its label, the field of a state that it is made from, and the units it may be shown in
 FIELDS = {

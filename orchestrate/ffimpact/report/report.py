@@ -240,12 +240,18 @@ def report(result: Record, verbose: bool = False) -> str:
         *told(summary, verbose),
     ]
     lines += [f"  released  {sentence}" for sentence in summary.get("released", [])]
-    if verbose and summary.get("skipped"):
+    if summary.get("skipped"):
         lines.append(f"  skipped   {', '.join(summary['skipped'])}")
     pictures = sorted((result.folder / "figures").glob("*.png"))
     if pictures:
         names = ",".join(picture.stem for picture in pictures)
         lines.append(f"  figures   {place}/figures/{{{names}}}.png")
+        if summary.get("contact_intervals") and scene.get("fields") and "contact" not in names:
+            more = 4 * scene["fields"]
+            lines.append(
+                "  no contact.png: no state that was kept is one in contact: "
+                f"fields = {more:g} keeps more"
+            )
     if scene.get("fields"):
         lines.append(f"  player    ffimpact view {place}")
     if not verbose:
