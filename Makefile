@@ -75,16 +75,17 @@ movie: CASE := disc-oblique
 movie: $(READY) ## a film of a scene, built in or a file: make movie CASE=disc-oblique
 	@$(PYTHON) -m ffimpact $@ "$(CASE)" $(ARGS)
 
-docs: $(READY) ## a site of README and docs/: results/site/html (installs MkDocs with its theme)
-	@$(PYTHON) -m pip install -q --disable-pip-version-check "mkdocs>=1.6,<2" "mkdocs-material>=9.5,<10"
-	@$(PYTHON) docs/pages.py --site results/site/docs
-	@NO_MKDOCS_2_WARNING=1 $(PYTHON) -m mkdocs build -q -s && echo "results/site/html/index.html"
+docs: .venv/.docs ## the documentation as a site, with the gallery of examples: results/site/html (ARGS="-D plot_gallery=0": without running them)
+	@$(PYTHON) docs/pages.py >/dev/null
+	@$(PYTHON) -m sphinx -q -W --keep-going -d results/site/doctrees docs results/site/html $(ARGS) && echo "results/site/html/index.html"
 
-pictures: disc-normal disc-oblique ## the README's pictures, drawn again from the present runs
-	@$(PYTHON) -c "from PIL import Image; from pathlib import Path; from ffimpact.report import drawing; \
-	runs = {'disc-normal': ('shapes', 'picture.png'), 'disc-oblique': ('flight', 'picture-oblique.png')}; \
-	[(drawing.draw(run := Path('results', name)), \
-	Image.open(run / f'figures/{figure}.png').convert('RGB').quantize(256).save(picture, optimize=True)) for name, (figure, picture) in runs.items()]"
+.venv/.docs: $(READY) pyproject.toml
+	@$(PYTHON) -m pip install -q --disable-pip-version-check -e ".[docs]"
+	@touch $@
+
+pictures: disc-normal disc-oblique ## the pictures of README.md and docs/index.md, drawn again from the present runs
+	@$(PYTHON) -m ffimpact movie disc-oblique --frames 40 --format gif
+	@$(PYTHON) docs/pictures.py
 
 # the modules of the Python interface
 STRICT := $(addprefix orchestrate/ffimpact/,__init__.pyi api.py model.py plot.py result.py schema.py view.py \
@@ -107,30 +108,30 @@ test: $(READY) ## run all tests, on two cores: some seven minutes
 
 robustness: $(READY) ## the tests that make test leaves out, malformed input and kills; hard runs drawn at random, and every combination of hard parameters: nothing is silently wrong, lost or left behind
 	@$(PYTHON) -m pytest -q -n 2 --dist worksteal -m robustness
-	@$(PYTHON) -m benchmarks promise --hard --scenes 200 --seed 201 --out results/robustness --page docs/robustness.md $(ARGS)
-	@$(PYTHON) -m benchmarks promise --hard --of disc-block --scenes 20 --seed 202 --out results/robustness-block --page docs/robustness-block.md $(ARGS)
-	@$(PYTHON) -m benchmarks promise --hard --of ball-axisymmetric --scenes 20 --seed 203 --out results/robustness-ball --page docs/robustness-ball.md $(ARGS)
+	@$(PYTHON) -m benchmarks promise --hard --scenes 200 --seed 201 --out results/robustness --page docs/measurements/robustness.md $(ARGS)
+	@$(PYTHON) -m benchmarks promise --hard --of disc-block --scenes 20 --seed 202 --out results/robustness-block --page docs/measurements/robustness-block.md $(ARGS)
+	@$(PYTHON) -m benchmarks promise --hard --of ball-axisymmetric --scenes 20 --seed 203 --out results/robustness-ball --page docs/measurements/robustness-ball.md $(ARGS)
 	@$(PYTHON) -m benchmarks stress
 
-disc-block-errors: override ARGS += --page docs/disc-block.md
-pairing-comparison: override ARGS += --page docs/pairing.md
-rubber: override ARGS += --page docs/rubber.md
-equal-errors: override ARGS += --page docs/bench.md
-promise scaling: override ARGS += --page docs/$@.md
+disc-block-errors: override ARGS += --page docs/measurements/disc-block.md
+pairing-comparison: override ARGS += --page docs/measurements/pairing.md
+rubber: override ARGS += --page docs/measurements/rubber.md
+equal-errors: override ARGS += --page docs/measurements/bench.md
+promise scaling: override ARGS += --page docs/measurements/$@.md
 bench scaling equal-errors promise disc-block-errors pairing-comparison rubber: $(READY)
 	@$(PYTHON) -m benchmarks $@ $(ARGS)
 bench: ## run time against error: meshes, steps, integrators, and other programs where installed
 bench-quick: $(READY) ## the same for one case, coarse
 	@$(PYTHON) -m benchmarks bench --quick $(ARGS)
-scaling: ## what a step costs over the number of unknowns, by phase, and memory: exponents (docs/scaling.md)
-equal-errors: ## who takes how long for 1, 0.5 and 0.1 %, other programs where installed (docs/bench.md)
+scaling: ## what a step costs over the number of unknowns, by phase, and memory: exponents (docs/measurements/scaling.md)
+equal-errors: ## who takes how long for 1, 0.5 and 0.1 %, other programs where installed (docs/measurements/bench.md)
 promise: ## whether accuracy means what it says, and stated errors hold, over 240 scenes drawn at random
 disc-block-errors: ## the disc on the free block (section 3.2) over law, nu, stiffness and mesh, with error bars; NGSolve beside it
 pairing-comparison: ## closest point against pairs of points (14), (15): rebound, energy and time over epsilon and k
 oblique-angles: $(READY) ## disc and ball over the angle of incidence, beside rigid and elastic theory (ARGS="--friction 0.2 --angles 20,40,60")
-	@$(PYTHON) -m benchmarks $@ $(or $(ARGS),--page docs/$@.md)
+	@$(PYTHON) -m benchmarks $@ $(or $(ARGS),--page docs/measurements/$@.md)
 viscoelastic: $(READY) ## damped impacts: a slow ball against quasi-static theory, a disc over loss factor and relaxation time
-	@$(PYTHON) -m benchmarks $@ $(or $(ARGS),--page docs/$@.md)
+	@$(PYTHON) -m benchmarks $@ $(or $(ARGS),--page docs/measurements/$@.md)
 rubber: ## disc and ball as nu -> 0.5: answers and cost, with the mean volume of elements and at points, NGSolve where installed
 
 clean: ## remove all results (keeps .venv)

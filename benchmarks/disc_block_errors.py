@@ -13,7 +13,7 @@ from ffimpact.progress import in_turn
 from ffimpact.sweeps import study
 from verification import commands
 
-from . import peers
+from . import page, peers
 
 CASES = [{"law": law, "nu": nu, "penalty": k} for law, nu, k in itertools.product(("svk", "neohookean"), (0.3, 0.45), (1e9, 1e10))]
 ACCURACIES = (0.02, 0.005)
@@ -48,8 +48,13 @@ def main(argv: list[str]) -> int:
     table = compare(cases, tuple(options.accuracy), out)
     others, reason = ask_peer([case for case in PEER_CASES if case in cases])
     study.save(others, out / "disc-block-peers.csv")
-    return commands.finish(options, table, report(table, others, reason), not violations(table), argv,
-                        "A disc on a free block, with error bars")
+    bars = [name for answer in ANSWERS for name in (answer, f"{answer} bar")]
+    size = ["dofs", "steps", "seconds"]
+    tables = {"": with_bars(table)[[*CASES[0], *bars]],
+              "errors": differences(table)[[*CASES[0], "accuracy", *size, *ANSWERS]],
+              "ngsolve": peer_with_bars(others).reindex(columns=[*CASES[0], "refine", *size, *bars])}
+    return page.finish(options, table, report(table, others, reason), not violations(table), argv,
+                       "A disc on a free block, with error bars", tables)
 
 
 def compare(cases: list[study.Point], accuracies: tuple[float, ...], out: Path) -> pd.DataFrame:

@@ -1,6 +1,7 @@
 """Who takes how long at equal errors: five impacts by this program and, where they are installed (peers.py), by NGSolve and GetFEM,
 from coarse to fine settings; processor seconds of the march and of the whole process for 1, 0.5 and 0.1 %."""
 
+import itertools
 import math
 from dataclasses import dataclass, field
 from typing import Any
@@ -15,7 +16,7 @@ from ffimpact.progress import in_turn
 from ffimpact.sweeps import study
 from verification import commands
 
-from . import peers
+from . import page, peers
 
 LEVELS = (1.0, 0.5, 0.1)    # % of error
 LIMIT = 1200.0              # seconds a run may take
@@ -126,17 +127,48 @@ def main(argv: list[str]) -> int:
         if name not in CASES:
             parser.error(unknown(name, CASES, ", "))
     freefem.find()      # which builds the kernels where there are none, outside all times
-    tables, texts, agreed, ratios = [], [], {}, {}
+    tables, references, texts, agreed, ratios = [], [], [], {}, {}
     for name in in_turn("equal-errors", options.cases):
         rows, reference = measure(CASES[name])
         tables.append(rows.assign(case=name))
+        references.append(reference.assign(case=name))
         texts.append(text(CASES[name], rows, reference))
         agreed[name], ratios[name] = not reference.empty and bool(reference.agree.all()), beside(rows)
     study.save(pd.concat(tables), options.out / "equal-errors.csv")
     report = "\n\n".join([HEAD.format(repeats=REPEATS, long=LONG), *texts, verdict(agreed, ratios)])
     print(report + f"\n\n{shown(options.out)}/equal-errors.csv")
-    commands.page(options.page, "Run time at equal errors", ["equal-errors", *argv], report)
+    page.write(options.page, "Run time at equal errors", ["equal-errors", *argv],
+               verdict(agreed, ratios).partition(" The quickest other")[0],
+               in_files(tables, references, ratios), ["ratios"])
     return 0 if all(agreed.values()) else 1
+
+
+
+def in_files(tables: list[pd.DataFrame], references: list[pd.DataFrame],
+             ratios: dict[str, dict[float, tuple[float, float]]]) -> page.Tables:
+    """The tables of the page: all settings, the cheapest of each program for each level, the time of
+    the quickest other program over ours, and the references."""
+    rows = pd.concat(tables).rename(columns=SECONDS)
+    first = ["case", "program", "setting", "dofs", "steps", *SECONDS.values()]
+    answers = [name for name in rows if name.endswith(" %")]
+    best = []
+    for one in tables:
+        for program, level in itertools.product(one.program.unique(), LEVELS):
+            if (row := safe(one, program, level)) is not None:
+                best.append({"case": one["case"].iloc[0], "program": program, "level %": level,
+                             "march": row.cpu_seconds, "process": row.process_seconds, "setting": row.setting})
+    quicker = []
+    for name, levels in ratios.items():
+        row = {"case": name}
+        for level, (march, process) in levels.items():
+            row |= {f"{level:g} %, march": march, f"{level:g} %, process": process}
+        quicker.append(row)
+    found = {"": rows.reindex(columns=[*first, *answers, "error", "message"]),
+             "levels": pd.DataFrame(best), "ratios": pd.DataFrame(quicker)}
+    agreeing = pd.concat(references)
+    if agreeing.empty:
+        return found
+    return found | {"references": agreeing[["case", *agreeing.columns.drop("case")]]}
 
 
 # ---- the measurement
@@ -247,7 +279,7 @@ def verdict(agreed: dict[str, bool], ratios: dict[str, dict[float, tuple[float, 
                                             for level, (march, process) in of.items()) for name, of in ratios.items())
     return (f"The references of both programs agree within their bars in {len(agreed) - len(without)} of {len(agreed)} cases"
             + f" (not: {', '.join(without)})" * bool(without)
-            + f". Our march is the quickest in {quicker[0]} of {len(pairs)} comparisons, our whole process "
+            + f". Our time integration is the quickest in {quicker[0]} of {len(pairs)} comparisons, our whole process "
             f"in {quicker[1]}. The quickest other over ours, march / process: {each}.")
 
 

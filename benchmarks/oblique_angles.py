@@ -34,6 +34,8 @@ from verification.oblique_ball import (
 )
 from verification.rigid_disc import STIFF
 
+from . import page
+
 INERTIA = {"disc": 2.0, "ball": 2.5}                      # R^2/k^2, k the radius of gyration; the scenes are <body>-oblique
 BASE = {"law": "neohookean", "nu": NU, "fields": 0}
 PAPER = {"young": YOUNG, "density": DENSITY, "radius": RADIUS}
@@ -73,7 +75,10 @@ def main(argv: list[str]) -> int:
     cases = in_turn("oblique-angles", itertools.product(bodies, kinds))
     table = judge(pd.concat([impacts(body, kind, friction[0], angles, out) for body, kind in cases], ignore_index=True))
     draw(table, out / "oblique-angles.png")
-    return commands.finish(options, table, report(table), holds(table), argv, "Disc and ball over the angle of incidence", "{csv,png}")
+    first = ["body", "kind", "friction"]
+    columns = [*first, *(name for name in FORMATS if name not in first), "e_error", "along_error"]
+    return page.finish(options, table, report(table), holds(table), argv,
+                       "Disc and ball over the angle of incidence", {"": table[columns]}, files="{csv,png}")
 
 
 def numbers(name: str, text: str, low: float, high: float) -> list[float]:
@@ -217,10 +222,10 @@ def report(table: pd.DataFrame) -> str:
                      "contacts alone, and the approach of a\n  half-plane depends on the point it is measured from. A disc that slides "
                      "throughout loses what friction in one direction takes, as the ball does.")
     agree, partly, asked = (table.verdict == "agrees").sum(), (table.verdict == "partly").sum(), table["asked [%]"].notna().sum()
-    lines += ["", f"{agree} of {asked} that a theory is asked of agree, to {100 * ASKED:g} % of the slip that is lost, as in V17; {partly} "
-                  f"agree partly: slow balls that stick, within",
-              f"{FINITE:g} times the contact's radius over the ball's on top, as a ball is no half-space. The requirement "
-              f"{'holds' if holds(table) else 'FAILS'}."]
+    lines += ["", f"{agree} of {asked} runs with a theory agree with it to {100 * ASKED:g} % of the lost slip. "
+                  f"{partly} agree partly: slow balls that",
+              f"stick, within {FINITE:g} times contact radius over ball radius more, since a ball is not a half-space. "
+              f"The requirement {'holds' if holds(table) else 'FAILS'}."]
     return "\n".join(lines)
 
 

@@ -8,6 +8,8 @@ from ffimpact.output.results import read_history, read_scene
 from ffimpact.sweeps import study
 from verification import commands
 
+from . import page
+
 RADIUS, SPEED, NU = 0.5, 10.0, 0.4                  # of the scene disc-block, section 3.2 of the paper
 LIMIT = 900.0                                       # seconds a run may take
 LAWS = ("neohookean", "svk")
@@ -26,7 +28,8 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--laws", metavar="LAW", nargs="+", default=LAWS, choices=LAWS, help="of the bodies (default: all)")
     options = parser.parse_args(argv)
     table = compare(options.laws, options.out)
-    return commands.finish(options, table, report(table), holds(table), argv, "Closest points and pairs of points")
+    return page.finish(options, table, report(table), holds(table), argv,
+                       "Closest points and pairs of points", {"": table[list(FORMATS)]})
 
 
 def solve(points: list[study.Point], base: study.Point, out: Path) -> list[dict]:

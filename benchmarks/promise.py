@@ -20,7 +20,7 @@ from ffimpact.scenes.finer import scaled
 from ffimpact.sweeps import study
 from verification import commands
 
-from . import draws
+from . import draws, page
 
 # other scenes than those that sizes (seeds 1, 2, 5, 40; 7) and stated errors (60, 61, 64, 66 to 68, 74 to 77) are calibrated on
 SEED, COUNT = 69, 240
@@ -63,9 +63,20 @@ def main(argv: list[str]) -> int:
         return _finish_parts(options, table, table.scene.str.partition(":")[0], argv, "Whether stated errors hold " + (
             "where faces strike flat" if options.flat else "of what is held, loaded or rigid"))
     good = silent(table) == 0 if options.hard else kept(table) and covered(table)
-    text = report(table) + f"; {'the requirement' if options.hard else 'the promise'} {'is kept' if good else 'IS NOT KEPT'}"
-    title = ("Hard scenes" if options.hard else "Whether accuracy means what it says") + (f" of {options.of}" if options.of else "")
-    return commands.finish(options, table, text, good, argv, title)
+    asked = "the requirement on silent errors" if options.hard else "the requirement"
+    text = report(table) + f"; {asked} {'is kept' if good else 'IS NOT KEPT'}"
+    title = "Hard scenes" if options.hard else "Coverage of the error estimates"
+    title += f" of {options.of}" if options.of else ""
+    tables = {"": shown_in(table), "stated": cover(table)}
+    return page.finish(options, table, text, good, argv, title, tables, ["stated"])
+
+
+def shown_in(table: pd.DataFrame) -> pd.DataFrame:
+    """Of compare() what the page has: promised answers, and whether a scene warns."""
+    answers = [each for name in estimate.PROMISED for each in (name, f"{name} stated")]
+    found = table.assign(warnings=table.warnings.fillna("").str.len() > 0)
+    return found[["scene", *answers, "error", "estimated", "seconds", "finer seconds", "warnings",
+                  "message"]]
 
 
 def _drawn(options: Namespace, seed: int, count: int) -> list[Drawn]:
@@ -89,7 +100,8 @@ def _finish_parts(options: Namespace, table: pd.DataFrame, part: pd.Series, argv
     text = "\n".join([f"Stated errors of {len(table.error.dropna())} scenes: share of the cases within them (wanted: {KEPT:.0%} of each), "
                       "how many times too large they are in the median", "", study.table(found, COVER), "",
                       f"stated errors {'hold' if good else 'DO NOT HOLD'}"])
-    return commands.finish(options, table, text, good, argv, title)
+    tables = {"": shown_in(table), "stated": found}
+    return page.finish(options, table, text, good, argv, title, tables, ["stated"])
 
 
 def compare(drawn: list[Drawn], out: Path) -> pd.DataFrame:
@@ -210,5 +222,6 @@ def report(table: pd.DataFrame) -> str:
         f"Stated errors: share of the cases within them (wanted: {KEPT:.0%} of each), and how many times too large they are in the median "
         f"(wanted: up to {WIDEST} of all)", "",
         study.table(cover(table), COVER), "",
-        f"{(ended <= 1).sum()} of {len(ended)} within what was asked (promised: {KEPT:.0%}), {silent(table)} above it without a warning; "
-        f"median {ended.median():.2f} of it (promised: {NEAR:g} to {FAR:g})"])
+        f"{(ended <= 1).sum()} of {len(ended)} scenes are within the requested accuracy (required: "
+        f"{KEPT:.0%}), {silent(table)} are above it without a warning; the median error is "
+        f"{ended.median():.2f} of the request (required: {NEAR:g} to {FAR:g})"])

@@ -12,7 +12,7 @@ from ffimpact.report.figures import BLUE, DASHED, GREY, ORANGE, STYLE, save
 from ffimpact.sweeps import study
 from verification import commands
 
-from . import peers
+from . import page, peers
 
 NUS = (0.3, 0.4, 0.45, 0.47, 0.49, 0.499, 0.4999, 0.5)    # 0.5: law = incompressible
 BASE = {"law": "neohookean", "speed": 4.0, "accuracy": 2e-3, "fields": 0}
@@ -38,7 +38,9 @@ def main(argv: list[str]) -> int:
     draw(table, options.out / "rubber.png")
     beside = [row for body in BODIES for row in peer(body)]
     text = report(table, beside)
-    return commands.finish(options, table, text, holds(table) and agrees(beside), argv, "Rubber: nu to 0.5", "csv, .png")
+    tables = {"": table[list(FORMATS)]} | ({"ngsolve": pd.DataFrame(beside)} if beside else {})
+    return page.finish(options, table, text, holds(table) and agrees(beside), argv,
+                       "Rubber: nu to 0.5", tables, list(tables)[1:], "csv, .png")
 
 
 def compare(nus: list[float], limit: float, out: Path) -> pd.DataFrame:

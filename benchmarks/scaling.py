@@ -16,6 +16,8 @@ from ffimpact.running import run
 from ffimpact.sweeps import study
 from verification import commands
 
+from . import page
+
 
 @dataclass(frozen=True)
 class Case:
@@ -48,7 +50,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--cases", metavar="CASE", nargs="+", default=list(CASES), choices=CASES, help=", ".join(CASES))
     options = parser.parse_args(argv)
     freefem.find()                         # what has to be built is built here, not in the first run
-    rows, texts, good = [], [], True
+    rows, texts, slopes, phases, good = [], [], [], [], True
     for name in options.cases:
         case = CASES[name]
         with multiprocessing.get_context("fork").Pool(1, maxtasksperchild=1) as one:   # each with the memory of its own children
@@ -56,6 +58,9 @@ def main(argv: list[str]) -> int:
             found = pd.DataFrame(one.starmap(_row, wanted, chunksize=1))
         exponents = {column: slope(found.unknowns, found[column]) for column in (*PHASES, "step", "memory")}
         rows.append(found.assign(case=name))
+        slopes.append({"case": name, "step": exponents["step"], "step, aim": case.asked,
+                       "memory": exponents["memory"], "memory, aim": case.memory})
+        phases.append({"case": name} | {phase: exponents[phase] for phase in PHASES})
         good &= exponents["step"] <= case.asked and exponents["memory"] <= case.memory and found["over floor"].max() <= MOST_OVER_FLOOR
         shown = pd.concat([found, pd.DataFrame([exponents | {"mesh": f"exponent (asked: {case.asked}, {case.memory})"}])])
         texts.append(f"## {name}\n\n" + study.table(shown, {"mesh": "", "unknowns": ".0f", "iterations": ".1f", "factorisations": ".0f"}
@@ -63,7 +68,11 @@ def main(argv: list[str]) -> int:
     verdict = (f"Seconds of processor time a step, by phase, from the first touch on; memory in MB. "
                f"{'No' if good else 'An'} exponent is above what is asked, {'and no' if good else 'or a'} step above "
                f"{MOST_OVER_FLOOR} times its floor.")
-    return commands.finish(options, pd.concat(rows), "\n\n".join([*texts, verdict]), good, argv, "Time and memory over the number of unknowns")
+    table = pd.concat(rows)
+    tables = {"": table[["case", *table.columns.drop("case")]], "exponents": pd.DataFrame(slopes),
+              "phases": pd.DataFrame(phases)}
+    return page.finish(options, table, "\n\n".join([*texts, verdict]), good, argv,
+                       "Time and memory over the number of unknowns", tables, ["exponents"])
 
 
 def _row(case: Case, finer: float, out: Path) -> dict:

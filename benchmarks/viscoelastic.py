@@ -25,6 +25,8 @@ from ffimpact.report.figures import BLUE, GREEN, GREY, ORANGE, STYLE, save
 from ffimpact.sweeps import study
 from verification import commands
 
+from . import page
+
 YOUNG, NU, DENSITY, RADIUS = 7e6, 0.3, 1722.0, 0.05
 MU, LAMBDA = YOUNG / (2 * (1 + NU)), YOUNG * NU / ((1 + NU) * (1 - 2 * NU))
 MASS = DENSITY * 4 / 3 * math.pi * RADIUS**3
@@ -53,7 +55,9 @@ def main(argv: list[str]) -> int:
     options = parser.parse_args(argv)
     tables = [make(options.out) for make in in_turn("viscoelastic", (balls, discs))]
     draw(*tables, options.out / "viscoelastic.png")
-    return commands.finish(options, pd.concat(tables), report(*tables), holds(*tables), argv, "Damped impacts", "{csv,png}")
+    shown = {"": tables[0][list(BALL_FORMATS)], "disc": tables[1][list(DISC_FORMATS)]}
+    return page.finish(options, pd.concat(tables), report(*tables), holds(*tables), argv,
+                       "Damped impacts", shown, files="{csv,png}")
 
 
 # ---- theory

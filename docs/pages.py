@@ -1,97 +1,162 @@
-"""What pages say that the scripts say of themselves, between marks: the tables of docs/results.md and docs/warnings.md, and that of
-equations in README.md and docs/method.md; the whole of docs/parameters.md."""
+"""Generates the parts of pages that the program itself knows.
+
+A part NAME stands between the marks `<!-- NAME -->` and `<!-- end of NAME -->` of any page:
+parameters, columns, warnings, exit codes, commands, equations, and the Python interface.
+"""
 
 import argparse
+import contextlib
+import importlib
+import inspect
+import io
+import os
 import re
-import shutil
 import sys
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from pathlib import Path
 
-from ffimpact import schema
-from ffimpact.__main__ import start
+import pandas as pd
+from pydantic.fields import FieldInfo
+
+import ffimpact
+from ffimpact import __main__ as command_line, failure, schema
 from ffimpact.freefem.describe import describe_results
 from ffimpact.input import models, parameters
 from ffimpact.input.parameter import Parameter, Rule
 from ffimpact.places import ROOT, shown
 
-TABLES = (("history.csv", "history", ("columns", "body_columns")), ("summary.json", "summary", ("summary", "body_summary")),
-          ("contacts.csv", "contacts", ("contact_columns",)), ("fields/contact.csv", "points", ()))
+TABLES = (
+    ("history.csv", "history", ("columns", "body_columns")),
+    ("summary.json", "summary", ("summary", "body_summary")),
+    ("contacts.csv", "contacts", ("contact_columns",)),
+    ("fields/contact.csv", "points", ()),
+)
 SCRIPTS = ("disc-plane", "disc-block", "ball-axisymmetric", "ball-plane")
 EQUATION = re.compile(r"// ((?:\(\d+\)(?:, |–| ))*\(\d+\))(?::| |$)")
 
 
 KINDS = {"warn": "warning", "note": "note"}
+# with which an advice begins
+VERBS = (
+    "take|compare|round|give|make|end|use|set|run|choose|lower|increase|reduce|raise|check|try|see"
+)
+# what to do where a sentence does not say it
+ADVICE = {
+    "angular momentum": "take integrator=energy-momentum, or a smaller dt",
+    "energy": "take integrator=energy-momentum, or a smaller dt",
+    "momentum": "take integrator=energy-momentum, or a smaller dt",
+    "no contact": "take a larger end_time, or correct position and velocity",
+    "rebound": "take the impulse, or a smaller gravity",
+    "thresholded contact time": "take the error bar as it is, or contact_time",
+}
 # of what no call above has the words
-OF_ESTIMATES = "".join(f"| {name} | {kind} | {words} |\n" for name, kind, words in (
-    ("chatter", "warning", "the body left and was back within a wave's transit … times in a row (`chatter=continue`)"),
-    ("estimated errors", "warning / note", "a warning where a promised answer is off by more than 1.5 times what was "
-     "asked, a note below that, of a contact time that scatters whatever the mesh, and of the exact contact time and "
-     "the peak force from twice that on (`orchestrate/ffimpact/output/estimate.py`)"),
-    ("touches", "warning / note", "instead of these, where the two runs of an estimate saw different numbers of "
-     "intervals of contact"),
-    ("mesh of the file", "note", "estimated errors are those of the step alone: the mesh of a file is not varied"),
-    ("no finer run", "warning", "the error is above what was asked, and the run that was to make it smaller failed"),
-    ("the error is not estimated", "warning", "the second run failed, or took the same steps")))
+OF_ESTIMATES = "".join(
+    f"| {name} | {kind} | {words} | {advice} |\n"
+    for name, kind, words, advice in (
+        (
+            "chatter",
+            "warning",
+            "the body left and was back within a wave's transit … times in a row "
+            "(`chatter=continue`)",
+            "take a smaller dt or penalty, or a viscosity",
+        ),
+        (
+            "estimated errors",
+            "warning / note",
+            "a warning where a promised answer is off by more than 1.5 times what was "
+            "asked; a note below that, of a contact time that scatters on every mesh, and of the "
+            "exact contact time and the peak force from twice that on",
+            "take a smaller accuracy, or the error bar as it is",
+        ),
+        (
+            "touches",
+            "warning / note",
+            "in place of these: the two runs of an estimate have different numbers of "
+            "intervals of contact",
+            "take a smaller accuracy, or the impulse, which does not depend on single touches",
+        ),
+        (
+            "mesh of the file",
+            "note",
+            "estimated errors are those of the step alone: the mesh of a file is not varied",
+            "compare with a finer file",
+        ),
+        (
+            "no finer run",
+            "warning",
+            "the error is above what was asked, and the run that was to make it smaller failed",
+            "see `log.txt`; take the error bar as it is",
+        ),
+        (
+            "the error is not estimated",
+            "warning",
+            "the second run failed, or took the same steps",
+            "take another accuracy and compare",
+        ),
+    )
+)
 
 
 def main(argv: list[str]) -> int:
-    """Writes the pages below the source folder; with --site what MkDocs makes a site of."""
-    parser = argparse.ArgumentParser(prog="python docs/pages.py", description=__doc__)
-    parser.add_argument("--site", metavar="DIR", type=Path, help="also put README and docs/ there, for MkDocs (make docs)")
-    options = parser.parse_args(argv)
+    """Writes the pages below the source folder."""
+    argparse.ArgumentParser(prog="python docs/pages.py", description=__doc__).parse_args(argv)
     for path, text in pages().items():
         path.write_text(text)
         print(shown(path))
-    if options.site:
-        site(options.site)
     return 0
 
 
-def site(folder: Path) -> None:
-    """README as index.md, the pages of docs/ and the pictures; links to files of the program are words there."""
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
-    for path in [ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]:
-        text = path.read_text().replace("](docs/",
-                                        "](").replace("](../README.md", "](index.md").replace("](../CONTRIBUTING.md", "](CONTRIBUTING.md")
-        text = re.sub(r"\[([^]]+)\]\((?:\.\./)*(?:edp|orchestrate|verification|benchmarks|examples|LICENSE|CITATION)[^)]*\)", r"`\1`", text)
-        (folder / ("index.md" if path.name == "README.md" else path.name)).write_text(text)
-    for path in [*ROOT.glob("*.png"), ROOT / "docs/site.css", *(ROOT / "docs").glob("*.svg")]:
-        shutil.copy(path, folder)
-
-
 def pages() -> dict[Path, str]:
-    """The text of every page by its file: what stands between the marks of a part is made anew."""
-    parts = {"docs/results.md": ("columns", results()), "docs/warnings.md": ("warnings", warnings()),
-             "README.md": ("equations", equations()), "docs/method.md": ("equations", equations("../"))}
-    made = {schema.FILE: schema.text(), ROOT / "docs/parameters.md": entries()}
-    for name, (part, text) in parts.items():
-        begin, end = f"<!-- {part} -->\n", f"<!-- end of {part} -->\n"
-        before, _, rest = (ROOT / name).read_text().partition(begin)
-        made[ROOT / name] = before + begin + text + end + rest.partition(end)[2]
+    """The text of every page that has a part, by its file, with the part made anew."""
+    made = {schema.FILE: schema.text()}
+    for path in [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]:
+        text = path.read_text()
+        for name in re.findall(r"(?m)^<!-- end of (.*?) -->$", text):
+            if name in PARTS:
+                begin, end = f"<!-- {name} -->\n", f"<!-- end of {name} -->"
+                before, _, rest = text.partition(begin)
+                text = before + begin + PARTS[name](path.parent) + end + rest.partition(end)[2]
+                made[path] = text
     return made
 
 
 def entries() -> str:
     """All entries of a scene: table by table, with unit, what is accepted and meaning."""
-    text = "# Entries of a scene\nWritten by `python docs/pages.py` from `orchestrate/ffimpact/input/table.py` and `models.py`. All in SI units.\n"
-    text += "\n## Parameters of a run\nAt the top of a scene file, by `--set name=value`, as flags of the scripts, and in Python.\n"
+    text = "\n## Parameters of a run\nAt the top of a scene file, by `--set name=value`, "
+    text += "as flags of the scripts, and in Python.\n"
     text += "\n| name | unit | default | accepted | meaning |\n|---|---|---|---|---|\n"
     for one in parameters.PARAMETERS.values():
         default = one.default if isinstance(one.default, str) else f"{one.default:g}"
-        text += f"| `{one.name}` | {one.unit} | {default} | {cell(one.accepted)} | {cell(one.help)} |\n"
-    text += "\n## Materials\nIn Python `material = NeoHookean(...)` and so on; in a file the same entries in a body's table, or at the top for all bodies.\n\n"
-    text += "".join(f"- `{name}`, `{one.__name__}`: {first_line(one)}\n" for name, one in models.LAWS.items())
-    text += table_of("Bodies", "`[[body]]`, `Body` in Python: what bodies of all shapes have.", models.Body)
+        accepted = cell(words(one.accepted))
+        text += f"| `{one.name}` | {one.unit} | {default} | {accepted} | {cell(one.help)} |\n"
+    text += "\n## Materials\nIn Python `material = NeoHookean(...)` and so on; in a file the same "
+    text += "entries in a body's table, or at the top for all bodies.\n\n"
+    text += "".join(
+        f"- `{name}`, `{one.__name__}`: {first_line(one)}\n" for name, one in models.LAWS.items()
+    )
+    text += table_of(
+        "Bodies", "`[[body]]`, `Body` in Python: what bodies of all shapes have.", models.Body
+    )
     text += kinds("shape", models.BODIES, models.Body)
     text += table_of("Supports", "`[[body.support]]`, `Support`.", models.Support)
-    text += table_of("Loads", "`[[body.load]]`, `Load`: one of traction, pressure and gas.", models.Load)
+    text += table_of(
+        "Loads", "`[[body.load]]`, `Load`: one of traction, pressure and gas.", models.Load
+    )
     text += table_of("Gas", "`gas = {...}` of a load, `Gas`.", models.Gas)
-    text += table_of("Rigid obstacles", "`[[obstacle]]`, `Obstacle`: what obstacles of all kinds have.", models.Obstacle)
+    text += table_of(
+        "Rigid obstacles",
+        "`[[obstacle]]`, `Obstacle`: what obstacles of all kinds have.",
+        models.Obstacle,
+    )
     text += kinds("kind", models.OBSTACLES, models.Obstacle)
     text += table_of("Contact", "`[contact]`, `Contact`: of the whole scene.", models.Contact)
-    return text + table_of("Pairs", "`[[contact.pair]]`, `Pair`: what differs between two partners.", models.Pair)
+    return (
+        text
+        + table_of(
+            "Pairs", "`[[contact.pair]]`, `Pair`: what differs between two partners.", models.Pair
+        )
+        + "\n"
+    )
 
 
 def first_line(model: type) -> str:
@@ -101,19 +166,29 @@ def first_line(model: type) -> str:
 
 def table_of(heading: str, words: str, model: type[models.Entries]) -> str:
     """The entries of a model under a heading."""
-    return f"\n## {heading}\n{words}\n\n| name | unit | accepted | meaning |\n|---|---|---|---|\n" + rows(model)
+    return (
+        f"\n## {heading}\n{words}\n\n| name | unit | accepted | meaning |\n|---|---|---|---|\n"
+        + rows(model)
+    )
 
 
 def rows(model: type[models.Entries], but: Collection[str] = (), first: str = "") -> str:
     """A row an entry."""
     text = ""
     for name, field in model.model_fields.items():
-        rule = next((one for one in field.metadata if isinstance(one, Rule)), None)
-        if rule and name not in but:
-            unit, meaning = (rule.unit, rule.help) if isinstance(rule, Parameter) else ("", rule.meaning)
+        if (told := entry_of(name, field)) and name not in but:
             needed = ", needed" if field.is_required() else ""
-            text += f"|{first} `{name}`{needed} | {unit} | {cell(rule.accepted)} | {cell(meaning)} |\n"
+            text += f"|{first} `{name}`{needed} | {' | '.join(map(cell, told))} |\n"
     return text
+
+
+def entry_of(name: str, field: FieldInfo) -> tuple[str, str, str] | None:
+    """Unit, what is accepted and meaning of an entry; None of one that holds tables."""
+    rule = next((one for one in field.metadata if isinstance(one, Rule)), None)
+    if not rule:
+        return None
+    unit, meaning = (rule.unit, rule.help) if isinstance(rule, Parameter) else ("", rule.meaning)
+    return unit, words(rule.accepted), meaning
 
 
 def kinds(word: str, table: Mapping[str, type], common: type[models.Entries]) -> str:
@@ -121,7 +196,8 @@ def kinds(word: str, table: Mapping[str, type], common: type[models.Entries]) ->
     text = f"\n| {word}, entry | unit | accepted | meaning |\n|---|---|---|---|\n"
     for name, model in table.items():
         dimensions = ", ".join(one.name for one in model.dimensions)
-        text += f"| **`{name}`** | | {dimensions} | {cell(first_line(model))} |\n{rows(model, common.model_fields)}"
+        text += f"| **`{name}`** | | {dimensions} | {cell(first_line(model))} |\n"
+        text += rows(model, common.model_fields)
     return text
 
 
@@ -130,34 +206,69 @@ def results() -> str:
     told = [describe_results({}, script) for script in SCRIPTS]
     text, meanings = "", told[0]["meanings"]
     for file, table, lists in TABLES:
-        known = {name: entry for each in reversed(meanings.values()) for name, entry in each.items()} | meanings[table]
-        names = {name: None for each in told for key in lists for name in each[key]} or meanings[table]
+        known = {
+            name: entry for each in reversed(meanings.values()) for name, entry in each.items()
+        } | meanings[table]
+        names = {name: None for each in told for key in lists for name in each[key]} or meanings[
+            table
+        ]
         names |= {name: None for name in meanings[table]}
-        of_body = {name for each in told for key in lists if key.startswith("body") for name in each[key]}
+        of_body = {
+            name for each in told for key in lists if key.startswith("body") for name in each[key]
+        }
         text += f"\n## `{file}`\n| name | unit | meaning |\n|---|---|---|\n"
-        text += "".join(f"| `{name}`{' `_1` …' if name in of_body else ''} | {known[name][0]} | {cell(known[name][1])} |\n"
-                        for name in names)
+        text += "".join(
+            f"| `{name}`{' `_1` …' if name in of_body else ''} | {known[name][0]} | {cell(known[name][1])} |\n"
+            for name in names
+        )
     return text
 
 
 def warnings() -> str:
-    """Every sentence of warnings.idp and estimate.py by its first words."""
+    """Every sentence of warnings.idp and estimate.py by its name: what it says, what to do."""
     rows = {}
     for path in sorted((ROOT / "edp/core").rglob("*.idp")):
         for call in re.finditer(r"\b(warn|note)\((.*?)\);\n", path.read_text(), re.DOTALL):
             sentence = _literal(call[2])
-            rows.setdefault(sentence.partition(":")[0], []).append((call[1], sentence.partition(": ")[2]))
-    found = "".join(f"| {name} | {' / '.join(dict.fromkeys(KINDS[kind] for kind, _ in told))} | "
-                    f"{cell(' / '.join(dict.fromkeys(words for _, words in told)))} |\n"
-                    for name, told in sorted(rows.items()) if told[0][1])
-    return "| name | kind | says |\n|---|---|---|\n" + found + OF_ESTIMATES
+            rows.setdefault(sentence.partition(":")[0], []).append(
+                (call[1], sentence.partition(": ")[2])
+            )
+    found = ""
+    for name, told in sorted(rows.items()):
+        if told[0][1]:
+            said = [split(words) for _, words in told]
+            kind = " / ".join(dict.fromkeys(KINDS[each] for each, _ in told))
+            facts, advice = (
+                " / ".join(dict.fromkeys(each[k] for each in said if each[k])) for k in (0, 1)
+            )
+            advice = advice or ADVICE.get(name, "")
+            found += f"| {name} | {kind} | {cell(facts)} | {cell(advice)} |\n"
+    return "| name | kind | what it says | what to do |\n|---|---|---|---|\n" + found + OF_ESTIMATES
+
+
+def split(words: str) -> tuple[str, str]:
+    """The fact and the advice of a sentence; the advice follows a colon or a full stop."""
+    parts = re.split(
+        rf"(?:: |\. (?=[A-Z]))(?=(?:… )?(?:{VERBS})\b)",
+        words,
+        flags=re.IGNORECASE,
+    )
+    return (": ".join(parts[:-1]), parts[-1]) if len(parts) > 1 else (words, "")
 
 
 def _literal(expression: str) -> str:
-    """The string literals of an expression of FreeFEM's, what stands between them as an ellipsis."""
+    """The string literals of an expression in FreeFEM, with ellipses between them."""
     parts = re.split(r'"((?:[^"\\]|\\.)*)"', expression.replace("string(", "("))
-    text = "".join(part if k % 2 else ("…" if part.strip(" +()\n") else "") for k, part in enumerate(parts))
-    return re.sub(r"(…\s*)+", "… ", text).replace("… )", "…)").replace("… :", "…:").replace("… ,", "…,").strip()
+    text = "".join(
+        part if k % 2 else ("…" if part.strip(" +()\n") else "") for k, part in enumerate(parts)
+    )
+    return (
+        re.sub(r"(…\s*)+", "… ", text)
+        .replace("… )", "…)")
+        .replace("… :", "…:")
+        .replace("… ,", "…,")
+        .strip()
+    )
 
 
 def equations(prefix: str = "") -> str:
@@ -166,13 +277,194 @@ def equations(prefix: str = "") -> str:
     for path in sorted((ROOT / "edp/core").rglob("*.idp")):
         for number, line in enumerate(path.read_text().splitlines(), 1):
             if match := EQUATION.search(line):
-                if line[:match.start()].strip():                     # code, not prose
-                    found.setdefault(match[1], []).append((path, number, line[match.end():].strip()))
+                if line[: match.start()].strip():  # code, not prose
+                    found.setdefault(match[1], []).append(
+                        (path, number, line[match.end() :].strip())
+                    )
     text = "| equation | line | what stands there |\n|---|---|---|\n"
     for marks, places in sorted(found.items(), key=lambda each: int(re.search(r"\d+", each[0])[0])):
-        links = ", ".join(f"[{path.parent.name}/{path.name}:{number}]({prefix}{path.relative_to(ROOT)}#L{number})"
-                          for path, number, _ in places)
+        links = ", ".join(
+            f"[{path.parent.name}/{path.name}:{number}]({prefix}{path.relative_to(ROOT)}#L{number})"
+            for path, number, _ in places
+        )
         text += f"| {marks} | {links} | {cell('; '.join(words for _, _, words in places))} |\n"
+    return text
+
+
+def exit_codes() -> str:
+    """What the program's exit codes mean, and the exceptions of Python that they are."""
+    kinds = [
+        one
+        for _, one in inspect.getmembers(failure, inspect.isclass)
+        if issubclass(one, failure.Failure)
+    ]
+    rows = [
+        (one.code, f"`{one.__name__}`", first_line(one))
+        for one in kinds
+        if one is not failure.Failure
+    ]
+    rows += [
+        (0, "", "Finished."),
+        (1, f"`{failure.Failure.__name__}`", "A failure of another kind."),
+        (130, "`KeyboardInterrupt`", "Interrupted by Ctrl-C."),
+        (143, "", "Ended by a signal: 128 and the signal's number, 15 of SIGTERM."),
+    ]
+    text = "| exit code | exception | meaning |\n|---:|---|---|\n"
+    return text + "".join(
+        f"| {code} | {name} | {cell(words)} |\n" for code, name, words in sorted(rows)
+    )
+
+
+def commands() -> str:
+    """Every command with its arguments and options, as --help lists them."""
+    text = ""
+    for name, parser in parsers():
+        heading = f"ffimpact {name}".strip()
+        text += f"\n## `{heading}`\n\n{sentences(parser.description)}\n"
+        rows = [
+            action
+            for action in parser._actions
+            if not isinstance(action, argparse._HelpAction | argparse._SubParsersAction)
+        ]
+        if rows:
+            text += "\n| argument | meaning |\n|---|---|\n"
+            text += "".join(
+                f"| {spelled(action)} | {cell(plain(parser, action))} |\n" for action in rows
+            )
+    return text
+
+
+def parsers() -> Iterator[tuple[str, argparse.ArgumentParser]]:
+    """The name and the parser of the program and of every command, with its help as description."""
+    whole = command_line._parser()
+    yield "", whole
+    listed = next(
+        action for action in whole._actions if isinstance(action, argparse._SubParsersAction)
+    )
+    helps = {one.dest: one.help for one in listed._choices_actions}
+    for name, parser in listed.choices.items():
+        if name in command_line.OWN_MAIN:
+            parser = caught(command_line.OWN_MAIN[name])
+        parser.description = parser.description or helps[name]
+        yield name, parser
+
+
+def caught(module: str) -> argparse.ArgumentParser:
+    """The parser that a module's main() makes."""
+    found, print_help = [], argparse.ArgumentParser.print_help
+    argparse.ArgumentParser.print_help = lambda self, file=None: found.append(self)
+    try:
+        with contextlib.suppress(SystemExit), contextlib.redirect_stdout(io.StringIO()):
+            importlib.import_module(module).main(["--help"])
+    finally:
+        argparse.ArgumentParser.print_help = print_help
+    return found[0]
+
+
+def sentences(description: str) -> str:
+    """A description as text; a block whose lines begin with spaces is an example."""
+    text = []
+    for block in re.split(r"\n\s*\n", description.strip("\n")):
+        if all(line.startswith("    ") for line in block.splitlines()):
+            text.append(f"```toml\n{inspect.cleandoc(chr(10) + block)}\n```")
+        else:
+            words = " ".join(block.split())
+            text.append(words[:1].upper() + words[1:] + "." * (words[-1:] not in ".:"))
+    return "\n\n".join(text)
+
+
+def spelled(action: argparse.Action) -> str:
+    """An argument as it is typed."""
+    value = (
+        action.metavar
+        if isinstance(action.metavar, str)
+        else "|".join(action.choices)
+        if action.choices
+        else action.dest.upper()
+    )
+    if action.nargs in ("+", "*"):
+        value += " …"
+    if not action.option_strings:
+        return f"`{cell(value)}`"
+    return f"`{', '.join(action.option_strings)}{'' if action.nargs == 0 else f' {cell(value)}'}`"
+
+
+def plain(parser: argparse.ArgumentParser, action: argparse.Action) -> str:
+    """The help of an argument, with its default filled in."""
+    return " ".join(parser._get_formatter()._expand_help(action).split()) if action.help else ""
+
+
+# ---- the Python interface
+
+
+def exports() -> dict[str, list[str]]:
+    """The names that the package exports, by the page that has them."""
+    found = {
+        "functions": [],
+        "results": [],
+        "scenes": [],
+        "materials": [],
+        "bodies": [],
+        "obstacles": [],
+        "exceptions": [],
+    }
+    for name in ffimpact.__all__:
+        one = getattr(ffimpact, name)
+        if not inspect.isclass(one):
+            found["functions"].append(name)
+        elif issubclass(one, Exception):
+            found["exceptions"].append(name)
+        elif issubclass(one, models.Entries):
+            kind = next((part for part, base in BASES.items() if issubclass(one, base)), "scenes")
+            found[kind].append(name)
+        else:
+            found["results"].append(name)
+    for part, base in BASES.items():
+        found[part].sort(key=lambda name: (getattr(ffimpact, name) is not base, name))
+    return found
+
+
+BASES = {"materials": models.Material, "bodies": models.Body, "obstacles": models.Obstacle}
+MORE = {"results": ("plot.Plots", "result.Fields")}  # what results give that is not exported
+SHOWN_OF = {
+    "Scene": "set, save, load",
+    "Result": "",
+    "Study": "",
+    "plot.Plots": "",
+    "result.Fields": "",
+}  # members; "": all
+
+
+def interface(part: str) -> str:
+    """A part of the Python interface: a table of its names, and each with its signature."""
+    names = [*exports()[part], *MORE.get(part, ())]
+    text = (
+        "```{eval-rst}\n.. autosummary::\n   :nosignatures:\n\n"
+        + "".join(f"   ffimpact.{name}\n" for name in names)
+        + "```\n"
+    )
+    for name in names:
+        kind = (
+            "function" if part == "functions" else "exception" if part == "exceptions" else "class"
+        )
+        members = (
+            f"   :members:{' ' * bool(SHOWN_OF[name])}{SHOWN_OF[name]}\n"
+            if name in SHOWN_OF
+            else ""
+        )
+        text += f"\n## {name.rpartition('.')[2]}\n```{{eval-rst}}\n"
+        text += f".. auto{kind}:: ffimpact.{name}\n{members}```\n"
+    return text
+
+
+def run_times() -> str:
+    """Processor seconds of the programs for each case and error, from the measurement's table."""
+    table = pd.read_csv(ROOT / "docs/measurements/bench-levels.csv")
+    programs = list(table.program.unique())
+    text = f"| case, error | {' | '.join(programs)} |\n|---|{'---:|' * len(programs)}\n"
+    for (case, level), rows in table.groupby(["case", "level %"], sort=False):
+        found = {row.program: f"{row.march:.2f} / {row.process:.2f}" for row in rows.itertuples()}
+        text += f"| {case}, {level:g} % | {' | '.join(found.get(one, '—') for one in programs)} |\n"
     return text
 
 
@@ -180,5 +472,25 @@ def cell(text: str) -> str:
     return text.replace("|", r"\|")
 
 
+def words(accepted: str) -> str:
+    """What is accepted, its words apart so that a line may end between them."""
+    return re.sub(r"(?<=\S)\|(?=\S)", " | ", accepted)
+
+
+# what stands between two marks, made for a page in a folder
+PARTS: dict[str, Callable[[Path], str]] = {
+    "parameters": lambda _: entries(),
+    "columns": lambda _: results(),
+    "warnings": lambda _: warnings(),
+    "exit codes": lambda _: exit_codes(),
+    "commands": lambda _: commands(),
+    "run times": lambda _: run_times(),
+    "equations": lambda folder: equations(
+        os.path.relpath(ROOT, folder) + "/" if folder != ROOT else ""
+    ),
+    **{f"interface: {part}": lambda _, part=part: interface(part) for part in exports()},
+}
+
+
 if __name__ == "__main__":
-    sys.exit(start(main))
+    sys.exit(command_line.start(main))

@@ -74,7 +74,7 @@ CASES = (
     Case("V17", "ball, obliquely: rigid, sliding throughout and rolling; elastic, Maw, Barber and Fawcett", "radius of the contact / radius", 0.05, REBOUNDS,
          beside=curve, note="In three dimensions. Rigid: with the measured restitution. Elastic: ν = 0.45, share of the slip at the contact that is lost and regained "
                             "backwards, 1 + β. Theory is of half-spaces: what a ball differs from them falls with the contact's radius, and counts most where it sticks "
-                            "(small ψ₁). Elements are half the contact's radius; on finer ones it is larger, at ψ₁ = 0.6 by half or more (docs/ball-3d.md)."),
+                            "(small ψ₁). Elements are half the contact's radius; on finer ones it is larger, at ψ₁ = 0.6 by half or more."),
     Case("V18", "the first microseconds of a disc on the plane: a bar on a wall above every point", "element size / b", 0.05, touches, beside=forces,
          note="Until R v/(2 c_L²), 13 µs at 8 m/s, b = R v/c_L; rubber of the paper, ν = 0.45, neo-Hookean, penalty 20 ρ c_L²/h (6.6·10¹² Pa/m). Expected: 2ρUv√(2Rvt) with "
               "the speed U of the law's plane shock, 4 % above c_L at 8 m/s; on the finest mesh also that with c_L."),

@@ -1,4 +1,5 @@
-"""What the commands of verification/ have in common: their options, their end, and the page that says what measured it."""
+"""Options and end of the commands of verification/ and benchmarks/, and the line that says what
+measured a page."""
 
 import argparse
 import platform
@@ -16,12 +17,13 @@ from ffimpact.sweeps import study
 
 
 def command(name: str, doc: str, page: bool = False, folder: str = "") -> argparse.ArgumentParser:
-    """The command line of a study: --out, its result folder, checked; --page where what it prints may become a page. For finish()."""
+    """The command line of a study for finish(): --out, its result folder; --page, if it has one."""
     parser = argparse.ArgumentParser(prog=program(name), description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", metavar="DIR", type=lambda text: result_folder(Path(text)), default=str(RESULTS / (folder or name)),
                         help="the result folder")
     if page:
-        parser.add_argument("--page", metavar="FILE", type=Path, help="also write what is printed as a page")
+        parser.add_argument("--page", metavar="FILE", type=Path,
+                            help="also write its tables, its figure and the block of its page")
     parser.set_defaults(command=name, table=folder or name)
     return parser
 
@@ -31,26 +33,17 @@ def program(name: str) -> str:
     return "python -m verification" if name == "verify" else f"python -m benchmarks {name}"
 
 
-def finish(options: argparse.Namespace, rows: pd.DataFrame, text: str, good: bool, argv: list[str] | None = None, title: str = "",
+def finish(options: argparse.Namespace, rows: pd.DataFrame, text: str, good: bool,
            files: str = "csv") -> int:
-    """The end of a study: saves its table, prints what it says and where its `files` are, and writes the page where one is asked for; the
-    exit code."""
+    """Saves the table of a study, prints its report and where its `files` are; the exit code."""
     study.save(rows, options.out / f"{options.table}.csv")
     print(f"{text}\n{shown(options.out)}/{options.table}.{files}")
-    page(getattr(options, "page", None), title, [options.command, *(argv or [])], text)
     return 0 if good else 1
-
-
-def page(path: Path | None, title: str, command: list[str], text: str) -> None:
-    """Writes a report as a page of docs/, where a path is given, behind what measured it and its last paragraph, the verdict."""
-    if path:
-        report, _, verdict = text.rpartition("\n\n")
-        with study.complete(path) as part:
-            part.write_text(f"# {title}\n{measured(command)}\n\n{verdict}\n\n{report}\n")
 
 
 def measured(command: list[str]) -> str:
     """Which command measured what follows, its words behind `python -m ffimpact`; at which commit, when, and on which machine."""
     model = re.search(r"^model name\s*: (.*)", Path("/proc/cpuinfo").read_text(), re.MULTILINE)
-    return (f"Written by `{program(command[0])} {shlex.join(command[1:])}` at commit {run.commit(10)}, {date.today()}, on {study.CORES} cores, "
+    return (f"Measured by `{program(command[0])} {shlex.join(command[1:])}` "
+            f"at commit {run.commit(10)}, {date.today()}, on {study.CORES} cores, "
             f"{model[1] if model else platform.machine()}.")

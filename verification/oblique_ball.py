@@ -30,7 +30,7 @@ RIGID = STIFF | dict(penalty=3e10, law="neohookean", fields=0)
 NU, FRICTION, YOUNG, DENSITY = 0.45, 0.1, 7e6, 1722
 MASS = 4 / 3 * math.pi * RADIUS**3 * DENSITY
 ELASTIC = dict(script="ball-plane", law="neohookean", nu=NU, young=YOUNG, density=DENSITY, radius=RADIUS, accuracy=0.1, fields=0)
-# v_n [m/s] for each psi: as small (and dear) as the tolerance needs; that the error falls with the contact is asked where it is largest. More: docs/ball-3d.md
+# v_n [m/s] for each psi: as small (and dear) as the tolerance needs; that the error falls with the contact is asked where it is largest.
 SPEEDS = {0.6: (0.2, 0.002), 1.2: (0.002,), 2.0: (0.02,), 3.0: (0.2,), 5.0: (0.2,)}
 
 

@@ -134,7 +134,25 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument(
         "--quiet", action="store_true", help="print warnings and errors only, on stderr"
     )
+    command.add_argument(
+        "--verbose", action="store_true", help="print all numbers, and warnings in full"
+    )
     command.set_defaults(command=_run)
+
+    command = commands.add_parser("view", help="an animation of a finished run as an HTML page")
+    command.add_argument("folder", metavar="DIR", type=Path, help="the result folder")
+    command.add_argument(
+        "--html", metavar="FILE", type=Path, help="the page to write (default: DIR/view.html)"
+    )
+    command.add_argument(
+        "--field",
+        default="von_mises",
+        help="shown at first: von_mises (default), pressure, speed, energy_density",
+    )
+    command.add_argument(
+        "--section", action="store_true", help="show a body of revolution as its section"
+    )
+    command.set_defaults(command=_view)
 
     command = commands.add_parser("list", help="list the built-in scenes, with their scripts")
     command.set_defaults(command=_list)
@@ -153,7 +171,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     command.set_defaults(command=_kernels)
     command = commands.add_parser("figures", help="draw the figures of a result folder again")
-    command.add_argument("folder", metavar="DIR", type=Path)
+    command.add_argument("folder", metavar="DIR", type=Path, help="the result folder")
     command.set_defaults(command=_figures)
     for name in OWN_MAIN:  # for the list of what is accepted; main() calls them itself
         commands.add_parser(name, help=HELP[name])
@@ -166,12 +184,14 @@ def _run(options: argparse.Namespace) -> None:
     from .report import report
     from .running import run
 
-    given = parameters.overrides(options.set)
+    wanted, given = scene.load(options.scene), parameters.overrides(options.set)
+    if "fields" not in wanted.given:
+        given.setdefault("fields", run.STATES)
     if options.checkpoint_every:
         given["checkpoint_every"] = options.checkpoint_every
     with contextlib.redirect_stdout(None if options.quiet else sys.stdout):
         result = run.run(
-            scene.load(options.scene),
+            wanted,
             given,
             options.out,
             mesh_file=options.mesh,
@@ -179,9 +199,16 @@ def _run(options: argparse.Namespace) -> None:
             progress=False if options.quiet else None,
         )
         report.draw(result)
-        print(report.report(result))
+        print(report.report(result, options.verbose))
     for sentence in result.summary["warnings"] if options.quiet else ():
         print(f"ffimpact: warning: {sentence}", file=sys.stderr)
+
+
+def _view(options: argparse.Namespace) -> None:
+    from .result import load
+
+    path = options.html or options.folder / "view.html"
+    print(shown(load(options.folder).view(path, options.field, not options.section)))
 
 
 def _list(options: argparse.Namespace) -> None:

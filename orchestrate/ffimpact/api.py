@@ -28,8 +28,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Study", "run", "sweep"]
 
-STATES = 40  # kept of a run where the scene does not say how many, for figures and animations
-
 
 def run(
     scene: Scene | str | Path,
@@ -48,7 +46,7 @@ def run(
     (entries={"body.1.young": 2e6}). `out` is the result folder: results/NAME of a file or a
     built-in scene; of a scene made in Python a folder of its own. A run that is there is not
     made again, unless `force`. With `estimate` a second run estimates the errors. Raises the
-    exceptions of ffimpact: BadInput, StepFailed and so on. A run keeps STATES states where the
+    exceptions of ffimpact: BadInput, StepFailed and so on. A run keeps 60 states where the
     scene leaves `fields` open.
     """
     given = _given(entries, more)
@@ -76,11 +74,8 @@ def _wanted(scene: Scene | str | Path, given: dict[str, Any]) -> tuple[Any, Path
         raise BadInput(
             f"scene: '{scene}' is none (accepted: a Scene, the name of a built-in one, the path of a TOML file)"
         )
-    left_open = (
-        scene.fields is None if isinstance(scene, Scene) else not wanted.values.get("fields")
-    )
-    if left_open:
-        given.setdefault("fields", STATES)
+    if "fields" not in wanted.given:
+        given.setdefault("fields", running.STATES)
     told = [scene.table() if isinstance(scene, Scene) else "", given]
     own = f"-{_digits(told)}" if isinstance(scene, Scene) else ""
     return wanted, RESULTS / f"{wanted.name}{own}"

@@ -20,7 +20,9 @@ from .failure import BadInput, NotInstalled, Unreadable, unknown
 from .freefem.describe import describe_results
 from .input.dimension import per_metre
 from .output import vtu
-from .output.results import Record, read_answers, read_record, read_summary
+from .output.errors import errors
+from .output.results import Record, numbers, read_record, read_summary
+from .places import shown
 from .report import report
 
 if TYPE_CHECKING:
@@ -46,24 +48,6 @@ SHOWN = (
     "friction_work",
     "energy_drift",
 )
-# numbers whose error is that of an energy, over the largest energy
-ENERGIES = (
-    "energy_initial",
-    "energy_final",
-    "translation_energy",
-    "rotation_energy",
-    "vibration_energy",
-    "creep_work",
-    "viscous_work",
-)
-OF_ITSELF = (
-    "impulse",
-    "thresholded_contact_time",
-    "contact_time",
-    "peak_force",
-    "max_pressure",
-    "max_penetration",
-)
 
 
 class Result:
@@ -86,11 +70,7 @@ class Result:
 
     def keys(self) -> list[str]:
         """The names of all its numbers."""
-        return [
-            name
-            for name, value in self.summary.items()
-            if isinstance(value, int | float) and not isinstance(value, bool)
-        ]
+        return numbers(self.summary)
 
     def __contains__(self, name: object) -> bool:
         return name in self.summary
@@ -139,36 +119,7 @@ class Result:
         Numbers without an estimate are left out. Penalty and slip velocity are no part of
         it.
         """
-        share = self.summary.get("estimated_error") or {}
-        if not share:
-            return {}
-        answers = read_answers(self.folder)
-        energy, reach = float(answers.summary["largest_energy"]), self.scene.get("radius")
-        found: dict[str, float] = {
-            name: share[name] * abs(self[name])
-            for name in share
-            if name in OF_ITSELF or name.startswith("support_peak") and self.summary.get(name)
-        }
-        found |= {
-            name: share.get(name, 0.0) * energy
-            for name in ("friction_work", "support_work", "load_work")
-            if name in share
-        }
-        for name in self.keys():
-            kind = re.sub(r"_[0-9]+$", "", name)
-            if kind in ENERGIES:
-                found[name] = share["energy"] * energy
-            elif re.fullmatch("impulse_[xyz]", name):
-                found[name] = share["impulse"] * abs(self["impulse"])
-            elif kind.startswith("rebound_v"):
-                found[name] = share["rebound"] * answers.speed
-            elif kind.startswith("rebound_spin"):
-                size = self.summary.get(f"reach{name[len(kind) :]}") or reach
-                if size:
-                    found[name] = share["rebound_spin"] * answers.speed / size
-            elif kind == "restitution":
-                found[name] = share["rebound"]
-        return {name: found[name] for name in self.keys() if name in found}
+        return errors(self.record)
 
     @cached_property
     def units(self) -> Mapping[str, str]:
@@ -210,7 +161,7 @@ class Result:
         ]
         told = [line for line in report.told(self.summary) if line.startswith("  warning")]
         more = [f"  and {len(rows) - LINES} more: result.table"] if len(rows) > LINES else []
-        return "\n".join([f"Result in {self.folder}", *rows[:LINES], *more, *told])
+        return "\n".join([f"Result in {shown(self.folder)}", *rows[:LINES], *more, *told])
 
     def _repr_html_(self) -> str:
         rows = "".join(
@@ -218,7 +169,7 @@ class Result:
             for name, row in self.table.iterrows()
         )
         told = "".join(f"<p>{escape(sentence)}</p>" for sentence in self.warnings)
-        return f"<table><caption>{escape(str(self.folder))}</caption>{rows}</table>{told}"
+        return f"<table><caption>{escape(str(shown(self.folder)))}</caption>{rows}</table>{told}"
 
     @property
     def plot(self) -> Plots:
@@ -234,13 +185,18 @@ class Result:
         """The states that were kept (fields=N of the run) as grids of pyvista."""
         return Fields(self.folder)
 
-    def view(self, path: str | Path | None = None, field: str = "von_mises") -> Any:
-        """An animation of the states that were kept: a player in a notebook, or one HTML
-        file that needs no network.
+    def view(
+        self,
+        path: str | Path | None = None,
+        field: str = "von_mises",
+        revolved: bool = True,
+    ) -> Any:
+        """An animation of the states that were kept: a player in a notebook, or `path`, one HTML
+        file that needs no network. See ffimpact.view.view.
         """
         from .view import view
 
-        return view(self, path, field)
+        return view(self, path, field, revolved)
 
 
 def _bare(name: str) -> str:
@@ -270,7 +226,7 @@ class Fields(Sequence["pyvista.UnstructuredGrid"]):
         return len(self.series)
 
     def __repr__(self) -> str:
-        return f"{len(self)} states of {self.folder}"
+        return f"{len(self)} states of {shown(self.folder)}"
 
     def __getitem__(self, index: Any) -> Any:
         try:

@@ -16,6 +16,6 @@ def test_real_impacts_of_a_stiff_disc(tmp_path, capsys):
     table = pd.read_csv(tmp_path / "out/oblique-angles.csv")
     assert table.angle.tolist() == [20, 60] and table.verdict.tolist() == ["agrees"] * 2 and table.psi_2[0] > 4 and abs(table.psi_2[1]) < 0.05
     assert (table.psi_2_error < 0.05).all() and (tmp_path / "out/oblique-angles.png").stat().st_size > 5000
-    assert "2 of 2 that a theory is asked of agree," in out and "python -m benchmarks oblique-angles --bodies disc" in (tmp_path / "page.md").read_text()
+    assert "2 of 2 runs with a theory agree with it" in out and "python -m benchmarks oblique-angles --bodies disc" in (tmp_path / "page.md").read_text()
     made = {path: path.stat().st_mtime_ns for path in (tmp_path / "out").rglob("summary.json")}
     assert len(made) == 4 and guarded(measurements.main, call) == 0 and made == {path: path.stat().st_mtime_ns for path in (tmp_path / "out").rglob("summary.json")}

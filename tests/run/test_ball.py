@@ -47,7 +47,7 @@ def test_run_of_a_whole_ball(result):
 @pytest.mark.robustness
 def test_units_and_pictures_are_those_of_a_ball(result, oblique):
     """Nothing is per metre; all pictures are drawn, of a quarter with its mirror image."""
-    text = report.report(result)
+    text = report.report(result, verbose=True)
     assert "N s" in text and "/m" not in text.replace("m/s", "").replace("Pa/m", "").replace("kg/m3", "")
     pictures = {"energies", "force", "velocity", "shapes", "contact"}
     assert {path.stem for path in (result.folder / "figures").iterdir()} == pictures

@@ -44,7 +44,7 @@ def test_run_of_a_whole_ball(result):
 
 def test_units_are_those_of_a_ball(result):
     """Nothing is per metre: not in the report, not in the figures, not in what the script prints."""
-    text = report.report(result)
+    text = report.report(result, verbose=True)
     assert "N s" in text and "/m" not in text.replace("m/s", "").replace("Pa/m", "").replace("kg/m3", "")
     assert figures.per_metre(result.scene) == "" and figures.per_metre({"script": "disc-plane"}) == "/m"
     printed = (result.folder / "log.txt").read_text()

@@ -275,7 +275,7 @@ def test_report_and_figures(falls, tmp_path):
     """Forces in N, energies in J of a body in three dimensions; the parts are drawn with their mirror images among the obstacles, a whole
     body cut at z = 0."""
     found = falls["quarter"]
-    text = report.report(found)
+    text = report.report(found, verbose=True)
     assert "N s" in text and "/m" not in text.replace("m/s", "").replace("Pa/m", "").replace("kg/m3", "")
     assert figures.is_half(found.scene) and not figures.is_half(falls["half"].scene) and not figures.is_half(falls["full"].scene)
     plane, = bodies.obstacles_of(found.scene)

@@ -125,7 +125,7 @@ def test_two_balls_of_hertz(slow):
     assert s["impulse"] == pytest.approx(2 * mass * closing / 2, rel=2e-3) and s["mass_1"] == pytest.approx(mass, rel=2e-3)
     assert not h["vx_1"].any() and not h["spin_2"].any() and s["energy_drift"] < 1e-8
     assert s["rebound_vy_1"] == pytest.approx(-s["rebound_vy_2"], rel=1e-6)
-    text = report.report(slow)
+    text = report.report(slow, verbose=True)
     assert "N s" in text and "/m" not in text.replace("m/s", "").replace("Pa/m", "").replace("kg/m3", "")
     assert {path.stem for path in (slow.folder / "figures").iterdir()} == {"energies", "force", "velocity", "shapes", "contact"}
 

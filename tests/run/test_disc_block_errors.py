@@ -29,7 +29,7 @@ def test_a_coarse_real_run(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(peers, "find", lambda _: None)
     assert block.main(["--cases", "1", "--accuracy", "0.1", "--out", str(tmp_path / "out"), "--page", str(tmp_path / "page.md")]) == 0
     printed, page = capsys.readouterr().out, (tmp_path / "page.md").read_text()
-    assert "2 runs: the requirement holds" in printed and page.startswith("# A disc on a free block, with error bars\nWritten by `python -m benchmarks disc-block-errors --cases 1")
+    assert "2 runs: the requirement holds" in printed and page.startswith("# A disc on a free block, with error bars\n") and "Measured by `python -m benchmarks disc-block-errors --cases 1" in page
     table = pd.read_csv(tmp_path / "out/disc-block-errors.csv")
     assert table.accuracy.tolist() == ["0.1", "reference"] and table[list(block.SHARES)].sum(axis=1).to_list() == pytest.approx([100, 100], abs=1e-6)
     assert block.differences(table)["v disc m/s"].iloc[0] < 0.3

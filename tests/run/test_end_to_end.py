@@ -227,7 +227,7 @@ def test_chatter_is_11_or_a_warning(tmp_path, how):
 
 
 def test_every_number_of_a_run_has_a_unit_and_a_meaning(result):
-    """Each key of the summary and each column of the tables that a run writes is one that the scripts explain (docs/results.md)."""
+    """Each key of the summary and each column of the tables that a run writes is one that the scripts explain (docs/reference/results.md)."""
     told = {name for table in describe_results()["meanings"].values() for name in table}
     assert set(result.summary) <= told, set(result.summary) - told
     for name in ("history.csv", "contacts.csv", "fields/contact.csv"):

@@ -18,6 +18,8 @@ def test_page(monkeypatch, tmp_path, capsys, installed, code):
     monkeypatch.setattr(equal, "once", once)
     assert equal.main(["normal", "--out", str(tmp_path / "out"), "--page", str(tmp_path / "bench.md")]) == code
     page = (tmp_path / "bench.md").read_text()
-    assert "Written by `python -m benchmarks equal-errors normal" in page and "at commit" in page and "1.00 / 1.30 (accuracy 0.1)" in page
-    assert "- getfem, tuned, h 16 mm, dt 150 us: getfem, tuned is not installed (pip)" in page and ("References" in page) == installed
+    rows = pd.read_csv(tmp_path / "bench.csv")
+    assert "Measured by `python -m benchmarks equal-errors normal" in page and "at commit" in page and "[bench-levels.csv](bench-levels.csv)" in page
+    assert "getfem, tuned is not installed (pip)" in set(rows.message) and (tmp_path / "bench-references.csv").exists() == installed
+    assert (rows[rows.program == equal.OURS].process == 1.3).all() and (tmp_path / "bench.svg").stat().st_size > 5000
     assert f"agree within their bars in {int(installed)} of 1 cases" in page and len(pd.read_csv(tmp_path / "out/equal-errors.csv")) == (21 if installed else 16)

@@ -1,4 +1,4 @@
-"""docs/extending.md, block by block: what it shows is applied to a copy of the program, runs there, and has the answers that the page names."""
+"""docs/how-to/extending.md, block by block: what it shows is applied to a copy of the program, runs there, and has the answers that the page names."""
 
 import json
 import os
@@ -23,7 +23,7 @@ F = np.array([[1.2, 0.3, 0], [-0.1, 0.7, 0], [0, 0, 1]])   # of verification/hom
 def extended(tmp_path):
     """extended(heading): a copy of the program with all that the page has below this heading."""
     def apply(heading: str) -> Path:
-        section = re.search(rf"(?ms)^## {heading}\n(.*?)(?=^## |\Z)", (ROOT / "docs/extending.md").read_text())[1]
+        section = re.search(rf"(?ms)^## {heading}\n(.*?)(?=^## |\Z)", (ROOT / "docs/how-to/extending.md").read_text())[1]
         for name in ("edp", "orchestrate", "verification"):
             shutil.copytree(ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__"))
         for path, text in NEW.findall(section):

@@ -46,9 +46,9 @@ def test_friction_is_drawn(oblique):
 def test_a_missing_picture_of_the_contact_is_named(oblique):
     """Where no state that was kept falls into the contact there is no picture of it, and the report says what gives one."""
     picture = oblique.folder / "figures/contact.png"
-    assert "no contact.png" not in report.report(oblique)
+    assert "no contact.png" not in report.report(oblique, verbose=True)
     kept = picture.rename(oblique.folder / "kept.png")
-    assert "no contact.png" in (said := report.report(oblique)) and "keeps more" in said
+    assert "no contact.png" in (said := report.report(oblique, verbose=True)) and "keeps more" in said
     kept.rename(picture)
 
 
@@ -58,7 +58,7 @@ def test_whole_body_without_friction(tmp_path):
     result = run.run(scene.load("disc-normal"), values, tmp_path / "slide", estimate=False)
     report.draw(result)
     assert {path.stem for path in (result.folder / "figures").iterdir()} == FRICTIONLESS | {"flight"}
-    assert "slide" not in report.report(result).replace(str(result.folder), "") and "lost to friction" not in report.report(result)
+    assert "slide" not in report.report(result, verbose=True).replace(str(result.folder), "") and "lost to friction" not in report.report(result)
 
 
 @pytest.mark.few(2)
@@ -74,7 +74,7 @@ def test_figures_of_unusual_runs(tmp_path, values):
 
 def test_report_tells_sliding_from_sticking(oblique):
     """The report has the times the load slides, slides back and sticks, and the spin; the paper's number beside ours."""
-    text = report.report(oblique)
+    text = report.report(oblique, verbose=True)
     for label in ("load slides for", "of it backwards", "load sticks for", "spin", "lost to friction"):
         assert label in text
     assert "4.5 (paper, section 3.1" in text and "unsolved" not in text
@@ -83,7 +83,7 @@ def test_report_tells_sliding_from_sticking(oblique):
 def test_report_tells_breakdown_and_unsolved_jumps(oblique):
     """Where there are any, unsolved jumps are told in plain words, and the place and time of a breakdown in mm and ms."""
     told = oblique.summary | {"unsolved_jumps": 7, "breakdown_time": 1.5e-3, "breakdown_x": 0.01, "breakdown_y": 0.002}
-    text = report.report(results.Record(oblique.folder, told, reused=False))
+    text = report.report(results.Record(oblique.folder, told, reused=False), verbose=True)
     assert "7 steps of points in a jump of the friction law" in text
     for line in (r"det F <= 0 from +1\.5 ms", r"there X = +10 mm", r"there Y = +2 mm"):
         assert re.search(line, text)

@@ -251,8 +251,8 @@ def test_words_as_axes(fake, tmp_path, capsys):
 
 
 def test_the_sweep_of_the_docs_is_sound(tmp_path):
-    """What docs/sweeps.md shows is accepted as it stands."""
-    text = (parameters.ROOT / "docs/sweeps.md").read_text()
+    """What docs/how-to/sweeps.md shows is accepted as it stands."""
+    text = (parameters.ROOT / "docs/how-to/sweeps.md").read_text()
     example = re.search(r"```\n(scene = \"disc-normal\".*?)```", text, re.S)[1]
     wanted = sweep.load(str(write(tmp_path, example)))
     assert len(wanted.points) == 32 and wanted.refine and wanted.figure

@@ -105,7 +105,7 @@ def test_scenes_of_the_paper_have_no_warning_or_the_one_that_a_reader_must_know(
     """Each as it is called first, with its estimate. The screen has a line of each sentence, with its mark at the number, and where the whole text is."""
     result = run.run(scene.load(name), {"fields": 0}, tmp_path / "out")
     assert [notes.name(each) for each in result.summary["warnings"]] == names
-    lines = report.report(result).splitlines()
+    lines = report.report(result, verbose=True).splitlines()
     assert [line.split()[1] for line in lines if line.startswith("  warning ")] == [f"{each}:" for each in names]
     footnotes = [line for line in lines if line.startswith("  [")]
     assert len(footnotes) == len(result.summary["notes"]) and "  in full   warnings and notes of summary.json" in lines
@@ -190,7 +190,7 @@ def test_direct_run_prints_its_warnings(tmp_path):
 def test_the_report_shows_them_and_figures_do_not(tmp_path):
     """A line each in the report; pictures are the same, whatever the warnings are."""
     result = run.run(scene.load("disc-normal"), dict(penalty=1e8, accuracy=0.1, fields=0), tmp_path / "out", estimate=False)
-    told, lines = result.summary["warnings"], report.report(result).splitlines()
+    told, lines = result.summary["warnings"], report.report(result, verbose=True).splitlines()
     assert len(told) > 1 and [line for line in lines if line.startswith("  warning ")] == [notes.line("  warning   ", each) for each in told]
     drawn = {path: path.read_bytes() for path in drawing.draw(result.folder)}
     path = result.folder / "summary.json"

@@ -64,5 +64,5 @@ def test_verdict_says_who_is_quicker():
     ratios = equal.beside(table)
     assert ratios[1.0] == pytest.approx((0.5, 0.5)) and ratios[0.5] == pytest.approx((3.0, 3.0)) and all(map(math.isnan, ratios[0.1]))
     said = equal.verdict({"normal": True, "ball": False}, {"normal": ratios})
-    assert "agree within their bars in 1 of 2 cases (not: ball)" in said and "march is the quickest in 1 of 2 comparisons, our whole process in 1" in said
+    assert "agree within their bars in 1 of 2 cases (not: ball)" in said and "time integration is the quickest in 1 of 2 comparisons, our whole process in 1" in said
     assert "1 %: 0.5 / 0.5, 0.5 %: 3.0 / 3.0, 0.1 %: -" in said

@@ -43,7 +43,7 @@ GOOD = [0.5] * 38 + [1.5] * 2
 def test_promise_is_kept_by_enough_scenes_at_no_more_than_its_price(values, good):
     """95 % of the scenes that ended below what was asked, the median not far below it."""
     assert promise.kept(errors(*values)) == good
-    assert f"{sum(value <= 1 for value in values)} of {sum(value == value for value in values)} within" in promise.report(errors(*values))
+    assert f"{sum(value <= 1 for value in values)} of {sum(value == value for value in values)} scenes are within" in promise.report(errors(*values))
 
 
 @pytest.mark.parametrize("values, stated, good", [
@@ -75,7 +75,7 @@ def test_a_note_counts_where_it_is_about_an_answer_that_is_off(note, told):
 def test_silent_are_those_above_without_a_warning():
     """A warning says so, whatever it is about; missing ones (read from a file: nan) are none."""
     table = errors(0.5, 1.5, 2.0, 3.0).assign(warnings=["", "", None, "penalty: ..."])
-    assert promise.silent(table) == 2 and "2 above it without a warning" in promise.report(table)
+    assert promise.silent(table) == 2 and "2 are above it without a warning" in promise.report(table)
 
 
 @pytest.mark.parametrize("hard", [False, True])

@@ -1,4 +1,4 @@
-"""Obstacles by a signed distance, an expression of x, y (and z) [m] (docs/bodies.md): positive
+"""Obstacles by a signed distance, an expression of x, y (and z) [m] (docs: scenes): positive
 outside, 0 on the surface, any smooth one that is not constant there. It becomes a program of
 numbers for a stack, which FreeFEM runs (edp/core/contact/shapes.idp: what they mean, and how the
 gap comes from it); `gap` does the same.

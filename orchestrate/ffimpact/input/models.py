@@ -348,7 +348,7 @@ MATERIAL = tuple(Material.model_fields)
 
 
 class Support(Entries):
-    """A part of a body's boundary that is held or moved (docs/supports-and-loads.md)."""
+    """A part of a body's boundary that is held or moved."""
 
     where: Annotated[str | dict[str, Any], Where(SIDES)]
     fix: Annotated[

@@ -1,7 +1,7 @@
 """The parameters of a run: names, defaults, ranges, units, meanings. Everything else about them is
 made from this table: flags.py writes the flags of the FreeFEM scripts
 (edp/core/input/parameters.idp), schema.py what editors know, docs/pages.py the table of
-docs/parameters.md.
+docs/reference/parameters.md.
 
 Numbers are in SI units. `auto`, and 0 where the meaning says so, leave a parameter to the program.
 """

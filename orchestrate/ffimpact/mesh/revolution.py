@@ -1,4 +1,4 @@
-"""Bodies of revolution about the axis x = 0: [[body]] tables (docs/bodies.md) as their section with
+"""Bodies of revolution about the axis x = 0: [[body]] tables (docs: scenes) as their section with
 a plane through the axis, SI units.
 
 x is the radius, y the axis. The section is symmetric about x = 0: an Outline about the centre of

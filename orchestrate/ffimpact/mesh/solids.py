@@ -1,4 +1,4 @@
-"""Bodies in three dimensions: [[body]] tables (docs/bodies.md) as solids with signed distances,
+"""Bodies in three dimensions: [[body]] tables (docs: scenes) as solids with signed distances,
 their places and motions, SI units. y is up, z completes x and y.
 """
 

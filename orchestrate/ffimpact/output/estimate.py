@@ -13,7 +13,7 @@ and no less than the difference; what friction ties together is stated together 
 answers differ (MEASURES): the steps of an impact say little of spin and peak force (d for A), the
 other answers little of friction work (d for D). A touch ends between two steps, so that times
 converge more slowly: the fourth root. BOUND is what 97 of 100 runs keep on scenes other than those
-of docs/promise.md, some three times the usual error. It is that of mesh and steps: penalty and slip
+of docs/measurements/promise.md, some three times the usual error. It is that of mesh and steps: penalty and slip
 velocity are the same in all runs. Steps grow no more above 0.3 of a transit of waves (sizes.idp),
 those of a pair asked for an accuracy of 0.06 or more are the same, of 0.05 7 % apart: its
 differences are those of elements alone. The share (alike()) of what steps make of them, ALIKE A,
@@ -83,7 +83,7 @@ WORTH = 1.5  # of what is asked: a stated error that a finer run is worth its pr
 REGULARISED = ("penalty", "slip_velocity")
 NO_ANSWER = (11, 12)  # exit codes of a run that the step or the material ended
 # What the answers of a pair usually differ by, beside each other; the first six are promised. What
-# is stated of them; both calibrated over other scenes than those of docs/promise.md.
+# is stated of them; both calibrated over other scenes than those of docs/measurements/promise.md.
 USUAL = {
     "impulse": 0.06,
     "rebound": 0.12,

@@ -65,6 +65,7 @@ OWN = (
     "unfinished/*",
     "failure.json",
     "log.txt",
+    "view.html",
     "mesh.msh",
     "mesh.mesh",
     "scene.dat",

@@ -42,7 +42,7 @@ NUMBERS = {
 
 
 def name(sentence: str) -> str:
-    """By which a sentence is known (docs/warnings.md)."""
+    """By which a sentence is known (docs/reference/warnings.md)."""
     return sentence.partition(":")[0]
 
 

@@ -33,6 +33,7 @@ __all__ = [
     "files_of",
     "held_bodies",
     "mechanical_energy",
+    "numbers",
     "read_answers",
     "read_frame",
     "read_history",
@@ -325,6 +326,15 @@ def read_summary(folder: Path) -> dict:
             if not isinstance(summary.get(name, kind()), kind):
                 raise ValueError(f"{name} is no {kind.__name__}")
         return Contents(summary, path)
+
+
+def numbers(summary: Mapping) -> list[str]:
+    """The names of the numbers of a summary."""
+    return [
+        name
+        for name, value in summary.items()
+        if isinstance(value, int | float) and not isinstance(value, bool)
+    ]
 
 
 def read_json(path: Path) -> dict:

@@ -60,7 +60,7 @@ def read(folder: Path) -> np.recarray:
     """fields/contact.csv of the run in `folder`: a row for every point of an outline that bears
     load, at the instants of the snapshots.
 
-    Columns and units: docs/results.md; in three dimensions weight is in m2. Unreadable where it
+    Columns and units: docs/reference/results.md; in three dimensions weight is in m2. Unreadable where it
     is not such a table.
     """
     return read_table(folder / "fields/contact.csv", COLUMNS)

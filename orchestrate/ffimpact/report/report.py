@@ -9,11 +9,12 @@ from dataclasses import dataclass, replace
 from ..input import dimension
 from ..input.parameters import Value
 from ..output import notes
+from ..output.errors import errors
 from ..output.results import Record, body_names, suffixes
 from ..places import shown
 from . import literature
 
-__all__ = ["Quantity", "draw", "marks", "report", "rows", "stiffness", "told"]
+__all__ = ["MAIN", "Quantity", "draw", "marks", "report", "rows", "stiffness", "told"]
 
 LEFT_OUT_AT_ZERO = (
     "external_work",
@@ -31,6 +32,22 @@ LEFT_OUT_AT_ZERO = (
     "reverse_slip_time",
     "unsolved_jumps",
 )
+# the numbers that are printed of every run, the most wanted first; MOST of them at most
+MAIN = (
+    "contact_time",
+    "peak_force",
+    "impulse",
+    "restitution",
+    "rebound_vx",
+    "rebound_vy",
+    "rebound_vz",
+    "rebound_spin",
+    "vibration_energy",
+    "friction_work",
+    "contact_intervals",
+    "energy_drift",
+)
+MOST = 10
 
 
 @dataclass(frozen=True)
@@ -45,8 +62,10 @@ class Quantity:
     factor: float = 1.0
     digits: str = ".4g"
 
-    def text(self, value: float) -> str:
-        return f"{self.factor * value:{self.digits}} {self.unit}".rstrip()
+    def text(self, value: float, error: float | None = None) -> str:
+        """The value with its error estimate (in SI) and unit."""
+        bar = "" if error is None else f" ± {self.factor * error:.2g}"
+        return f"{self.factor * value:{self.digits}}{bar} {self.unit}".rstrip()
 
     def beside(self, number: dict) -> str:
         """A published number, its error bar where it has one, and where it comes from."""
@@ -182,17 +201,20 @@ def marks(summary: dict) -> dict[str, str]:
     }
 
 
-def told(summary: dict) -> list[str]:
-    """A line of each warning, then of each note behind its mark, then where the whole text
-    stands.
+def told(summary: dict, verbose: bool = False) -> list[str]:
+    """A line for each warning, then for each note of a main number behind its mark. If `verbose`
+    all notes, in whole sentences.
     """
-    mark = marks(summary)
+    mark = {key: text for key, text in marks(summary).items() if verbose or _bare(key) in MAIN}
     footnotes = sorted(
-        summary.get("notes", []), key=lambda note: list(mark).index(notes.number(note))
+        (note for note in summary.get("notes", []) if notes.number(note) in mark),
+        key=lambda note: list(mark).index(notes.number(note)),
     )
-    lines = [notes.line(f"  {'warning':<10}", sentence) for sentence in summary["warnings"]]
-    lines += [notes.line(f"  {mark[notes.number(note)].strip():<10}", note) for note in footnotes]
-    return lines and [*lines, f"  {'in full':<10}warnings and notes of summary.json"]
+    said = [("warning", sentence) for sentence in summary["warnings"]]
+    said += [(mark[notes.number(note)].strip(), note) for note in footnotes]
+    if verbose:
+        return [f"  {kind:<10}{sentence}" for kind, sentence in said]
+    return [notes.line(f"  {kind:<10}", sentence) for kind, sentence in said]
 
 
 def _of_bodies(quantity: Quantity, scene: dict[str, Value], summary: dict) -> list[Quantity]:
@@ -206,69 +228,79 @@ def _of_bodies(quantity: Quantity, scene: dict[str, Value], summary: dict) -> li
     ]
 
 
-def report(result: Record) -> str:
-    """The key figures of a run as a table of text, what was skipped, and where the pictures are."""
-    summary, scene = result.summary, result.scene
-    provenance = summary["provenance"]
-    script = provenance["script"]
-    # a mesh of the user's is another body
-    known = (
-        literature.references(script, scene)
-        if provenance.get("gmsh") or not provenance.get("mesh")
-        else {}
-    )
-    place = shown(result.folder)
+def report(result: Record, verbose: bool = False) -> str:
+    """What is printed of a finished run: what was run, its main numbers with their error estimates,
+    a line for each warning, and where to look next. All numbers and whole sentences if `verbose`.
+    """
+    summary, scene, place = result.summary, result.scene, shown(result.folder)
     lines = [
         f"{place}: " + ("finished earlier, same scene and code" if result.reused else "finished"),
         *_scene(scene),
+        *_numbers(result, verbose),
+        *told(summary, verbose),
     ]
+    lines += [f"  released  {sentence}" for sentence in summary.get("released", [])]
+    if verbose and summary.get("skipped"):
+        lines.append(f"  skipped   {', '.join(summary['skipped'])}")
+    pictures = sorted((result.folder / "figures").glob("*.png"))
+    if pictures:
+        names = ",".join(picture.stem for picture in pictures)
+        lines.append(f"  figures   {place}/figures/{{{names}}}.png")
+    if scene.get("fields"):
+        lines.append(f"  player    ffimpact view {place}")
+    if not verbose:
+        lines.append(f"  all of it {place}/summary.json, ffimpact run --verbose")
+    return "\n".join(lines)
+
+
+def _numbers(result: Record, verbose: bool) -> list[str]:
+    """A line for each number: label, value with its error estimate, the mark of its note, and
+    published numbers of the same scene.
+    """
+    summary, scene = result.summary, result.scene
+    script = summary["provenance"]["script"]
+    mark, bars, known = marks(summary), errors(result), _published(summary, scene)
     quantities = [
-        one for row in rows(dimension.per_metre(script)) for one in _of_bodies(row, scene, summary)
+        quantity
+        for row in rows(dimension.per_metre(script))
+        for quantity in _of_bodies(row, scene, summary)
+        if _is_told(quantity, summary)
     ]
+    if not verbose:
+        quantities = sorted(
+            (quantity for quantity in quantities if _bare(quantity.key) in MAIN),
+            key=lambda quantity: MAIN.index(_bare(quantity.key)),
+        )[:MOST]
+        quantities = [replace(quantity, label=quantity.label.strip()) for quantity in quantities]
     if scene.get("end_time"):  # not of an impact alone
         quantities = [
             replace(quantity, label=quantity.label.replace("rebound", "final"))
             for quantity in quantities
         ]
-    width, mark = max(24, *(len(quantity.label) + 1 for quantity in quantities)), marks(summary)
+    width, lines = max(24, *(len(quantity.label) + 1 for quantity in quantities)), []
     for quantity in quantities:
-        value = summary.get(quantity.key)
-        if value is None or (
-            abs(value) < 1e-9 and re.sub("_[0-9]+$", "", quantity.key) in LEFT_OUT_AT_ZERO
-        ):
-            continue
+        text = quantity.text(summary[quantity.key], bars.get(quantity.key))
         beside = [quantity.beside(number) for number in known.get(quantity.key, [])] or [""]
-        lines.append(
-            f"  {quantity.label:<{width}}{quantity.text(value) + mark.get(quantity.key, ''):<18}{beside[0]}".rstrip()
-        )
-        lines += [f"  {'':<{width + 18}}{more}" for more in beside[1:]]
-    if stated := summary.get("estimated_error"):
-        errors = ", ".join(
-            f"{name.replace('_', ' ')} {100 * value:.2g} %"
-            for name, value in stated.items()
-            if value >= 5e-6
-        )
-        lines.append(
-            f"  {'stated errors':<{width}}{errors}{mark.get('estimated_error', '')}; not in them: what another "
-            f"{' or '.join(summary['estimated_error_excludes']).replace('_', ' ')} would change"
-        )
-    lines += told(summary)
-    lines += [f"  {'released':<{width}}{sentence}" for sentence in summary.get("released", [])]
-    if summary.get("skipped"):
-        lines.append(f"  {'skipped':<{width}}{', '.join(summary['skipped'])}")
-    pictures = sorted((result.folder / "figures").glob("*.png"))
-    if pictures:
-        lines.append(
-            f"  {'figures':<{width}}"
-            + f"{place}/figures/{{{','.join(p.stem for p in pictures)}}}.png"
-        )
-        if (
-            summary.get("contact_intervals")
-            and scene.get("fields")
-            and "contact" not in {picture.stem for picture in pictures}
-        ):
-            lines.append(
-                f"  {'no contact.png':<{width}}"
-                f"no state that was kept is one in contact: fields = {4 * scene['fields']:g} keeps more"
-            )
-    return "\n".join(lines)
+        marked = text + mark.get(quantity.key, "")
+        lines.append(f"  {quantity.label:<{width}}{marked:<26}{beside[0]}".rstrip())
+        lines += [f"  {'':<{width + 26}}{more}" for more in beside[1:]]
+    return lines
+
+
+def _published(summary: dict, scene: dict[str, Value]) -> dict[str, list[dict]]:
+    """Published numbers of the same scene by key; none if its mesh is the user's: another body."""
+    provenance = summary["provenance"]
+    if provenance.get("mesh") and not provenance.get("gmsh"):
+        return {}
+    return literature.references(provenance["script"], scene)
+
+
+def _is_told(quantity: Quantity, summary: dict) -> bool:
+    """Whether a run has the number, and whether it says anything."""
+    value = summary.get(quantity.key)
+    return value is not None and (abs(value) >= 1e-9 or _bare(quantity.key) not in LEFT_OUT_AT_ZERO)
+
+
+def _bare(key: str) -> str:
+    """The name of a number without that of its body."""
+    return re.sub("_[0-9]+$", "", key)

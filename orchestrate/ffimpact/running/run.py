@@ -49,8 +49,9 @@ from ..scene import Scene
 from ..scenes.bodies import SIZES
 from .solver import FAILURES, USED, Solver, runs
 
-__all__ = ["ENTRANCE", "HARMLESS", "code_hash", "commit", "imported", "reusable", "run"]
+__all__ = ["ENTRANCE", "HARMLESS", "STATES", "code_hash", "commit", "imported", "reusable", "run"]
 
+STATES = 60  # kept of a run for figures and the player where the scene does not say how many
 ENTRANCE = (
     "scenes/assembly"  # the module that makes flags, mesh and scene.dat, with all that it imports
 )

@@ -1,4 +1,4 @@
-"""The bodies of a scene: [[body]] tables (docs/bodies.md says what they hold) as outlines (or
+"""The bodies of a scene: [[body]] tables (docs: scenes says what they hold) as outlines (or
 meshes) with material, place and motion, SI units. Shapes and motions: flat.py in plane strain,
 revolution.py of revolution, solids.py in three dimensions.
 """

@@ -1,7 +1,7 @@
 """Supports and loads: what a scene prescribes on the boundary beside contact.
 
 [[body.support]] tables hold or move a part of a body's boundary (Gamma_D of the paper, section
-2.2.1), [[body.load]] tables give a part a stress (Gamma_F). docs/supports-and-loads.md says what
+2.2.1), [[body.load]] tables give a part a stress (Gamma_F). docs: supports and loads says what
 they hold. A part is a side of the body, a region of space where the body is at the start, or a
 named group of its file. Units are SI.
 """

@@ -4,7 +4,7 @@ its body.
 The contact patch of a disc shrinks with the speed. A front does not, so elements, steps and penalty
 follow the front. A bar of length L (wave speed c, modulus M = rho c^2) on a penalty k has a front
 with the rise time M/(k c). It loses 0.051 M/(k L) of its rebound and leaves 1.68 M/(k c) late
-(exact solution: docs/method.md). Let tau be the time in which the front passes one element. The
+(exact solution: docs: method). Let tau be the time in which the front passes one element. The
 penalty lets the front rise in tau / STEEPNESS, and in LONGEST of its transit across the body at
 most. Then all errors are of first order in the element size.
 """
@@ -31,7 +31,7 @@ BRIEF = 30.0  # transits: a run that is asked to go on for longer is not about t
 # area (volume) V with quadratic elements of the size h, over V/h^2 (V/h^3); area (volume) of an
 # element over h^2 (h^3).
 MOST_UNKNOWNS, UNKNOWNS, ELEMENT = {2: 40000, 3: 60000}, {2: 9.5, 3: 36.0}, {2: 0.43, 3: 0.12}
-STIFFEST = 0.45  # nu: the rest up to 0.5 acts on the volume of elements (docs/method.md)
+STIFFEST = 0.45  # nu: the rest up to 0.5 acts on the volume of elements (docs: method)
 
 
 @dataclass(frozen=True)

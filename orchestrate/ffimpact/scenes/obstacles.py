@@ -1,4 +1,4 @@
-"""Rigid obstacles: [[obstacle]] tables (docs/bodies.md says what they hold) as numbers that the scripts read (edp/core/contact/shapes.idp),
+"""Rigid obstacles: [[obstacle]] tables (docs: scenes says what they hold) as numbers that the scripts read (edp/core/contact/shapes.idp),
 and signed distances, SI units. Of revolution about x = 0 they lie across the axis or on it, or begin or end there."""
 
 from dataclasses import dataclass, replace

@@ -1,4 +1,4 @@
-"""A scene: bodies and obstacles in the tables of one TOML file (docs/bodies.md says which), read,
+"""A scene: bodies and obstacles in the tables of one TOML file (docs: scenes says which), read,
 checked, and its entries set by dotted names; or one of the paper's, whose script makes the bodies
 of its parameters, all at the top of the file.
 """

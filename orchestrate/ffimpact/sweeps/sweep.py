@@ -1,16 +1,23 @@
 """Sweeps as data: a TOML file names a scene, the values of its parameters, what to collect and how
 to draw it.
 
-scene = "disc-normal"                       # a built-in scene, or a scene file beside this one
-collect = ["contact_time", "rebound_vy"]    # numbers of summary.json; left out: all of them limit =
-600                                 # seconds a run may take [set]
-# for every run; of a scene with bodies any entry: body.2.young, contact.penalty ... law = "svk"
-[product]                                   # every combination: lists, or ranges nu = [0.30, 0.45]
-speed = { from = 0.5, to = 11, points = 43 }             # spacing = "log" where it is wanted
-[[zip]]                                     # goes together: one more axis of the product, any
-number of them mesh_size = [0.01, 0.005] dt = [4e-5, 2e-5] [refine]
-# every run again with these: the answer; the difference is its error bar accuracy = 2.5e-3 [figure]
-# see sweep_figures.py x = "speed" y = "contact_time" by = "nu"
+    scene = "disc-normal"                       # a built-in scene, or a scene file beside this one
+    collect = ["contact_time", "rebound_vy"]    # numbers of summary.json; left out: all of them
+    limit = 600                                 # seconds a run may take
+    [set]                                       # for every run; in a scene of bodies any entry:
+    law = "svk"                                 # body.2.young, contact.penalty ...
+    [product]                                   # every combination: lists, or ranges
+    nu = [0.30, 0.45]
+    speed = { from = 0.5, to = 11, points = 43 }             # spacing = "log" where it is wanted
+    [[zip]]                                     # one more axis of the product, which varies
+    mesh_size = [0.01, 0.005]                   # these entries together; any number of them
+    dt = [4e-5, 2e-5]
+    [refine]                                    # every run again with these: the result; its
+    accuracy = 2.5e-3                           # difference is the error bar
+    [figure]                                    # see sweep_figures.py
+    x = "speed"
+    y = "contact_time"
+    by = "nu"
 """
 
 import argparse

@@ -1,0 +1,272 @@
+"""The figures of the pages in docs/measurements/, each drawn from the CSV files beside its page."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+from matplotlib.axis import Axis
+from matplotlib.ticker import LogLocator, NullFormatter, NullLocator
+
+from ffimpact.report.figures import (
+    BLACK,
+    BLUE,
+    DASHED,
+    GREEN,
+    GREY,
+    LAWS,
+    ORANGE,
+    PURPLE,
+    STYLE,
+    save,
+)
+
+Tables = Mapping[
+    str, pd.DataFrame
+]  # by the name of their file behind that of the page; "" is the main one
+FIXED = {
+    "svg.hashsalt": "ffimpact",
+    "svg.fonttype": "none",
+}  # the same file from the same numbers, letters as text
+COLOURS = (BLUE, ORANGE, GREEN, PURPLE, BLACK, GREY)
+SMALLEST = 5e-3  # errors below are drawn here, over the requested accuracy or in %
+
+
+def promise(tables: Tables, path: Path) -> None:
+    """Errors over their estimates, a dot for each scene; coverage of the estimates by answer."""
+    rows, stated = tables[""], tables["stated"]
+    figure, (errors, shares) = plt.subplots(1, 2, figsize=(9, 3.8), width_ratios=(1.2, 1))
+    kinds = rows.scene.str.partition(":")[0]
+    ends = np.array([SMALLEST / 2, 2 * np.nanmax([rows.error.max(), rows.estimated.max()])])
+    for kind, colour in zip(kinds.unique(), [*COLOURS, *COLOURS]):
+        one = rows[kinds == kind]
+        errors.plot(
+            one.estimated.clip(SMALLEST),
+            one.error.clip(SMALLEST),
+            "o",
+            color=colour,
+            markersize=3,
+            alpha=0.7,
+            label=kind,
+        )
+    errors.plot(ends, ends, color=BLACK, linewidth=0.8)
+    errors.axhline(1, color=BLACK, linewidth=0.8, linestyle=DASHED)
+    errors.text(ends[0], 1, " requested accuracy", va="bottom", fontsize=7)
+    errors.set(
+        xscale="log",
+        yscale="log",
+        xlabel="error estimate / requested accuracy",
+        ylabel="error / requested accuracy",
+        xlim=ends,
+    )
+    if kinds.nunique() > 1:
+        errors.legend(loc="lower right")
+    shown = stated[stated.cases > 0].iloc[::-1]
+    shares.barh(shown.answer, 100 * shown.within, color=BLUE, height=0.6)
+    shares.axvline(95, color=BLACK, linewidth=0.8, linestyle=DASHED)
+    for place, row in enumerate(shown.itertuples()):
+        shares.text(51, place, f"{row.cases} cases", va="center", color="white", fontsize=7)
+    shares.set(xlim=(50, 100), xlabel="error within the estimate [% of the cases]")
+    save(figure, path)
+
+
+def scaling(tables: Tables, path: Path) -> None:
+    """Time of a step and memory over the number of unknowns, with the exponents of both."""
+    figure, panels = plt.subplots(1, 2, figsize=(9, 3.6))
+    exponents = tables["exponents"].set_index("case")
+    for (case, rows), colour in zip(tables[""].groupby("case", sort=False), COLOURS):
+        for panel, name in zip(panels, ("step", "memory")):
+            panel.loglog(
+                rows.unknowns,
+                rows[name],
+                "o-",
+                color=colour,
+                markersize=4,
+                label=f"{case}: exponent {exponents[name][case]:.2g}",
+            )
+    for panel, name in zip(panels, ("processor time of a step [s]", "memory [MB]")):
+        panel.set(xlabel="unknowns", ylabel=name)
+        panel.legend()
+        panel.grid(alpha=0.3)
+    save(figure, path)
+
+
+def bench(tables: Tables, path: Path) -> None:
+    """Processor time of the time integration and of the whole process over the error.
+
+    A column is a case. The error is the largest of a setting and all finer ones of its program.
+    """
+    rows = tables[""]
+    cases = list(rows.case.unique())
+    figure, grid = plt.subplots(
+        2, len(cases), figsize=(9.5, 5.2), sharex="col", sharey="row", squeeze=False
+    )
+    colours = dict(zip(rows.program.unique(), COLOURS))
+    for column, case in zip(grid.T, cases):
+        for panel, name in zip(column, ("march", "process")):
+            for program, one in rows[(rows.case == case) & rows.error.notna()].groupby(
+                "program", sort=False
+            ):
+                kept = np.maximum.accumulate(one.error.to_numpy()[::-1])[
+                    ::-1
+                ]  # settings go from coarse to fine
+                panel.loglog(
+                    kept.clip(SMALLEST),
+                    one[name],
+                    "o-",
+                    color=colours[program],
+                    markersize=3,
+                    linewidth=1,
+                    label=program,
+                )
+            plain(panel.yaxis)
+            plain(panel.xaxis, (1,))
+            panel.grid(alpha=0.3)
+        column[0].set_title(case)
+        column[1].set_xlabel("error [%]")
+    for panel, words in zip(grid[:, 0], ("time integration [s]", "whole process [s]")):
+        panel.set_ylabel(words)
+    shown = {
+        label: line
+        for panel in grid.flat
+        for line, label in zip(*panel.get_legend_handles_labels())
+    }
+    figure.legend(shown.values(), shown, loc="outside lower center", ncols=3)
+    save(figure, path)
+
+
+def disc_block(tables: Tables, path: Path) -> None:
+    """Velocities, vibration energy and contact time with error bars, and those of NGSolve."""
+    rows, other = tables[""], tables["ngsolve"]
+    cases = rows[["law", "nu"]].drop_duplicates().reset_index(drop=True)
+    places = {(row.law, row.nu): k for k, row in cases.iterrows()}
+    figure, grid = plt.subplots(2, 2, figsize=(8, 5.4))
+    panels = grid.ravel()
+    answers = {
+        "v disc m/s": "velocity of the disc [m/s]",
+        "v block m/s": "velocity of the block [m/s]",
+        "block vibrates %": "vibration of the block [% of energy]",
+        "contact >1% ms": "contact above 1 % of the peak [ms]",
+    }
+    sets = [
+        (f"k = {penalty:.0e} Pa/m", one, shift, colour, "o")
+        for (penalty, one), shift, colour in zip(
+            rows.groupby("penalty"), (-0.12, 0.12), (BLUE, ORANGE)
+        )
+    ]
+    for panel, (name, words) in zip(panels, answers.items()):
+        for label, one, shift, colour, mark in [
+            *sets,
+            ("NGSolve, k = 1e+09 Pa/m", other, 0, GREEN, "D"),
+        ]:
+            x = [places[law, nu] + shift for law, nu in zip(one.law, one.nu)]
+            panel.errorbar(
+                x,
+                one[name],
+                one[f"{name} bar"],
+                fmt=mark,
+                color=colour,
+                markersize=3.5,
+                capsize=2,
+                linewidth=1,
+                label=label,
+            )
+        panel.set_xticks(
+            range(len(cases)),
+            [f"{'SVK' if row.law == 'svk' else 'nH'}\n{row.nu:g}" for row in cases.itertuples()],
+        )
+        panel.set(title=words, xlim=(-0.5, len(cases) - 0.5))
+        panel.grid(axis="y", alpha=0.3)
+    for panel in panels[-2:]:
+        panel.set_xlabel("law, ν")
+    shown = panels[0].get_legend_handles_labels()
+    figure.legend(*shown, loc="outside lower center", ncols=3)
+    save(figure, path)
+
+
+def pairing(tables: Tables, path: Path) -> None:
+    """Difference of pairs of points from closest points, and processor time, over epsilon."""
+    rows = tables[""]
+    figure, (differ, cost) = plt.subplots(1, 2, figsize=(9, 3.6))
+    ranged = rows[rows["epsilon/h"].notna() & (rows["k/k0"] == 1)].sort_values("epsilon/h")
+    for ((law, mesh, kind), one), colour in zip(
+        ranged.groupby(["law", "mesh", "pairing"], sort=False), COLOURS
+    ):
+        label = (
+            f"{LAWS.get(law, law)}, {mesh} mesh{', as printed' if kind.endswith('printed') else ''}"
+        )
+        differ.loglog(
+            one["epsilon/h"], one["differ [%]"], "o-", color=colour, markersize=4, label=label
+        )
+        cost.semilogx(one["epsilon/h"], one["CPU [s]"], "o-", color=colour, markersize=4)
+    nearest = rows[(rows.pairing == "closest-point") & (rows["k/k0"] == 1)]
+    for mesh, style in (("usual", DASHED), ("finer", ":")):
+        value = nearest[nearest.mesh == mesh]["CPU [s]"].mean()
+        if not np.isnan(value):
+            cost.axhline(
+                value,
+                color=BLACK,
+                linewidth=0.9,
+                linestyle=style,
+                label=f"closest points, {mesh} mesh",
+            )
+    for panel in (differ, cost):
+        plain(panel.xaxis)
+        panel.axvline(0.39, color=GREY, linewidth=0.8)
+        panel.grid(alpha=0.3)
+        panel.set_xlabel("range ε / element size h")
+        panel.legend()
+    differ.set_ylabel("difference from closest points [%]")
+    cost.set(ylabel="processor time of a run [s]", ylim=(0, None))
+    save(figure, path)
+
+
+def plain(axis: Axis, marks: tuple[int, ...] = (1, 2, 5)) -> None:
+    """Numbers without powers on a logarithmic axis, at these multiples of powers of ten."""
+    axis.set_major_locator(LogLocator(subs=marks))
+    axis.set_major_formatter("{x:g}")
+    axis.set_minor_formatter(NullFormatter())
+    axis.set_minor_locator(NullLocator())
+
+
+def rubber(tables: Tables, path: Path) -> None:
+    """Contact time, impulse, rebound and processor time over 0.5 - nu."""
+    from . import rubber as study
+
+    study.draw(tables[""], path)
+
+
+def oblique_angles(tables: Tables, path: Path) -> None:
+    """psi_2 over psi_1, and both restitutions over the angle, beside rigid and elastic theory."""
+    from . import oblique_angles as study
+
+    study.draw(tables[""], path)
+
+
+def viscoelastic(tables: Tables, path: Path) -> None:
+    """1 - e of the ball over speed; restitution of the disc over loss and relaxation time."""
+    from . import viscoelastic as study
+
+    study.draw(tables[""], tables["disc"], path)
+
+
+# by the name of the measurement
+DRAWN: dict[str, Callable[[Tables, Path], None]] = {
+    "promise": promise,
+    "scaling": scaling,
+    "equal-errors": bench,
+    "disc-block-errors": disc_block,
+    "pairing-comparison": pairing,
+    "rubber": rubber,
+    "oblique-angles": oblique_angles,
+    "viscoelastic": viscoelastic,
+}
+
+
+def draw(measurement: str, tables: Tables, path: Path) -> None:
+    """The figure of a page, as SVG that says no date."""
+    with plt.rc_context(STYLE | FIXED):
+        DRAWN[measurement](tables, path)
+    lines = path.read_text().splitlines()
+    path.write_text("".join(f"{line.rstrip()}\n" for line in lines if "<dc:date>" not in line))

@@ -1,0 +1,133 @@
+"""The page of a measurement in docs/measurements.
+
+X.csv and X-NAME.csv hold its tables, X.svg is its figure, drawn from these files. A block between
+two marks of X.md lists them with the command that measured them. The text outside of the block is
+written by hand.
+"""
+
+import argparse
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+import pandas as pd
+
+from ffimpact.failure import BadInput, unknown
+from ffimpact.places import ROOT, shown
+from ffimpact.sweeps import study
+from verification import commands
+
+from . import figures
+
+FOLDER = ROOT / "docs/measurements"
+BEGIN, END = "<!-- measured -->", "<!-- end of measured -->"
+Tables = dict[str, pd.DataFrame]  # by name; "" is the main one
+
+
+def finish(
+    options: argparse.Namespace,
+    rows: pd.DataFrame,
+    text: str,
+    good: bool,
+    argv: list[str],
+    title: str,
+    tables: Tables,
+    inline: Sequence[str] = (),
+    files: str = "csv",
+) -> int:
+    """Ends a measurement as commands.finish() does, and writes its page for --page; exit code."""
+    code = commands.finish(options, rows, text, good, files)
+    write(options.page, title, [options.command, *argv], text.rpartition("\n\n")[2], tables, inline)
+    return code
+
+
+def write(
+    path: Path | None,
+    title: str,
+    command: list[str],
+    verdict: str,
+    tables: Tables,
+    inline: Sequence[str] = (),
+) -> None:
+    """Writes tables, figure and the block of the page `path`, if there is one.
+
+    The page itself shows the tables named in `inline`.
+    """
+    if not path:
+        return
+    path.parent.mkdir(parents=True, exist_ok=True)
+    for name, table in tables.items():
+        table.to_csv(place(path, name), index=False, float_format="%.6g")
+    draw(path, command[0])
+    parts = [commands.measured(command), " ".join(verdict.split()), f"![{title}]({path.stem}.svg)"]
+    parts += [markdown(tables[name]) for name in inline if not tables[name].empty]
+    links = [f"[{place(path, name).name}]({place(path, name).name})" for name in tables]
+    parts.append(f"{'Table' if len(links) == 1 else 'Tables'}: {', '.join(links)}.")
+    block = "\n\n".join([BEGIN, *parts, END])
+    text = path.read_text() if path.exists() else f"# {title}\n\n{BEGIN}\n{END}\n"
+    with study.complete(path) as part:
+        part.write_text(
+            re.sub(rf"{BEGIN}.*?{END}", lambda _: block, text, count=1, flags=re.DOTALL)
+        )
+
+
+def place(path: Path, name: str) -> Path:
+    """The CSV file of a table of the page `path`."""
+    return path.with_name(f"{path.stem}-{name}.csv" if name else f"{path.stem}.csv")
+
+
+def draw(path: Path, command: str) -> None:
+    """Draws the figure of a page from its CSV files."""
+    tables = {
+        one.stem.removeprefix(path.stem).removeprefix("-"): pd.read_csv(one) for one in files(path)
+    }
+    figures.draw(command, tables, path.with_suffix(".svg"))
+
+
+def files(path: Path) -> list[Path]:
+    """The CSV files of a page, none of another page whose name begins with its own."""
+    pages = sorted(
+        {path.stem, *(one.stem for one in path.parent.glob("*.md"))}, key=len, reverse=True
+    )
+    return [
+        one
+        for one in sorted(path.parent.glob(f"{path.stem}*.csv"))
+        if next((page for page in pages if one.stem == page or one.stem.startswith(f"{page}-")), "")
+        == path.stem
+    ]
+
+
+def markdown(table: pd.DataFrame) -> str:
+    """A table as a page shows it, numbers to four digits."""
+    cells = [[cell(value) for value in row] for row in table.itertuples(index=False)]
+    numeric = [
+        pd.api.types.is_numeric_dtype(table[name]) and table[name].dtype != bool for name in table
+    ]
+    lines = [list(table.columns), ["---:" if one else "---" for one in numeric], *cells]
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+
+def cell(value: object) -> str:
+    if isinstance(value, float):
+        return "" if pd.isna(value) else f"{value:.4g}"
+    return {True: "yes", False: "no"}[value] if isinstance(value, bool) else str(value)
+
+
+def main(argv: list[str]) -> int:
+    """Draws the figures of the pages again, from the CSV files beside them."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks page", description=main.__doc__)
+    parser.add_argument(
+        "pages", metavar="PAGE", nargs="*", help=f"of {shown(FOLDER)} (default: all)"
+    )
+    given = parser.parse_args(argv).pages
+    commands_of = {
+        path.stem: match[1]
+        for path in sorted(FOLDER.glob("*.md"))
+        if (match := re.search(r"`python -m benchmarks ([\w-]+)", path.read_text()))
+    }
+    for name in given or commands_of:
+        if name not in commands_of:
+            raise BadInput(f"PAGE: {unknown(name, commands_of, ', ')}")
+        draw(FOLDER / f"{name}.md", commands_of[name])
+        print(shown(FOLDER / f"{name}.svg"))
+    return 0

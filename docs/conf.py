@@ -1,0 +1,214 @@
+"""The documentation as a site: `make docs`.
+
+Pages are MyST Markdown; the gallery is made from examples/NN_*.py.
+"""
+
+import inspect
+import os
+import re
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parent
+sys.path[:0] = [str(ROOT / "orchestrate"), str(HERE), str(ROOT)]
+os.environ.setdefault("MPLBACKEND", "Agg")
+
+from docutils import nodes  # noqa: E402
+from sphinx.util.math import get_node_equation_number  # noqa: E402
+
+import ffimpact  # noqa: E402
+import pages  # noqa: E402
+from ffimpact.input import models  # noqa: E402
+
+project, author, copyright = "ffimpact", "the ffimpact authors", "the ffimpact authors"
+version = release = ffimpact.__version__
+
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "sphinx_design",
+    "sphinx_copybutton",
+    "sphinx_gallery.gen_gallery",
+    *([] if find_spec("latex2mathml") else ["sphinx.ext.mathjax"]),
+]
+source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
+suppress_warnings = [
+    "toc.empty_glob",
+    "config.cache",
+]  # a folder that has no page yet; settings that are functions
+
+myst_enable_extensions = ["colon_fence", "deflist", "dollarmath", "fieldlist"]
+myst_heading_anchors = 3
+autodoc_typehints_format = "short"
+autodoc_member_order = "bysource"
+autodoc_preserve_defaults = True
+add_module_names = False
+toc_object_entries = False
+default_role = "code"
+autosummary_generate = False
+
+html_math_renderer = "mathml" if find_spec("latex2mathml") else "mathjax"
+html_theme = "pydata_sphinx_theme"
+html_title = "ffimpact"
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
+html_show_sourcelink = False
+html_copy_source = False
+alone = [
+    page.parent.name for page in HERE.glob("*/index.md") if len(list(page.parent.glob("*.md"))) == 1
+]
+html_sidebars = {page: [] for page in ("index", *(f"{folder}/index" for folder in alone))}
+html_theme_options = {
+    "navigation_with_keys": False,
+    "show_prev_next": False,
+    "header_links_before_dropdown": 6,
+    "navbar_align": "left",
+    "navbar_persistent": [],
+    "navbar_end": ["search-button-field", "theme-switcher"],
+    "secondary_sidebar_items": {"**": ["page-toc"], "index": []},
+    "footer_start": ["copyright"],
+    "footer_end": [],
+    "pygments_light_style": "tango",
+    "back_to_top_button": True,
+}
+
+sphinx_gallery_conf = {
+    "examples_dirs": [str(ROOT / "examples")],
+    "gallery_dirs": ["gallery"],
+    "filename_pattern": r"[/\\][0-9][0-9]_[^/\\]*\.py$",
+    "ignore_pattern": r"(^|[/\\])(?![0-9][0-9]_)[^/\\]*\.py$",
+    "within_subsection_order": "FileNameSortKey",
+    "abort_on_example_error": True,
+    "parallel": 2 if find_spec("joblib") else False,
+    "backreferences_dir": None,
+    "capture_repr": ("_repr_html_", "__repr__"),
+    "download_all_examples": False,
+    "show_signature": False,
+    "show_memory": False,
+    "min_reported_time": 1e9,
+    "remove_config_comments": True,
+    "matplotlib_animations": True,
+    "nested_sections": False,
+}
+
+
+# ---- links to files of the program, which are no pages: their words
+
+FILES = re.compile(
+    r"\[([^]\n]+)\]\((?:\.\./)*"
+    r"(?:edp|orchestrate|verification|benchmarks|examples|tests|[A-Z_]+(?:\.\w+)?)[^)\s]*\)"
+)
+
+
+def plain_links(app, name: str, source: list[str]) -> None:
+    """Links to files of the program become code."""
+    source[0] = FILES.sub(lambda link: f"`{link[1].strip('`')}`", source[0])
+
+
+# ---- formulas as MathML, which a browser draws without a script and without a network
+
+
+def formula(self, node) -> None:
+    """A formula in a line of text."""
+    from latex2mathml.converter import convert
+
+    self.body.append(convert(node.astext()))
+    raise nodes.SkipNode
+
+
+def displayed_formula(self, node) -> None:
+    """A formula in a line of its own, with its number."""
+    from latex2mathml.converter import convert
+
+    number = get_node_equation_number(self, node) if node["number"] else ""
+    mark = f'<span class="eqno">({number})</span>' if number else ""
+    name = f' id="{node["ids"][0]}"' if node.get("ids") else ""
+    formula = convert(node.astext(), display="block")
+    self.body.append(f'<div class="math"{name}>{mark}{formula}</div>')
+    raise nodes.SkipNode
+
+
+# ---- classes of the Python interface
+
+
+def signature(app, what: str, name: str, one: object, options, found: str, returns: str):
+    """Of a table of a scene the entries that are needed; what is left open follows in the table."""
+    if inspect.isclass(one) and issubclass(one, models.Entries):
+        needed = [entry for entry, field in one.model_fields.items() if field.is_required()]
+        return f"(*, {', '.join([*needed, '...'])})", None
+    if inspect.isclass(one) and issubclass(one, Exception):
+        return "", None
+    return found, returns
+
+
+def docstring(app, what: str, name: str, one: object, options, lines: list[str]) -> None:
+    """Docstrings are plain text; that of a table of a scene is followed by its entries."""
+    lines[:] = [literal(line) for line in lines]
+    if inspect.isclass(one) and issubclass(one, models.Entries):
+        lines += ["", *entries(one)]
+    elif inspect.isclass(one) and issubclass(one, ffimpact.Failure):
+        lines += ["", f"Exit code: {one.code}." if one is not ffimpact.Failure else ""]
+
+
+def literal(line: str) -> str:
+    """A line of plain text as reStructuredText: marks outside of code are letters."""
+    parts = re.split(r"(`+[^`]*`+)", line)
+    if line == "-":
+        return r"\-"
+    return "".join(
+        part if k % 2 else re.sub(r"([*|]|(?<=\w)_(?=\W|$))", r"\\\1", part)
+        for k, part in enumerate(parts)
+    )
+
+
+def entries(model: type[models.Entries]) -> list[str]:
+    """A table of the entries of a model that its base does not have, and a link to the base."""
+    base = model.__mro__[1]
+    common = base.model_fields if base in pages.BASES.values() else {}
+    lines = [".. list-table::", "   :header-rows: 1", "   :widths: 22 10 24 44", ""]
+    rows = [("entry", "unit", "accepted", "meaning")]
+    for name, field in model.model_fields.items():
+        told = pages.entry_of(name, field)
+        if told and (name not in common or field.is_required() != common[name].is_required()):
+            rows.append(
+                (
+                    f"``{name}``{', needed' if field.is_required() else ''}",
+                    *(literal(each) for each in told),
+                )
+            )
+    for row in rows:
+        lines += [f"   {'* -' if k == 0 else '  -'} {each}".rstrip() for k, each in enumerate(row)]
+    if model is ffimpact.Scene:
+        names = [
+            name
+            for name in model.model_fields
+            if not pages.entry_of(name, model.model_fields[name]) and name != "folder"
+        ]
+        lines = (
+            [
+                f"Entries: {', '.join(f'``{name}``' for name in names)}, and those in the table.",
+                "",
+                *lines,
+            ]
+            if names
+            else lines
+        )
+    found = lines if len(rows) > 1 else []
+    return found + (
+        [
+            "",
+            f"Further entries: those of `~ffimpact.{base.__name__}`.".replace("`~", ":py:class:`~"),
+        ]
+        if common
+        else []
+    )
+
+
+def setup(app) -> None:
+    app.add_html_math_renderer("mathml", (formula, None), (displayed_formula, None))
+    app.connect("source-read", plain_links)
+    app.connect("autodoc-process-signature", signature)
+    app.connect("autodoc-process-docstring", docstring)

@@ -1,0 +1,22 @@
+"""Where an addition goes: the chain from an entry of a scene to a line of FreeFEM, and where results come out."""
+
+from style import BODY, INK, LIGHT, OTHER, arrow, box, diagram, save
+
+figure, ax = diagram(2.6)
+rows = (("obstacle", "input/models.py\nthe entry", "scenes/obstacles.py\nentry → numbers", "core/contact/shapes.idp\ngap and normal"),
+        ("friction law", "input/table.py\nthe word", "", "core/contact/friction.idp\nφ and its derivative"),
+        ("law", "input/table.py\nthe word", "", "core/law/NAME.idp\nS, tangent, energy"),
+        ("figure", "", "report/NAME.py\nhistory → axes", ""))
+for x, title in ((3.0, "what users write"), (5.75, "Python"), (8.55, "FreeFEM")):
+    ax.text(x, 3.95, title, ha="center", fontsize=9.5, weight="bold")
+for k, (name, *cells) in enumerate(rows):
+    y = 3.3 - 0.9 * k
+    ax.text(0.1, y, name, va="center", fontsize=9.5, weight="bold")
+    last = None
+    for x, width, text, face in zip((3.0, 5.75, 8.55), (2.1, 2.4, 2.7), cells, (BODY, LIGHT, OTHER)):
+        if text:
+            box(ax, x, y, width, 0.66, text, face, size=8.3)
+            if last:
+                arrow(ax, (last, y), (x - width / 2 - 0.03, y), INK, width=1)
+            last = x + width / 2 + 0.03
+save(figure, "layers")

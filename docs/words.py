@@ -1,0 +1,90 @@
+"""Counts words and pictures of the pages written by hand, and private terms (first column of the table of terms) that are left.
+
+    python docs/words.py            # pages of docs/tutorial, how-to, explanation and README.md; messages of orchestrate/
+    python docs/words.py --where    # also each place
+
+Code blocks and `code` do not count as text for the search of terms; words are those of `wc -w`. Terms that are also ordinary words
+(row, way, part, side ...) are counted apart: somebody has to look at them.
+"""
+
+import ast
+import re
+import sys
+from collections import Counter
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+TERMS = {term: re.compile(pattern, re.IGNORECASE) for term, pattern in (
+    ("slot", r"\bslots?\b"), ("meeting, to meet", r"\bmeetings?\b|\bmeets?\b|\bmet\b"), ("partner", r"\bpartners?\b"), ("foot", r"\bfoot(arm)?\b|\bfeet\b"),
+    ("cell", r"\bcells?\b"), ("window", r"\bwindows?\b"), ("spring", r"\bsprings?\b"), ("work excess", r"\bwork excess\b"),
+    ("defect", r"\bdefects?\b"), ("learnt", r"\blearnt\b"), ("togo", r"\btogo\b"), ("hub", r"\bhubs?\b"), ("copies, folded", r"\bfolded\b|\bmay fold\b|\bfolding\b"),
+    ("reach", r"\breach of\b|\breaches of\b"), ("jolt", r"\bjolts?\b"), ("hoop", r"\bhoops?\b"), ("touch", r"\btouch(es|ed|ing)?\b"), ("stated error", r"\bstated\b"),
+    ("promise", r"\bpromise[sd]?\b"), ("told, said, named", r"\btold\b|\btells?\b|\bsaid\b|\bnamed\b"), ("released, open", r"\breleased\b|\bleft open\b|\bopen again\b"),
+    ("asked for", r"\basked\b"), ("asker", r"\basker\b"), ("room", r"\brooms?\b"), ("bowl", r"\bbowls?\b"), ("march", r"\bmarch(es|ed)?\b"),
+    ("worth", r"\bworth\b"), ("endless", r"\bendless\b"), ("tip", r"\btips?\b"))}
+ORDINARY = {term: re.compile(pattern, re.IGNORECASE) for term, pattern in (
+    ("row", r"\brows?\b"), ("place", r"\bplaces?\b"), ("target", r"\btargets?\b"), ("side, turns", r"\bsides?\b|\bturns\b"), ("part", r"\bparts?\b"), ("piece", r"\bpieces?\b"),
+    ("copies", r"\bcopies\b"), ("way", r"\bways?\b"), ("bar", r"(?<!error )\bbars?\b"), ("hold", r"\bholds?\b"), ("rule", r"\brules?\b"), ("course", r"\bcourse\b"),
+    ("far", r"\bfar\b"), ("says", r"\bsays?\b"))}
+PAGES = ("tutorial", "how-to", "explanation")
+MEASURED = {"comparison.md"}  # tables of measurements there
+
+
+def prose(text: str) -> str:
+    """The text of a page without code, HTML comments and targets of links; as many lines as before."""
+    text = re.sub(r"(?s)```.*?```|<!--.*?-->", lambda found: "\n" * found[0].count("\n"), text)
+    return re.sub(r"\]\([^)]*\)", "]", re.sub(r"`[^`\n]*`|\$[^$\n]+\$", "", text))
+
+
+def messages(path: Path) -> list[tuple[int, str]]:
+    """The sentences of a module that users may read: texts of three words or more that are not docstrings; with their lines."""
+    tree = ast.parse(path.read_text())
+    documented = {id(one.body[0].value) for one in ast.walk(tree) if isinstance(one, ast.Module | ast.ClassDef | ast.FunctionDef) and one.body
+                  and isinstance(one.body[0], ast.Expr)}
+    return [(one.lineno, one.value) for one in ast.walk(tree) if isinstance(one, ast.Constant) and isinstance(one.value, str)
+            and id(one) not in documented and len(one.value.split()) > 2]
+
+
+def pages() -> list[Path]:
+    """The pages written by hand."""
+    return [ROOT / "README.md", *(path for name in PAGES for path in sorted((ROOT / "docs" / name).glob("*.md"))
+                                    if path.name not in MEASURED)]
+
+
+def lines(path: Path) -> list[tuple[str, str]]:
+    """The prose of a page, line by line with its place."""
+    return [(f"{path.relative_to(ROOT)}:{k}", line) for k, line in enumerate(prose(path.read_text()).splitlines(), 1)]
+
+
+def count(found: list[tuple[str, str]], terms: dict[str, re.Pattern], where: bool = False) -> Counter:
+    """How often each term is in lines, a list of place and text."""
+    total = Counter()
+    for place, text in found:
+        for term, pattern in terms.items():
+            for match in pattern.finditer(text):
+                total[term] += 1
+                if where:
+                    print(f"    {place}: {match[0]}: {text.strip()[:110]}")
+    return total
+
+
+def main(where: bool) -> int:
+    total, pictures, written = 0, 0, []
+    for path in pages():
+        text = path.read_text()
+        drawn, number = len(re.findall(r"!\[", text)), len(text.split())
+        total, pictures = total + number, pictures + drawn
+        written += lines(path)
+        print(f"{number:6} words {drawn:3} pictures  {path.relative_to(ROOT)}")
+    print(f"{total:6} words {pictures:3} pictures  on {len(pages())} pages")
+    own = count(written, TERMS, where)
+    print(f"private terms on these pages: {own.total()}  {dict(own)}")
+    print(f"ordinary words to look at: {dict(count(written, ORDINARY))}")
+    printed = [(f"{path.relative_to(ROOT)}:{k}", text) for path in sorted((ROOT / "orchestrate").rglob("*.py")) for k, text in messages(path)]
+    theirs = count(printed, TERMS, where)
+    print(f"private terms in texts of orchestrate/: {theirs.total()}  {dict(theirs)}")
+    return int(own.total() > 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main("--where" in sys.argv))

@@ -1,0 +1,69 @@
+"""The error estimate of each number of a run in the unit of the number, from the shares in
+summary.json (`estimated_error`): of the number itself, of the largest energy or of the speed.
+"""
+
+from __future__ import annotations
+
+import re
+
+from .results import Record, numbers, read_answers
+
+__all__ = ["errors"]
+
+# numbers whose error is that of an energy, over the largest energy
+ENERGIES = (
+    "energy_initial",
+    "energy_final",
+    "translation_energy",
+    "rotation_energy",
+    "vibration_energy",
+    "creep_work",
+    "viscous_work",
+)
+OF_ITSELF = (
+    "impulse",
+    "thresholded_contact_time",
+    "contact_time",
+    "peak_force",
+    "max_pressure",
+    "max_penetration",
+)
+
+
+def errors(record: Record) -> dict[str, float]:
+    """The estimated error by the name of the number; numbers without an estimate are left out.
+
+    What another penalty or slip velocity would change is not included.
+    """
+    summary = record.summary
+    names = numbers(summary)
+    share = summary.get("estimated_error") or {}
+    if not share:
+        return {}
+    answers = read_answers(record.folder)
+    energy, reach = float(answers.summary["largest_energy"]), record.scene.get("radius")
+    found: dict[str, float] = {
+        name: share[name] * abs(summary[name])
+        for name in share
+        if name in OF_ITSELF or name.startswith("support_peak") and summary.get(name)
+    }
+    found |= {
+        name: share.get(name, 0.0) * energy
+        for name in ("friction_work", "support_work", "load_work")
+        if name in share
+    }
+    for name in names:
+        kind = re.sub(r"_[0-9]+$", "", name)
+        if kind in ENERGIES:
+            found[name] = share["energy"] * energy
+        elif re.fullmatch("impulse_[xyz]", name):
+            found[name] = share["impulse"] * abs(summary["impulse"])
+        elif kind.startswith("rebound_v"):
+            found[name] = share["rebound"] * answers.speed
+        elif kind.startswith("rebound_spin"):
+            size = summary.get(f"reach{name[len(kind) :]}") or reach
+            if size:
+                found[name] = share["rebound_spin"] * answers.speed / size
+        elif kind == "restitution":
+            found[name] = share["rebound"]
+    return {name: found[name] for name in names if name in found}

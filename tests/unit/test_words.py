@@ -1,0 +1,31 @@
+"""Pages written by hand: plain terms, few words, and a picture on each; docs/words.py counts."""
+
+import re
+
+import pytest
+
+import words
+from ffimpact.places import ROOT
+
+PAGES = words.pages()
+
+
+def test_all_pages_together_have_few_words():
+    """At most 20,000."""
+    assert sum(len(path.read_text().split()) for path in PAGES) <= 20_000
+
+
+@pytest.mark.parametrize("path", PAGES, ids=lambda path: f"{path.parent.name}/{path.name}")
+def test_a_page_has_a_picture_and_no_private_term(path):
+    """Terms are those of textbooks, or defined in the glossary."""
+    text = path.read_text()
+    assert "![" in text
+    found = words.count(words.lines(path), words.TERMS)
+    assert not found, found
+
+
+def test_every_figure_is_small_and_shown():
+    """Less than 100 kB; pages show it."""
+    shown = set(re.findall(r"\]\((?:\.\./)?figures/([\w-]+\.(?:svg|png))", "".join(path.read_text() for path in PAGES)))
+    there = {path.name: path.stat().st_size for path in (ROOT / "docs/figures").iterdir() if path.suffix in (".svg", ".png")}
+    assert set(there) == shown and max(there.values()) < 100_000
