@@ -118,8 +118,8 @@ def _parser() -> argparse.ArgumentParser:
         "--mesh",
         metavar="FILE",
         type=Path,
-        help="a mesh of a body of your own, FreeFEM's or gmsh's .msh; labels 1: may "
-        "touch, 2: symmetry axis, others: free, never touch",
+        help="a mesh of a body of your own, FreeFEM's or gmsh's .msh; labels 1: contact "
+        "boundary, 2: symmetry axis, others: free boundary without contact",
     )
     command.add_argument(
         "--checkpoint-every",

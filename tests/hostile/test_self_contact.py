@@ -89,7 +89,7 @@ def test_a_body_in_a_hole_that_may_not_touch(tmp_path):
     inside = tiny | {"position": [0, 0.001], "velocity": [0, -3]}
     given = PINCHED | {"body": [box_file(tmp_path, "outer"), inside], "obstacle": []}
     given["end_time"] = 9.5e-4
-    said = r"^body\.1\.file: 'box' comes to 'disc' with \(.*\) m, which may not touch"
+    said = r"^body\.1\.file: 'box' comes to 'disc' with \(.*\) m, which is no contact boundary"
     with pytest.raises(BadInput, match=said):
         assembly.prepare(read(given, tmp_path), tmp_path)
     assembly.prepare(read(given | {"end_time": 4e-4}, tmp_path), tmp_path)       # it ends before

@@ -193,7 +193,7 @@ def test_what_may_not_touch_is_refused_where_it_meets_a_plane(plane, tmp_path):
     prepared(tables(lower, **falls), plane, tmp_path / "3")
     prepared(tables(upper, **falls | {"end_time": 0.01}), plane, tmp_path / "4")
     prepared(tables(upper | {"angle": 180}, **falls), plane, tmp_path / "5")
-    said = (r"^body.1.file: 'block' comes to 'floor' with \(.*, -0.1\) m, which may not touch "
+    said = (r"^body.1.file: 'block' comes to 'floor' with \(.*, -0.1\) m, which is no contact boundary "
             ".*accepted: a file whose label 1, or physical group 'contact'")
     with pytest.raises(BadInput, match=said) as caught:
         prepared(tables(upper, **falls), plane, tmp_path / "6")
@@ -221,7 +221,7 @@ def test_a_disc_from_a_file_is_not_turned(tmp_path):
     assert found.bodies[0].outline.disc
     assert approach.turned(found).bodies[0].angle == pytest.approx(math.pi / 2)
     prepared(tables(body, obstacles=[wall]), tmp_path, tmp_path / "1")
-    with pytest.raises(BadInput, match="^body.1.file: .* which may not touch"):
+    with pytest.raises(BadInput, match="^body.1.file: .* which is no contact boundary"):
         prepared(tables(body | {"angle": -90}, obstacles=[wall]), tmp_path, tmp_path / "2")
 
 

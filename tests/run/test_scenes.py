@@ -291,7 +291,7 @@ def test_bodies_that_never_meet(tmp_path, dimension, shape, zeros):
     with pytest.raises(BadInput, match="^velocity: 0 of every body"):
         prepare(0)
     for more in ({}, {"gravity": 9.81}):                  # both fall alike
-        with pytest.raises(BadInput, match="^end_time: 0 is the end of the contact, but nothing ever touches"):
+        with pytest.raises(BadInput, match="^end_time: 0 is the end of the contact, but no bodies ever come into contact"):
             prepare(1, **more)
     assert not list(tmp_path.iterdir())
     prepare(1, end_time=0.01)
@@ -403,14 +403,14 @@ def test_what_a_scene_fixed_for_its_own_follows(name, given, opened, kept):
     assert all(used[entry] == value for entry, value in opened.items() if not isinstance(value, str))
     assert all(used[entry] == value == before.description()["used"][entry] for entry, value in kept.items())
     freed = set(opened) - set(given)
-    assert len(after.released) == len(freed) and all(any(said.startswith(f"{entry} is open again") for said in after.released) for entry in freed)
+    assert len(after.released) == len(freed) and all(any(said.startswith(f"{entry} is reset to automatic") for said in after.released) for entry in freed)
 
 
 def test_what_a_scene_of_bodies_fixed_follows():
     """The same of dotted names: coefficients in their table, sizes in their body, the penalty of any material; a pair's friction_static alone sets both, too."""
     bowl = scene.load("disc-bowl")
     after = bowl.override({"contact.friction_static": "0.3"})
-    assert after.contact["friction_dynamic"] == "auto" and after.released == ("contact.friction_dynamic is open again: the scene's 0.4 was for its own contact.friction_static",)
+    assert after.contact["friction_dynamic"] == "auto" and after.released == ("contact.friction_dynamic is reset to automatic: the value 0.4 of the scene belonged to its own contact.friction_static",)
     stiff = bowl.override({"contact.penalty": 1e9, "dt": 1e-4})
     assert not stiff.released and stiff.override({"body.1.velocity": [0, -1], "gravity": 1}).contact["penalty"] == 1e9
     for name, value in (("body.1.young", 1e6), ("young", 1e6), ("contact.exponent", 1.5)):

@@ -170,7 +170,7 @@ def test_answers_above_what_is_asked_are_named(name, times, also, named):
     """One sentence with name and per cent: promised answers and the one asked for above the accuracy, others above twice that."""
     estimated = dict.fromkeys([*estimate.USUAL, estimate.OF_ITSELF], 0.0) | {name: times * 0.01}
     sentences = estimate.excess(estimated, 0.01, also)
-    assert len(sentences) == named and all(f"{name.replace('_', ' ')} {times:.2g} %" in sentence and ", asked for 1 %: in all " in sentence for sentence in sentences)
+    assert len(sentences) == named and all(f"{name.replace('_', ' ')} {times:.2g} %" in sentence and ", requested 1 %: all above it: " in sentence for sentence in sentences)
 
 
 # ---- the runs
@@ -280,7 +280,7 @@ def test_what_stays_above_is_said(tmp_path, given):
     found = disc.settle(own_mesh)
     assert found["refinements"] == (estimate.MOST if disc.error > 1 else 0) == len(disc.asked) - 2
     warned, = found["warnings"]
-    assert re.fullmatch(r"estimated errors: \S.* %, asked for 1 %: in all impulse \S+ %.*: take .*", warned)
+    assert re.fullmatch(r"estimated errors: \S.* %, requested 1 %: all above it: impulse \S+ %.*: ask .*", warned)
     assert [notes.name(each) for each in found["notes"]] == ([] if own_mesh else ["mesh of the file"])   # which is not varied
     assert found["estimated_error"]["impulse"] > 0.01
     assert found["estimated_error_excludes"] == ["penalty", "slip_velocity", *([] if own_mesh else ["mesh"])]
@@ -335,7 +335,7 @@ def test_a_promised_answer_far_above_the_accuracy_is_a_warning(tmp_path, monkeyp
     found = disc.settle()
     for each in ("warnings", "notes"):
         assert [notes.name(one) for one in found[each]] == (["estimated errors"] if each == kind else [])
-        assert all(f"{name.replace('_', ' ')} {times:.2g} %, asked for 1 %" in one for one in found[each])
+        assert all(f"{name.replace('_', ' ')} {times:.2g} %, requested 1 %" in one for one in found[each])
 
 
 @pytest.mark.parametrize("transit, kind", [(None, "notes"), (1e-5, "warnings")])

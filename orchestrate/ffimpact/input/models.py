@@ -426,7 +426,7 @@ class Body(Entries):
     ] = None
     contact_mesh_size: Annotated[
         float | None,
-        shared("contact_mesh_size", "element size where it may touch; 0 = by accuracy"),
+        shared("contact_mesh_size", "element size at the contact boundary; 0 = from accuracy"),
     ] = None
     support: Annotated[list[Support] | None, BeforeValidator(several)] = None
     load: Annotated[list[Load] | None, BeforeValidator(several)] = None
@@ -778,7 +778,7 @@ class Contact(Entries):
             "word",
             None,
             "-",
-            "whether bodies may touch themselves",
+            "whether bodies may come into contact with themselves",
             words=("auto", "on", "off"),
         ),
     ] = None

@@ -185,8 +185,8 @@ ROWS = (
         1e-12,
         1e9,
         "m",
-        "epsilon of (14), the distance at which bodies touch pairwise; auto = an element where "
-        "they touch, or four times what the penalty yields",
+        "epsilon of (14), the range of the repulsion between pairs of points; auto = an element at "
+        "the contact, or four times the penetration that the penalty allows",
         ("disc-block", "bodies"),
     ),
     real(
@@ -258,7 +258,7 @@ ROWS = (
         0,
         1e9,
         "m",
-        "element size where the body can touch; 0 = from accuracy",
+        "element size at the contact boundary; 0 = from accuracy",
         FALLING,
     ),
     integer("degree", 2, 1, 2, "-", "polynomial degree of the displacement"),
@@ -274,9 +274,9 @@ ROWS = (
             "central-difference",
             "auto",
         ),
-        "time integrator; central-difference: explicit, a step in parts that the bodies' own "
-        "waves ask for, contact and friction solved in each; auto: central-difference or "
-        "energy-momentum, whichever is the cheaper by their counts",
+        "time integrator; central-difference: explicit, in substeps that resolve the waves in "
+        "the bodies, contact and friction solved in each; auto: central-difference or "
+        "energy-momentum, whichever is cheaper by the estimated number of operations",
     ),
     real("dt", 0, 0, 1e9, "s", "time step; 0 = adaptive"),
     real(
@@ -285,16 +285,16 @@ ROWS = (
         1e-5,
         0.4,
         "-",
-        "relative accuracy asked for: of impulse and thresholded contact time over themselves, "
-        "rebound velocities and spin over the speed, energies and friction work over the largest "
-        "energy; sets mesh and step where they are not given",
+        "requested relative accuracy: of impulse and thresholded contact time relative to themselves, "
+        "rebound velocities and spin relative to the speed, energies and friction work to the largest "
+        "energy; mesh and step that are not given follow from it",
     ),
     word(
         "accuracy_of",
         "promised",
         ("promised", "friction_work", "peak_force", "contact_time"),
-        "one answer more that the accuracy is asked for, over itself: these scatter more and cost"
-        " more",
+        "one more number to which the accuracy applies, relative to itself: it costs more"
+        " because these numbers scatter more",
     ),
     real(
         "tolerance",

@@ -177,7 +177,7 @@ SAME_STEPS = (
     "large for this scene: ask for a smaller accuracy"
 )
 FILE_MESH = (
-    "mesh of the file: estimated errors are those of the step: what the mesh is good for they do not say: "
+    "mesh of the file: error estimates are those of the time step: the error of the mesh is not included: "
     "run a finer one beside it"
 )
 OF_ITSELF = "friction_work of itself"  # accuracy_of = friction_work
@@ -720,8 +720,8 @@ def touches(fine: Mapping, coarse: Mapping) -> list[str]:
     return (
         [
             f"touches: contact intervals {seen}, with {COARSER:.1f} times larger elements and steps {other}: "
-            f"answers that are beyond the accuracy asked for are known to no more than that: look at contacts.csv for what each touch "
-            f"does, or ask for a smaller accuracy"
+            "the two runs have different intervals of contact, so results that miss the requested accuracy "
+            "have no smaller error: see contacts.csv, or ask for a smaller accuracy"
         ]
         if seen != other
         else []
@@ -745,8 +745,8 @@ def excess(estimated: Mapping[str, float], accuracy: float, also: str) -> list[s
     )
     return (
         [
-            f"estimated errors: {above[worst]}, asked for {100 * accuracy:g} %: in all {', '.join(above.values())}: "
-            "take these answers as known to no more, or ask for a smaller accuracy"
+            f"estimated errors: {above[worst]}, requested {100 * accuracy:g} %: "
+            f"all above it: {', '.join(above.values())}: ask for a smaller accuracy if you need these numbers"
         ]
         if above
         else []

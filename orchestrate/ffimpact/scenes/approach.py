@@ -342,7 +342,7 @@ def refuse_nothing(scene: Scene, met: list[Meeting]) -> None:
         and len(scene.bodies) + len(scene.obstacles) > 1
     ):
         raise BadInput(
-            "end_time: 0 is the end of the contact, but nothing ever touches: the bodies miss each other and every obstacle "
+            "end_time: 0 is the end of the contact, but no bodies ever come into contact: they miss each other and every obstacle "
             "(accepted: an end_time > 0, or velocities and positions that lead them together)"
         )
     for one in met if scene.values["end_time"] == 0 and scene.values["until"] != "rest" else []:
@@ -385,7 +385,7 @@ def refuse_sinking(scene: Scene, met: list[Meeting]) -> None:
             place = ", ".join(f"{x:.3g}" for x in placed[gaps.argmin()])
             raise BadInput(
                 f"body.{k + 1}.file: '{body.name}' comes to '{name}' with ({place}) "
-                f"m, which may not touch and would go through it (accepted: a file whose "
+                f"m, which is no contact boundary and would pass through the obstacle (accepted: a file whose "
                 f"label {mesh.FREE}, or physical group 'contact', is there, too)"
             )
 

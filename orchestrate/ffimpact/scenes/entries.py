@@ -88,7 +88,7 @@ def release(given: dict, names: list[str]) -> tuple[str, ...]:
                 value, name = table.pop(key), f"{path}.{key}".lstrip(".")
                 fixed = f"{value:g}" if isinstance(value, float) else brief(value)
                 said.append(
-                    f"{name} is open again: the scene's {fixed} was for its own {', '.join(found)}"
+                    f"{name} is reset to automatic: the value {fixed} of the scene belonged to its own {', '.join(found)}"
                 )
     return tuple(said)
 
