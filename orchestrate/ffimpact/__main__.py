@@ -185,8 +185,7 @@ def _run(options: argparse.Namespace) -> None:
     from .running import run
 
     wanted, given = scene.load(options.scene), parameters.overrides(options.set)
-    if "fields" not in wanted.given:
-        given.setdefault("fields", run.STATES)
+    given = run.states(wanted) | given
     if options.checkpoint_every:
         given["checkpoint_every"] = options.checkpoint_every
     with contextlib.redirect_stdout(None if options.quiet else sys.stdout):

@@ -74,8 +74,7 @@ def _wanted(scene: Scene | str | Path, given: dict[str, Any]) -> tuple[Any, Path
         raise BadInput(
             f"scene: '{scene}' is none (accepted: a Scene, the name of a built-in one, the path of a TOML file)"
         )
-    if "fields" not in wanted.given:
-        given.setdefault("fields", running.STATES)
+    given.update(running.states(wanted) | given)
     told = [scene.table() if isinstance(scene, Scene) else "", given]
     own = f"-{_digits(told)}" if isinstance(scene, Scene) else ""
     return wanted, RESULTS / f"{wanted.name}{own}"

@@ -89,7 +89,7 @@ class Plots:
         ax, series = _axes(ax), vtu.series(self.result.folder / "fields.pvd")
         if not series:
             raise Unreadable(
-                f"{self.result.folder}: has no states (accepted: a run with fields = 20, say)"
+                f"{self.result.folder}: has no states (accepted: a run with fields = 20, for example)"
             )
         if time is None:
             time = float(self.result.history.t[self.result.history.normal_force.idxmax()])

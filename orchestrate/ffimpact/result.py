@@ -235,7 +235,7 @@ class Fields(Sequence["pyvista.UnstructuredGrid"]):
             raise NotInstalled("fields: need pyvista; install it: pip install pyvista") from None
         if not self.series:
             raise Unreadable(
-                f"{self.folder}: has no states (accepted: a run with fields = 20, say)"
+                f"{self.folder}: has no states (accepted: a run with fields = 20, for example)"
             )
         return pyvista.read(self.series[index][1])
 

@@ -183,8 +183,7 @@ def _states(result: Result, revolved: bool) -> States:
     else:
         mirrored = is_half(result.scene) or of_revolution
         kind, shown = "plane", _section(vtu.read(series[0][1]), mirrored)
-    reader = vtu.read_solid if solid else vtu.read
-    found = [reader(path) for _, path in series]
+    found: list[Any] = [(vtu.read_solid if solid else vtu.read)(path) for _, path in series]
     places = np.array(
         [shown.places(_three(one.points) + _three(one.fields["displacement"])) for one in found]
     )
@@ -212,13 +211,15 @@ class Shown:
 
     def values(self, field: np.ndarray) -> np.ndarray:
         """A field (nodes, ...) at the vertices."""
-        return (self.skin.at(field) if self.skin else field)[self.nodes]
+        at_vertices: np.ndarray = (self.skin.at(field) if self.skin else field)[self.nodes]
+        return at_vertices
 
     def places(self, places: np.ndarray) -> np.ndarray:
         """The places (vertices, 3) [m] of the vertices."""
         x, y, z = self.values(places).T
         turned = [np.cos(self.angle) * x, y, np.sin(self.angle) * x + z]
-        return np.stack(turned, axis=1) * self.mirror
+        found: np.ndarray = np.stack(turned, axis=1) * self.mirror
+        return found
 
 
 def _section(state: vtu.Snapshot, mirrored: bool) -> Shown:
@@ -342,9 +343,9 @@ def _obstacle(k3d: Any, one: Obstacle, kind: str, low: np.ndarray, high: np.ndar
         lines = contour_generator(x, y, gap).lines(0.0)
         if not lines:
             return None
-        longest = max(lines, key=len)
+        longest = max((np.asarray(line) for line in lines), key=len)
         return k3d.line(
-            _three(np.asarray(longest)).astype(np.float32),
+            _three(longest).astype(np.float32),
             shader="mesh",
             width=0.012 * margin * 4,
             color=0x606060,

@@ -49,9 +49,9 @@ from ..scene import Scene
 from ..scenes.bodies import SIZES
 from .solver import FAILURES, USED, Solver, runs
 
-__all__ = ["ENTRANCE", "HARMLESS", "STATES", "code_hash", "commit", "imported", "reusable", "run"]
+__all__ = ["ENTRANCE", "HARMLESS", "states", "code_hash", "commit", "imported", "reusable", "run"]
 
-STATES = 60  # kept of a run for figures and the player where the scene does not say how many
+STATES = 60  # kept of a run by default, for figures and the player
 ENTRANCE = (
     "scenes/assembly"  # the module that makes flags, mesh and scene.dat, with all that it imports
 )
@@ -149,6 +149,14 @@ def run(
         _finish(stage, scene, found | {"total_seconds": time.monotonic() - started}, provenance)
         _put(stage, folder, scene, mesh_file)
     return Record(folder, read_summary(folder), reused=False)
+
+
+def states(scene: Scene) -> dict[str, Value]:
+    """The entry `fields` that a scene leaves open; a case of the paper has 0 there by default."""
+    open_or_none = (
+        scene.given.get("fields", 0) == 0 if not scene.bodies else "fields" not in scene.given
+    )
+    return {"fields": STATES} if open_or_none else {}
 
 
 def _put(stage: Path, folder: Path, scene: Scene, mesh_file: Path | None) -> None:
