@@ -40,7 +40,7 @@ def test_the_peak_of_a_face_that_strikes_flat_is_named(tmp_path, change):
     if warned:
         speed = -(block | change)["velocity"][1]
         exact = 0.2 * speed * math.sqrt(1000 * 7e6 * 0.7 / (1.3 * 0.4))
-        assert float(re.search(r"transit is at most (\S+) N/m", flat)[1]) == pytest.approx(exact, rel=0.2) and found.summary["peak_force"] > 1.8 * exact
+        assert float(re.search(r"is at most (\S+) N/m", flat)[1]) == pytest.approx(exact, rel=0.2) and found.summary["peak_force"] > 1.8 * exact
         (tmp_path / "open").mkdir()
         open_one = go(tmp_path / "open", block | change, FLOOR, accuracy=0.02, density=1000)
         assert open_one.summary["peak_force"] == pytest.approx(exact, rel=0.2) and not said(open_one, "peak force")
@@ -80,7 +80,7 @@ def test_a_peg_between_the_points_is_measured_and_named(tmp_path):
     found = go(tmp_path, coarse, [FLOOR | {"point": [0, -1]}, peg(0.001)], end_time=0.01)
     assert found.summary["max_penetration"] == pytest.approx(0.03, abs=0.003)
     (small,), (deep,) = said(found, "small obstacle"), said(found, "penetration")
-    assert "disc and peg meet where its radius is 0.001 m" in small and "so far disc and peg overlap" in deep
+    assert small.startswith("small obstacle: disc and peg ") and "radius is 0.001 m" in small and "disc and peg overlap" in deep
 
 
 def test_a_spike_is_measured_and_named(tmp_path):
@@ -88,7 +88,7 @@ def test_a_spike_is_measured_and_named(tmp_path):
     spike = {"name": "spike", "kind": "polyline", "closed": True, "vertices": [[0, 0.015], [0.01, -0.1], [-0.01, -0.1]]}
     found = go(tmp_path, DISC | {"position": [0.004, 0.0661]}, spike, end_time=0.002)
     (sentence,) = said(found, "sharp corner")
-    assert "disc and spike meet at one without a rounding" in sentence and found.summary["max_penetration"] > 0.004
+    assert sentence.startswith("sharp corner: disc and spike ") and found.summary["max_penetration"] > 0.004
 
 
 def test_a_square_touches_with_its_corner_when_it_does(tmp_path):
@@ -124,7 +124,7 @@ def test_crossed_edges_are_measured_and_named(tmp_path):
     overlap = 2 * 0.0008 - (0.0712 - 0.05 * math.sqrt(2))
     assert found.summary["max_penetration"] == pytest.approx(overlap / math.sqrt(2), rel=0.02)
     (sentence,) = said(found, "unseen contact")
-    assert "upper and lower overlap by" in sentence and "in between contact points" in sentence
+    assert sentence.startswith("unseen contact: upper and lower ") and "contact_mesh_size" in sentence
 
 
 @pytest.mark.parametrize("dimension, kind", [("plane-strain", "circle"), ("axisymmetric", "sphere"), ("3d", "sphere")])
@@ -205,7 +205,7 @@ def test_a_body_that_is_pressed_through_a_thin_obstacle_is_named(tmp_path, thick
     found = go(tmp_path, {"name": "disc", "shape": "disc", "radius": 0.05, "position": [0, 0.06], "velocity": [0, -20]}, {"name": "plate"} | obstacle(thickness))
     assert (found.summary["rebound_vy"] < 0) == through == bool(said(found, "through"))
     if through:
-        assert "points went through plate" in said(found, "through")[0]
+        assert "plate (" in said(found, "through")[0]
 
 
 @pytest.mark.parametrize("shape, kind", [({"shape": "rectangle", "width": 0.2, "height": 0.1}, "warnings"), ({"shape": "disc", "radius": 0.05}, "notes")])

@@ -45,7 +45,7 @@ def errors(record: Record) -> dict[str, float]:
     found: dict[str, float] = {
         name: share[name] * abs(summary[name])
         for name in share
-        if name in OF_ITSELF or name.startswith("support_peak") and summary.get(name)
+        if (name in OF_ITSELF or name.startswith("support_peak")) and summary.get(name) is not None
     }
     found |= {
         name: share.get(name, 0.0) * energy
