@@ -83,7 +83,7 @@ docs: .venv/.docs ## the documentation as a site, with the gallery of examples: 
 	@$(PYTHON) -m pip install -q --disable-pip-version-check -e ".[docs]"
 	@touch $@
 
-pictures: disc-normal disc-oblique ## the pictures of README.md and docs/index.md, drawn again from the present runs
+pictures: $(READY) ## the animation of README.md and docs/index.md, made again
 	@$(PYTHON) -m ffimpact movie disc-oblique --frames 40 --format gif
 	@$(PYTHON) docs/pictures.py
 

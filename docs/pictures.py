@@ -1,4 +1,4 @@
-"""The pictures of README.md and the animation of docs/index.md: `make pictures`."""
+"""The animation of README.md and docs/index.md, from the film of disc-oblique: `make pictures`."""
 
 import sys
 from pathlib import Path
@@ -6,25 +6,14 @@ from pathlib import Path
 from PIL import Image, ImageSequence
 
 from ffimpact.places import RESULTS, ROOT
-from ffimpact.report import drawing
 
-PICTURES = {
-    "picture.png": ("disc-normal", "shapes"),
-    "picture-oblique.png": ("disc-oblique", "flight"),
-}
-FILM, WIDTH, DURATION = (
-    Path("movies/disc-oblique/disc-oblique.gif"),
-    460,
-    90,
-)  # of a frame: pixels, ms
+FILM = Path("movies/disc-oblique/disc-oblique.gif")
+WIDTH = 460  # pixels
+DURATION = 90  # of a frame [ms]
 
 
 def main() -> int:
-    """Draws all of them."""
-    for name, (scene, figure) in PICTURES.items():
-        drawing.draw(RESULTS / scene)
-        picture = Image.open(RESULTS / scene / f"figures/{figure}.png").convert("RGB")
-        picture.quantize(256).save(ROOT / name, optimize=True)
+    """Writes docs/_static/impact.webp."""
     film = Image.open(RESULTS / FILM)
     size = (WIDTH, round(film.height * WIDTH / film.width))
     first, *others = [

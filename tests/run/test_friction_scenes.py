@@ -1,17 +1,12 @@
 """Scenes with friction: that they load, run, are reported and drawn as the paper's figures 4 to 6 are."""
 
-import os
 import re
-import shutil
-import subprocess
-import sys
 
 import numpy as np
 import pytest
 
 from ffimpact import scene
 from ffimpact.__main__ import main
-from ffimpact.input import parameters
 from ffimpact.output import results, vtu
 from ffimpact.report import compare, drawing, figures, report
 from ffimpact.running import run
@@ -132,16 +127,3 @@ def test_study_of_another_scene(fake, tmp_path):
     study.study([{"speed": 5.0}], tmp_path, {"fields": 0}, 30.0)
     used = {folder.name: results.read_scene(folder) for folder in (tmp_path / "runs").iterdir()}
     assert used["speed=4.0"]["friction_static"] == 0.7 and used["speed=5.0"]["friction_static"] == 0
-
-
-@pytest.mark.robustness
-def test_the_pictures_of_the_readme_are_drawn_again(oblique, tmp_path):
-    """make pictures draws them by the present program, whatever pictures the folders of the runs have."""
-    for name in ("disc-normal", "disc-oblique"):
-        shutil.copytree(oblique.folder, tmp_path / "results" / name)
-        for path in (tmp_path / "results" / name / "figures").iterdir():
-            path.write_bytes(b"an older picture")
-    recipe = subprocess.run(["make", "-n", "pictures"], cwd=parameters.ROOT, capture_output=True, text=True).stdout
-    command = re.search(r'^\S+ (-c ".*")\s*$', recipe, re.MULTILINE | re.DOTALL)[1]
-    subprocess.run(f"{sys.executable} {command}", shell=True, cwd=tmp_path, check=True, env=os.environ | {"PYTHONPATH": str(parameters.ROOT)})
-    assert all(figures.plt.imread(tmp_path / name).std() > 0 for name in ("picture.png", "picture-oblique.png"))

@@ -102,11 +102,13 @@ def rows(per: str) -> list[Quantity]:
         Quantity("external_work", "external work", f"J{per}"),
         Quantity("translation_energy", "left in translation", f"J{per}"),
         Quantity("rotation_energy", "  in rotation", f"J{per}"),
-        Quantity("vibration_energy", "  in vibration", f"J{per}"),
+        Quantity("vibration_energy", "  left in vibration", f"J{per}"),
         Quantity("friction_work", "lost to friction", f"J{per}"),
         Quantity("creep_work", "  of it in creep", f"J{per}"),
         Quantity("viscous_work", "lost to viscosity", f"J{per}"),
-        Quantity("energy_drift", "energy drift", "of the start or the touch", digits=".1e"),
+        Quantity(
+            "energy_drift", "energy drift", "of the energy at the start or at contact", digits=".1e"
+        ),
         Quantity("max_penetration", "largest penetration", "mm", 1e3, ".3g"),
         Quantity("min_jacobian", "smallest det F", digits=".3f"),
         Quantity("min_stretch", "smallest stretch", digits=".3f"),
@@ -255,7 +257,7 @@ def report(result: Record, verbose: bool = False) -> str:
     if scene.get("fields"):
         lines.append(f"  player    ffimpact view {place}")
     if not verbose:
-        lines.append(f"  all of it {place}/summary.json, ffimpact run --verbose")
+        lines.append(f"  more      {place}/summary.json, ffimpact run --verbose")
     return "\n".join(lines)
 
 
