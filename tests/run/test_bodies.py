@@ -239,7 +239,7 @@ BAD = [
     ([("contact.pair", 3)], "contact.pair: '3' is no list of tables (accepted: [[contact.pair]])"),
     ([("contact.pair", [{"penalty": 1e9}])], "contact.pair.1.bodies: '' is no pair (accepted: two names, one at least of a body, of disc, block, floor)"),
     ([("contact.pair", [{"bodies": ["disc", "ball"]}])], "contact.pair.1.bodies: 'ball' is not in the scene (accepted: two names, one at least of a body, of disc, block, floor)"),
-    ([("contact.pair", [{"bodies": ["floor", "floor"]}])], "contact.pair.1.bodies: '['floor', 'floor']' cannot touch each other"),
+    ([("contact.pair", [{"bodies": ["floor", "floor"]}])], "contact.pair.1.bodies: '['floor', 'floor']' cannot come into contact with each other"),
     ([("contact.pair", [{"bodies": ["disc", "block"]}, {"bodies": ["block", "disc"]}])], "contact.pair.2.bodies: '['block', 'disc']' has a table already"),
     ([("contact.pair", [{"bodies": ["disc", "block"], "exponent": 2}])],
      "contact.pair.1.exponent: '2' holds for the whole scene (accepted: in [contact]; here penalty, friction_static, friction_dynamic)"),

@@ -102,7 +102,7 @@ BAD = {
     "hole unlisted": (square(triangles=TRIANGLES[:3] + TRIANGLES[4:]), "on the boundary but not among the boundary edges"),
     "two bodies": (square(POINTS + APART[0], TRIANGLES + APART[1], EDGES + APART[2]), "2 bodies that are apart (accepted: one piece)"),
     "by a point": (square(POINTS + BY_A_POINT[0][1:], TRIANGLES + BY_A_POINT[1], EDGES + BY_A_POINT[2]), "vertex 9 at (0.1, 0.1) has 4 boundary edges: the body hangs together by a point"),
-    "nothing may touch": (square(edges=[edge[:-1] + "7" for edge in EDGES]), "no boundary edge has the label 1 of what may touch, but labels from 7 to 7"),
+    "nothing may touch": (square(edges=[edge[:-1] + "7" for edge in EDGES]), "no boundary edge has the label 1 of the contact boundary, but labels from 7 to 7"),
     "other units": (square(points=[f"{1e3 * float(x)} {1e3 * float(y)} 0" for x, y, _ in map(str.split, POINTS)]), "is 100 m wide but radius is 0.05 m: other units?"),
     "tiny": (square(points=[f"{1e-3 * float(x)} {1e-3 * float(y)} 0" for x, y, _ in map(str.split, POINTS)]), "is 0.0001 m wide but radius is 0.05 m: other units?"),
     "slanted axis": (square(edges=changed(EDGES, 1, "1 2 2")), "boundary edge 1 (vertices 1, 2) has the label 2 of the symmetry axis but does not lie on the vertical line x = 0"),

@@ -1,5 +1,6 @@
 """The Python interface: scenes as models, runs, sweeps, comparisons, figures."""
 
+import inspect
 import json
 
 import numpy as np
@@ -138,3 +139,11 @@ def test_each_exit_code_has_its_exception():
 def test_the_command_prints_the_schema(capsys):
     assert main(["schema"]) == 0
     assert json.loads(capsys.readouterr().out) == schema.schema()
+
+
+def test_help_lists_the_entries_with_their_units():
+    """A notebook shows the constructor's entries, what they mean, and which are needed."""
+    told = inspect.signature(ff.Disc).parameters
+    assert "[m]" in told["radius"].annotation and told["radius"].default is inspect.Parameter.empty
+    assert told["material"].default is None and "[m/s]" in told["velocity"].annotation
+    assert "bodies" in inspect.signature(ff.Scene).parameters

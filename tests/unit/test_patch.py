@@ -25,7 +25,7 @@ def test_rings_are_means_over_the_surface():
     table = cloud(1, 0.0)
     own, words, states = contact._radial(table, None)
     now = own[own.t == 1e-3]
-    assert words == "distance from the first touch" and states == contact.SLIDES
+    assert words == "distance from the first contact point" and states == contact.SLIDES
     np.testing.assert_allclose(now.pressure, 1e6 * np.sqrt(1 - (1e3 * now.s) ** 2), atol=1e5)
     assert (now.state[now.s > 0.75e-3] == 1).all() and (now.state[now.s < 0.65e-3] == 0).all()
 

@@ -8,6 +8,7 @@ An entry that is None is left open: the program chooses it. Units are SI.
 from __future__ import annotations
 
 from functools import partial
+from inspect import Parameter as Keyword, Signature
 from typing import Annotated, Any, ClassVar, Self
 
 from pydantic import (
@@ -18,6 +19,7 @@ from pydantic import (
     ValidationError,
     model_validator,
 )
+from pydantic.fields import FieldInfo
 
 from ..failure import BadInput, brief, gathered, suggestion, unknown
 from .dimension import AXISYMMETRIC, DIMENSIONS, PLANE_STRAIN, SOLID, Dimension
@@ -120,6 +122,28 @@ class _Made(type(BaseModel)):  # type: ignore[misc]
             raise BadInput(*_lines(cls, error, cls.__name__, ": ", None)) from None
         made._given = given
         return made
+
+    @property
+    def __signature__(cls) -> Signature:
+        """The entries as keywords, each with its unit and meaning: for help() and notebooks."""
+        keywords = [_keyword(*one) for one in cls.model_fields.items() if not one[1].exclude]
+        if issubclass(cls, Body):
+            own = Keyword("material", Keyword.KEYWORD_ONLY, default=None, annotation="a Material")
+            keywords.insert(1, own)
+        return Signature(keywords)
+
+    @__signature__.setter
+    def __signature__(cls, made: Any) -> None:
+        """That of pydantic has types alone."""
+
+
+def _keyword(name: str, field: FieldInfo) -> Keyword:
+    """An entry of a model as a keyword of its constructor."""
+    rules = [one for one in field.metadata if isinstance(one, Rule)]
+    text = rules[0].meaning if rules else field.description or ""
+    default = Keyword.empty if field.is_required() else field.get_default()
+    annotation = text or Keyword.empty
+    return Keyword(name, Keyword.KEYWORD_ONLY, default=default, annotation=annotation)
 
 
 class Entries(BaseModel, metaclass=_Made):

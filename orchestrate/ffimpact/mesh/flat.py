@@ -160,13 +160,13 @@ def mesh_file(body: Mesh, folder: Path, script: str) -> mesh.Mesh:
             elif script == "disc-plane" and (found.labels == mesh.AXIS).any():
                 raise BadInput(
                     f"mesh: '{brief(name)}' has edges with the label {mesh.AXIS} of a symmetry axis (accepted: whole bodies, "
-                    f"labels {mesh.FREE}: may touch, 3 and more: never touch)"
+                    f"labels {mesh.FREE}: contact boundary, 3 and more: free boundary without contact)"
                 )
             size = float(np.ptp(found.points, axis=0).max()) if len(found.points) else 0.0
             if size and not (found.labels == mesh.FREE).any():
                 raise BadInput(
-                    f"mesh: {file.name}: no boundary edge has the label {mesh.FREE} of what "
-                    f"may touch, but labels from {found.labels.min()} to "
+                    f"mesh: {file.name}: no boundary edge has the label {mesh.FREE} of the "
+                    f"contact boundary, but labels from {found.labels.min()} to "
                     f"{found.labels.max()}"
                 )
             # as if all of it may touch: that script has a plane below, which this scene may not

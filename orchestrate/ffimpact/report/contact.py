@@ -204,7 +204,7 @@ def _radial(
     else:
         away, words, states, slip = (
             np.abs(points.s),
-            "distance from the first touch",
+            "distance from the first contact point",
             SLIDES,
             np.ones(len(points)),
         )

@@ -174,7 +174,7 @@ def _tell_accuracy(path: Path, asked: float) -> None:
     """
     used = read_scene(path.parent)["accuracy"]
     if not math.isclose(used, asked):
-        why = f"   # asked for: {asked:g}; this one, with the sizes of mesh and steps, for the estimated error\n"
+        why = f"   # requested: {asked:g}; mesh and steps are those of this value, for the estimated error\n"
         path.write_text(
             re.sub(r"(?m)^(accuracy = \S+)\n", rf"\1{why}", path.read_text("utf-8"), count=1),
             "utf-8",

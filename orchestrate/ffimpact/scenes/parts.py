@@ -259,7 +259,7 @@ def _refuse_touching(
         gap = other.placed.gap(points) if isinstance(other, Body) else other.gap(points)
         if gap.min() <= near:
             raise BadInput(
-                f"{part.entry}: the part touches '{other.name}' at the start (accepted: a part that nothing touches)"
+                f"{part.entry}: the part is in contact with '{other.name}' at the start (accepted: a part without contact)"
             )
 
 

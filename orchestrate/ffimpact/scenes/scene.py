@@ -458,7 +458,9 @@ def _partners(path: str, given, index: dict[str, int]) -> tuple[int, int]:
             raise BadInput(f"{path}.bodies: '{brief(name)}' is not in the scene ({accepted})")
     first, second = sorted((index[name] for name in given), key=lambda k: (k < 0, abs(k)))
     if first < 0:
-        raise BadInput(f"{path}.bodies: '{brief(given)}' cannot touch each other ({accepted})")
+        raise BadInput(
+            f"{path}.bodies: '{brief(given)}' cannot come into contact with each other ({accepted})"
+        )
     return first, second
 
 
