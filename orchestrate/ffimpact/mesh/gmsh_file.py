@@ -93,7 +93,8 @@ def taken(model) -> mesh.Mesh:
         if not (labels == mesh.FREE).any():
             raise BadInput(
                 f"none of its physical curves ({_names(model)}) has the name 'contact', or without a name the number "
-                f"{mesh.FREE}, on its boundary: the body has no contact boundary (accepted: a curve with this name or number, or no physical curve)"
+                f"{mesh.FREE}, on its boundary: the body has no contact boundary "
+                "(accepted: a curve with this name or number, or no physical curve)"
             )
     return mesh.Mesh(points, triangles, edges, labels)
 
