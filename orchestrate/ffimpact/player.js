@@ -1,21 +1,26 @@
 // The player of a run, on the k3d plot K3DInstance: play, slider, choice of the field, and the
-// cursor of the figure. `RUN` holds: id of the mesh; times [s]; vertices, the places of all states as
-// uint16 shares of the box at `low` [m] of size `extent` [m]: (states, n, 3); fields, each with name,
-// label, low and high; values by name, uint8 shares of low ... high: (states, n); obstacles, each with
-// id and velocity [m/s]; cursor: where in the figure its time axis begins and ends, and at what times.
+// cursor of the figure. `RUN` holds
+//   id of the mesh; times [s]; start, the state that is shown at first; seconds of the animation
+//   vertices, places of all states as uint16 shares of the box at `low` [m] of size `extent` [m]:
+//     (states, n, 3)
+//   fields, each with name, label, low, high; values by name, uint8 shares of low ... high: (states, n)
+//   obstacles, each with id and velocity [m/s]
+//   cursor: where in the figure its time axis begins and ends, and at what times [s]
 // Arrays are compressed differences between one state and the next.
 const world = K3DInstance.getWorld();
 const element = (name, attributes = {}) => Object.assign(document.createElement(name), attributes);
 
 function unpacked(text, Kind) {
-  const data = new Kind(fflate.unzlibSync(Uint8Array.from(atob(text), (c) => c.charCodeAt(0))).slice().buffer);
+  const packed = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+  const data = new Kind(fflate.unzlibSync(packed).slice().buffer);
   const size = data.length / RUN.times.length;
   for (let k = size; k < data.length; k++) data[k] += data[k - size];
   return data;
 }
 
 const vertices = unpacked(RUN.vertices, Uint16Array);
-const shares = Object.fromEntries(RUN.fields.map((one) => [one.name, unpacked(RUN.values[one.name], Uint8Array)]));
+const shares = {};
+for (const { name } of RUN.fields) shares[name] = unpacked(RUN.values[name], Uint8Array);
 const n = vertices.length / RUN.times.length / 3;
 
 function places(state) { // deformed places (n, 3) [m]
@@ -34,11 +39,13 @@ function values(field, state) { // (n,) of the field, in its unit
 
 const controls = element("div", { id: "controls" });
 const play = element("button", { id: "play", textContent: "▶", title: "play or stop" });
-const slider = element("input", { id: "state", type: "range", min: 0, max: RUN.times.length - 1, value: 0 });
+const slider = element("input", { id: "state", type: "range", min: 0, max: RUN.times.length - 1 });
+slider.value = RUN.start;
 const choice = element("select", { id: "field", title: "field" });
 const clock = element("span", { id: "clock" });
 const legend = element("span", { id: "legend" });
-for (const one of RUN.fields) choice.append(element("option", { value: one.name, textContent: one.label }));
+for (const { name, label } of RUN.fields)
+  choice.append(element("option", { value: name, textContent: label }));
 choice.value = RUN.field;
 controls.append(play, slider, clock, choice, legend);
 document.body.append(controls);
@@ -54,7 +61,8 @@ function show() {
     if (!one.velocity.some((v) => v)) continue;
     const obstacle = world.ObjectsListJson[one.id];
     const [x, y, z] = one.velocity.map((v) => v * t);
-    obstacle.model_matrix = { data: new Float32Array([1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z, 0, 0, 0, 1]), shape: [4, 4] };
+    const matrix = [1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z, 0, 0, 0, 1];
+    obstacle.model_matrix = { data: new Float32Array(matrix), shape: [4, 4] };
     K3DInstance.reload(obstacle, null, true);
   }
   clock.textContent = `${(1e3 * t).toPrecision(4)} ms`;

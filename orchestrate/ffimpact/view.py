@@ -139,6 +139,7 @@ def view(
         "obstacles": obstacles,
         "field": field,
         "seconds": SECONDS,
+        "start": int(np.argmin(abs(states.times - _of_largest_force(result)))),
         "cursor": cursor,
     }
     code = f"const RUN = {json.dumps(run)};\n{(PACKAGE / 'player.js').read_text('utf-8')}"
@@ -380,6 +381,11 @@ def _camera(kind: str, low: np.ndarray, high: np.ndarray) -> list[float]:
     towards = {"plane": (0, 0, 1), "revolved": (0.9, 0.45, -1.0), "space": (0.35, 0.3, 1)}[kind]
     eye = centre + 3.2 * size * np.array(towards) / np.linalg.norm(towards)
     return [*eye.tolist(), *centre.tolist(), 0, 1, 0]
+
+
+def _of_largest_force(result: Result) -> float:
+    """The time [s] of the largest normal force: what is shown at first."""
+    return float(result.history.t[result.history.normal_force.idxmax()])
 
 
 def _figure(result: Result) -> tuple[str, dict[str, float]]:
