@@ -174,7 +174,7 @@ def sweep(
     wanted, place = _wanted(scene, given)
     points = [dict(zip(values, combination)) for combination in itertools.product(*values.values())]
     told = {name: list(one) for name, one in values.items()}
-    folder = Path(out) if out else place.with_name(f"{place.name}-sweep-{_digits(told)}")
+    folder = Path(out) if out else place.with_name(f"{place.name}-sweep-{_digits([told, given])}")
     scenes = [wanted.override(given | point) for point in points]  # BadInput before anything is run
     folder.mkdir(parents=True, exist_ok=True)
     acts = {
