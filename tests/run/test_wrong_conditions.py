@@ -43,6 +43,7 @@ WRONG = {
     "key of a region": (held(where=BOX | {"low": [0, 0], "hihg": [1, 1]}), "where.hihg: no such entry, set to '[1, 1]'; did you mean high?"),
     "touching": (held(BAR | {"position": [0, 0.025]}, {"obstacle": [FLOOR]}, where="bottom"),
                  "body.1.support.1.where: the part is in contact with 'floor' at the start (accepted: a part without contact)"),
+    "constant motion": (moved(0, 0.001), "body.1.support.1.motion.2: 0.001 does not change in time"),
     "pole": (moved(0, "1/(t-0.0025)"), "body.1.support.1.motion.2: '1/(t-0.0025)' is inf, its slope nan, at t = 0.0025 s"),
     "pole elsewhere": (moved(0, "1/(t-0.0013)"), "at t = 0.0013 s (accepted: a number and a finite slope at all times)"),
     "jump": (moved(0, "abs(t-0.0013)/(t-0.0013)"), "motion.2: 'abs(t-0.0013)/(t-0.0013)' jumps, or has no limit, at t = 0.0013 s"),

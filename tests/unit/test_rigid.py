@@ -29,7 +29,8 @@ def test_all_rigid_needs_a_penalty(tmp_path, capsys):
 @pytest.mark.parametrize("entries, named", [
     ('motion = [0, "1/t"]', "obstacle.1.motion.2"), ("motion = 3", "obstacle.1.motion"), ("pivot = [0, 0]", "obstacle.1.pivot"),
     ('rotation = "10*t"\nvelocity = [0, -1]', "obstacle.1.velocity"), ('rotation = "u"', "obstacle.1.rotation"),
-    ('rotation = "10*t"\naxis = [0, 0, 1]', "obstacle.1.axis")])
+    ('rotation = "10*t"\naxis = [0, 0, 1]', "obstacle.1.axis"), ('rotation = 20', "obstacle.1.rotation: 20 does not change"),
+    ('motion = [0, "0.1*2"]', "obstacle.1.motion.2: 0.2 does not change")])
 def test_wrong_motions(tmp_path, capsys, entries, named):
     """One line that names the entry, exit code 10."""
     file = tmp_path / "scene.toml"

@@ -17,7 +17,16 @@ from ..failure import BadInput, brief
 from ..input.rules import LONGEST
 from . import implicit
 
-__all__ = ["TimeFunction", "constant", "farthest", "functions", "of_csv", "of_entry", "of_table"]
+__all__ = [
+    "TimeFunction",
+    "constant",
+    "displacements",
+    "farthest",
+    "functions",
+    "of_csv",
+    "of_entry",
+    "of_table",
+]
 
 CLOSE = 1e-8  # error of an expression's polynomials over its largest value
 STEEPEST = 1e30  # 1/s: a slope beyond is none
@@ -161,6 +170,23 @@ def functions(entry: str, given: object, names: str, end_time: float) -> tuple[T
         of_entry(f"{entry}.{k}" if len(names) > 1 else entry, one, end_time)
         for k, one in enumerate(given, 1)
     )
+
+
+def displacements(
+    entry: str, given: object, names: str, end_time: float
+) -> tuple[TimeFunction, ...]:
+    """The same for a motion, which counts from its value at t = 0. BadInput where a component is a
+    number other than 0: it would have no effect.
+    """
+    found = functions(entry, given, names, end_time)
+    for k, one in enumerate(found, 1):
+        if len(one.knots) == 1 and not one.is_zero:
+            name = f"{entry}.{k}" if len(names) > 1 else entry
+            raise BadInput(
+                f"{name}: {one.knots[0, 1]:g} does not change in time, and a motion counts from its value "
+                f"at t = 0 (accepted: 0, or a function of t, '0.1*t'; place or turn the part itself)"
+            )
+    return found
 
 
 def farthest(way: Sequence[TimeFunction], until: float = np.inf) -> tuple[np.ndarray, float]:

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..failure import BadInput, gathered, unknown
 from ..geometry import time_functions
-from ..geometry.time_functions import TimeFunction, farthest, functions
+from ..geometry.time_functions import TimeFunction, displacements, farthest, functions
 from ..input import models
 from ..input.dimension import Dimension
 from ..input.models import listed
@@ -167,7 +167,7 @@ def _support(table: models.Support, of: Dimension, end_time: float) -> Support:
     fixed = tuple(fix in ("all", axis) for axis in axes)
     motion = (time_functions.constant(0.0),) * of.axes
     if table.motion is not None:
-        motion = functions(table.at("motion"), table.motion, axes, end_time)
+        motion = displacements(table.at("motion"), table.motion, axes, end_time)
         for axis, one, held in zip(axes, motion, fixed):
             if not (held or fix == "normal") and not one.is_zero:
                 raise BadInput(

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..failure import BadInput, gathered
 from ..geometry import implicit, polyline, time_functions, tumbling
-from ..geometry.time_functions import TimeFunction, farthest, functions
+from ..geometry.time_functions import TimeFunction, displacements, farthest
 from ..input import models
 from ..input.dimension import AXISYMMETRIC, SOLID, Dimension
 from ..input.rules import Vector, placeholder
@@ -156,10 +156,10 @@ def _drive(table: models.Obstacle, of: Dimension, end_time: float) -> Drive | No
     if "axis" in table and of is not SOLID:
         raise BadInput(f"{table.at('axis')}: is of three dimensions (accepted: without it, about z)")
     none = time_functions.constant(0.0)
-    way = (none,) * of.axes if table.motion is None else functions(table.at("motion"), table.motion, "xyz"[:of.axes], end_time)
+    way = (none,) * of.axes if table.motion is None else displacements(table.at("motion"), table.motion, "xyz"[:of.axes], end_time)
     if of is AXISYMMETRIC and not way[0].is_zero:
         raise BadInput(f"{table.at('motion')}.1: leaves the axis of revolution (accepted: 0)")
-    degrees = none if table.rotation is None else functions(table.at("rotation"), table.rotation, "r", end_time)[0]
+    degrees = none if table.rotation is None else displacements(table.at("rotation"), table.rotation, "r", end_time)[0]
     turn = replace(degrees, knots=degrees.knots * [1.0, np.pi / 180, np.pi / 180])
     axis = np.array(table.axis or [0.0, 0.0, 1.0])
     if not axis.any():
