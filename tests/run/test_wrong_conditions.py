@@ -87,7 +87,7 @@ WRONG = {
     "nothing moves": (held(top={"end_time": 0}, where="left"), "nothing would ever move"),
     "across what is round": (held(RING, where="outer", fix="normal"), "fix: 'normal', but the part is not flat across x, y or z (accepted: all, x, y,"),
     "across what is tilted": (held(BAR | {"angle": 30}, where="left", fix="normal"), "fix: 'normal', but the part is not flat across"),
-    "free component": (held(where="left", fix="x", motion=[0, 1e-3]), "motion: moves along y, which fix = 'x' leaves free"),
+    "free component": (held(where="left", fix="x", motion=[0, "1e-3*t"]), "motion: moves along y, which fix = 'x' leaves free"),
     "fix": (held(where="left", fix="z"), "body.1.support.1.fix: 'z' is not known (accepted: all|x|y|normal)"),
     "key of a support": (held(where="left", moton=[0, 0]), "body.1.support.1.moton: no such entry, set to '[0, 0]'; did you mean motion?"),
     "key of a load": (loaded(where="left", presure=1), "body.1.load.1.presure: no such entry, set to '1'; did you mean pressure?"),
