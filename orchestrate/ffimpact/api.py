@@ -15,7 +15,7 @@ import numpy as np
 import pandas as pd
 
 from . import scene as files
-from .failure import BadInput, Busy, Failure, unknown
+from .failure import BadInput, Busy, Failure, brief, unknown
 from .freefem import freefem
 from .model import Scene
 from .places import RESULTS
@@ -128,6 +128,12 @@ class Study:
         ):
             if name not in accepted:
                 raise BadInput(f"plot: {unknown(name, accepted, ', ')}")
+        for name in (x, y):
+            if not pd.api.types.is_numeric_dtype(self.table[name]):
+                raise BadInput(
+                    f"plot: '{name}' has values that are no numbers: '{brief(self.table[name].iloc[0])}' "
+                    "(accepted: a number; of a vector sweep a component, body.1.velocity.2)"
+                )
         ax = ax if ax is not None else plt.subplots(layout="constrained")[1]
         bars = pd.Series([one.errors.get(y, np.nan) if one else np.nan for one in self.results])
         unit = next((one.units.get(y, "") for one in self.results if one), "")
@@ -143,7 +149,7 @@ class Study:
                 rows.bars.fillna(0),
                 marker="o",
                 capsize=3,
-                label=None if by is None else f"{by} = {value:g}",
+                label=None if by is None else f"{by} = {value}",
             )
         ax.set(xlabel=x, ylabel=f"{y} [{unit}]" if unit not in ("", "-", "1") else y)
         if by:

@@ -103,6 +103,7 @@ class Scene(models.Top):
     def save(self, path: str | Path) -> Path:
         """Writes its TOML file."""
         path = Path(path)
+        path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(to_toml(self.table()), "utf-8")
         return path
 

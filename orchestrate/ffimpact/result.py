@@ -32,22 +32,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Fields", "Result", "compare", "load"]
 
-LINES = 9  # of numbers that are printed
-SHOWN = (
-    "impulse",
-    "peak_force",
-    "contact_time",
-    "thresholded_contact_time",
-    "rebound_vx",
-    "rebound_vy",
-    "rebound_vz",
-    "rebound_spin",
-    "restitution",
-    "energy_initial",
-    "energy_final",
-    "friction_work",
-    "energy_drift",
-)
+# what `table` has, in this order
+SHOWN = (*report.MAIN, "thresholded_contact_time", "energy_initial", "energy_final")
 
 
 class Result:
@@ -59,6 +45,8 @@ class Result:
     """
 
     def __init__(self, source: Record | str | Path):
+        if not isinstance(source, Record | str | Path):
+            raise BadInput(f"result: '{source}' is no result (accepted: the folder of a run)")
         self.record = source if isinstance(source, Record) else read_record(Path(source))
         self.folder, self.reused = self.record.folder, self.record.reused
         self.summary: dict[str, Any] = self.record.summary
@@ -73,7 +61,7 @@ class Result:
         return numbers(self.summary)
 
     def __contains__(self, name: object) -> bool:
-        return name in self.summary
+        return self.summary.get(str(name)) is not None
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.keys())
@@ -160,8 +148,12 @@ class Result:
             for name, row in self.table.iterrows()
         ]
         told = [line for line in report.told(self.summary) if line.startswith("  warning")]
-        more = [f"  and {len(rows) - LINES} more: result.table"] if len(rows) > LINES else []
-        return "\n".join([f"Result in {shown(self.folder)}", *rows[:LINES], *more, *told])
+        more = (
+            [f"  and {len(rows) - report.MOST} more: result.table"]
+            if len(rows) > report.MOST
+            else []
+        )
+        return "\n".join([f"Result in {shown(self.folder)}", *rows[: report.MOST], *more, *told])
 
     def _repr_html_(self) -> str:
         rows = "".join(
@@ -252,11 +244,15 @@ def compare(*results: Result | str | Path, names: Sequence[str] | str = ()) -> p
     `names`: which numbers; by default the main ones that all runs have. The folders are in
     `.attrs["folders"]`.
     """
+    if len(results) == 1 and isinstance(results[0], list | tuple):
+        results = tuple(results[0])
     runs = [one if isinstance(one, Result) else load(one) for one in results]
     if len(runs) < 2:
         raise BadInput(f"compare: '{len(runs)}' results (accepted: two or more)")
     chosen = [names] if isinstance(names, str) else list(names)
-    rows = chosen or [name for name in runs[0].table.index if all(name in one for one in runs)]
+    rows = chosen or [
+        name for name in runs[0].table.index if all(name in one.table.index for one in runs)
+    ]
     found = pd.DataFrame(index=pd.Index(rows, name="number"))
     for k, one in enumerate(runs, 1):
         found[f"run {k}"] = [one[name] for name in rows]

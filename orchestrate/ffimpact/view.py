@@ -85,6 +85,7 @@ class Player:
     def save(self, path: str | Path) -> Path:
         """Writes the page; returns its path."""
         path = Path(path)
+        path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(self.page, "utf-8")
         return path
 

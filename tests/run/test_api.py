@@ -117,7 +117,7 @@ def test_states_are_grids(result):
 
 def test_a_player_is_one_file(result, tmp_path):
     pytest.importorskip("k3d")
-    path = result.view(tmp_path / "impact.html")
+    path = result.view(tmp_path / "new folder/impact.html")
     assert path.stat().st_size > 1e5 and "<script" in path.read_text()[:10_000]
 
 
@@ -141,6 +141,16 @@ def test_comparison_says_what_agrees(result):
     assert ff.compare(result, other).agree.all()
     other.summary = other.summary | {"impulse": 2 * result["impulse"]}
     assert not ff.compare(result, other, names=["impulse"]).agree.any()
+
+
+def test_results_are_compared_one_by_one_or_as_a_list(result):
+    """What is no result is refused in a line; a number that a run has not is not in it."""
+    assert ff.compare([result, result]).equals(ff.compare(result, result))
+    with pytest.raises(ff.BadInput, match="'7' is no result"):
+        ff.compare(result, 7)
+    result.summary["made_up"] = None
+    assert "made_up" not in result and "impulse" in result
+    del result.summary["made_up"]
 
 
 def test_a_result_is_of_one_run(tmp_path):
@@ -190,6 +200,9 @@ def test_a_sweep(tmp_path):
     }
     with pytest.raises(ff.BadInput, match="impuls"):
         study.plot(x="body.1.velocity.2", y="impuls")
+    study.axes, study.table["whole"] = [*study.axes, "whole"], [[0, -2], [0, -4]]
+    with pytest.raises(ff.BadInput, match=r"'whole' .*\[0, -2\].* component"):
+        study.plot(x="whole", y="impulse")
 
 
 def test_entries_of_a_sweep_hold_in_all_its_runs(tmp_path):

@@ -147,3 +147,8 @@ def test_help_lists_the_entries_with_their_units():
     assert "[m]" in told["radius"].annotation and told["radius"].default is inspect.Parameter.empty
     assert told["material"].default is None and "[m/s]" in told["velocity"].annotation
     assert "bodies" in inspect.signature(ff.Scene).parameters
+
+
+def test_an_entry_without_a_name_is_refused_with_the_names():
+    with pytest.raises(ff.BadInput, match="Disc: '0.05' has no name .*radius"):
+        ff.Disc(0.05, RUBBER)

@@ -114,7 +114,12 @@ def several(value: Any) -> Any:
 class _Made(type(BaseModel)):  # type: ignore[misc]
     """In Python: BadInput in place of pydantic's error, and an entry that is None is left open."""
 
-    def __call__(cls, **entries: Any) -> Any:
+    def __call__(cls, *unnamed: Any, **entries: Any) -> Any:
+        if unnamed:
+            accepted = ", ".join(cls.__signature__.parameters)
+            raise BadInput(
+                f"{cls.__name__}: '{brief(unnamed[0])}' has no name (accepted: entries by name: {accepted})"
+            )
         given = {name: plain(value) for name, value in entries.items() if value is not None}
         try:
             made = super().__call__(**given)

@@ -14,7 +14,7 @@ from ..output.results import Record, body_names, suffixes
 from ..places import shown
 from . import literature
 
-__all__ = ["MAIN", "Quantity", "draw", "marks", "report", "rows", "stiffness", "told"]
+__all__ = ["MAIN", "MOST", "Quantity", "draw", "marks", "report", "rows", "stiffness", "told"]
 
 LEFT_OUT_AT_ZERO = (
     "external_work",
