@@ -3,6 +3,7 @@ scene.
 """
 
 import re
+import shlex
 import sys
 from dataclasses import dataclass, replace
 
@@ -255,7 +256,7 @@ def report(result: Record, verbose: bool = False) -> str:
                 f"fields = {more:g} keeps more"
             )
     if scene.get("fields"):
-        lines.append(f"  player    ffimpact view {place}")
+        lines.append(f"  player    ffimpact view {shlex.quote(str(place))}")
     if not verbose:
         lines.append(f"  more      {place}/summary.json, ffimpact run --verbose")
     return "\n".join(lines)
