@@ -91,6 +91,8 @@ def _bad_usage(parser: argparse.ArgumentParser, message: str) -> None:
 
 
 def _parser() -> argparse.ArgumentParser:
+    from .input.parameters import add_set
+
     parser = argparse.ArgumentParser(
         prog="ffimpact",
         description="Impact of nonlinear deformable bodies.",
@@ -103,13 +105,9 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument(
         "scene", metavar="SCENE", help="a built-in scene (see list) or the path of a TOML file"
     )
-    command.add_argument(
-        "--set",
-        metavar="NAME=VALUE",
-        nargs="+",
-        action="extend",
-        default=[],
-        help="set a parameter (see parameters); of a scene of bodies any entry: body.2.young=1e6",
+    add_set(
+        command,
+        "set a parameter (see parameters); of a scene of bodies any entry: body.2.young=1e6",
     )
     command.add_argument(
         "--out", metavar="DIR", type=Path, help="the result folder (default: results/SCENE)"

@@ -46,6 +46,7 @@ TURN = np.radians(270)  # by which a body of revolution is shown: cut open
 SECTIONS = 37  # around the axis
 GRID = 40  # points along each side of the box in which the surface of an obstacle is looked for
 GROUND = 0xB8B8B8
+LINE = 0.012  # width of an obstacle's line over the size of the picture
 STYLE = """
 <style>
  html, body { background: #fff; font: 14px system-ui, sans-serif; }
@@ -349,7 +350,7 @@ def _obstacle(k3d: Any, one: Obstacle, kind: str, low: np.ndarray, high: np.ndar
         return k3d.line(
             _three(longest).astype(np.float32),
             shader="mesh",
-            width=0.012 * margin * 4,
+            width=LINE * (high - low).max(),
             color=0x606060,
         )
     zs, ys, xs = np.meshgrid(z, y, x, indexing="ij")

@@ -1,5 +1,6 @@
 """The parameters of a run by name, and checks of what is given for them."""
 
+import argparse
 import re
 
 from ..failure import BadInput, brief, suggestion
@@ -15,6 +16,7 @@ __all__ = [
     "Parameter",
     "ROOT",
     "Value",
+    "add_set",
     "check",
     "defaults",
     "names",
@@ -80,6 +82,13 @@ def whole(text: str) -> int:
     if not re.fullmatch("[0-9]+", text):  # int() takes the digits of every alphabet
         raise ValueError
     return int(text)
+
+
+def add_set(parser: argparse.ArgumentParser, meaning: str) -> None:
+    """The option --set of a command, whose words overrides() reads."""
+    parser.add_argument(
+        "--set", metavar="NAME=VALUE", nargs="+", action="extend", default=[], help=meaning
+    )
 
 
 def overrides(texts: list[str]) -> dict[str, str]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from .. import progress, scene
 from ..failure import BadInput, Failure
-from ..input.parameters import overrides
+from ..input.parameters import add_set, overrides
 from ..output.folder import result_folder
 from ..output.results import Record, body_names, mechanical_energy, suffixes
 from ..places import RESULTS, shown
@@ -42,14 +42,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument(
         "scenes", metavar="SCENE", nargs="+", help="two or more built-in scenes or TOML files"
     )
-    parser.add_argument(
-        "--set",
-        metavar="NAME=VALUE",
-        nargs="+",
-        action="extend",
-        default=[],
-        help="set a parameter in all of them",
-    )
+    add_set(parser, "set a parameter in all of them")
     parser.add_argument(
         "--out",
         metavar="DIR",

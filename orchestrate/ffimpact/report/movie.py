@@ -16,7 +16,7 @@ from matplotlib.patheffects import withStroke
 
 from .. import progress, scene
 from ..failure import BadInput, NotInstalled, Unreadable
-from ..input.parameters import overrides, whole
+from ..input.parameters import add_set, overrides, whole
 from ..output import vtu
 from ..output.results import Record, suffixes
 from ..places import RESULTS, shown
@@ -57,14 +57,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument(
         "scene", metavar="SCENE", help="a built-in scene or the path of a TOML file"
     )
-    parser.add_argument(
-        "--set",
-        metavar="NAME=VALUE",
-        nargs="+",
-        action="extend",
-        default=[],
-        help="set a parameter",
-    )
+    add_set(parser, "set a parameter")
     parser.add_argument(
         "--frames",
         metavar="N",

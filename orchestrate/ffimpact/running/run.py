@@ -153,10 +153,9 @@ def run(
 
 def states(scene: Scene) -> dict[str, Value]:
     """The entry `fields` that a scene leaves open; a case of the paper has 0 there by default."""
-    open_or_none = (
-        scene.given.get("fields", 0) == 0 if not scene.bodies else "fields" not in scene.given
-    )
-    return {"fields": STATES} if open_or_none else {}
+    given = scene.given.get("fields")
+    left_open = given is None if scene.bodies else not given
+    return {"fields": STATES} if left_open else {}
 
 
 def _put(stage: Path, folder: Path, scene: Scene, mesh_file: Path | None) -> None:

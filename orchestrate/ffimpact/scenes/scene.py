@@ -8,6 +8,7 @@ import itertools
 import os
 import shutil
 import tempfile
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -282,6 +283,7 @@ def read(given: dict, folder: Path, name: str) -> Scene:
         raise BadInput(f"script: {unknown(script, scripts)}")
     set_here = {key: value for key, value in given.items() if key not in ("script", "title")}
     values = parameters.defaults(script) | parameters.check(set_here, script)
+    _refuse_nu("nu", values["nu"], values["law"], values)
     return Scene(name, title, script, {"title": title, "script": script} | values, folder, values)
 
 
@@ -346,8 +348,26 @@ def _of_tables(given: dict, folder: Path, name: str) -> Scene:
     )
     _apart(found)
     _refuse_integrator(found)
+    for k, body in enumerate(all_bodies, 1):
+        _refuse_nu(f"body.{k}.nu" if len(all_bodies) > 1 else "nu", body.nu, body.law, values)
     mirror.copies(found)
     return found
+
+
+def _refuse_nu(entry: str, nu: float, law: str, values: Mapping[str, Value]) -> None:
+    """BadInput where a body can be neither compressible nor incompressible, J = 1."""
+    if nu == 0.5 or law == "incompressible":
+        volume = values.get("volume", "auto")
+        keeps_volume = values["degree"] == 2 and volume != "plain"
+        conserves = values["integrator"] == "energy-momentum"
+        if not (nu == 0.5 and law != "svk" and keeps_volume and conserves):
+            raise BadInput(
+                f"{entry}: {nu:g} (J = 1) of law = {law}, degree = {values['degree']}, "
+                f"volume = {volume}, integrator = {values['integrator']} (accepted: up to 0.4999, or 0.5 "
+                "with any law but svk, degree = 2, volume = auto or projected, integrator = energy-momentum)"
+            )
+    elif nu > 0.4999:
+        raise BadInput(f"{entry}: {nu:g} is out of range (accepted: 0 to 0.4999, or 0.5: J = 1)")
 
 
 def _refuse_integrator(found: Scene) -> None:
