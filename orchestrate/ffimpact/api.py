@@ -75,8 +75,8 @@ def _wanted(scene: Scene | str | Path, given: dict[str, Any]) -> tuple[Any, Path
             f"scene: '{scene}' is none (accepted: a Scene, the name of a built-in one, the path of a TOML file)"
         )
     given.update(running.states(wanted) | given)
-    told = [scene.table() if isinstance(scene, Scene) else "", given]
-    own = f"-{_digits(told)}" if isinstance(scene, Scene) else ""
+    choices = [scene.table() if isinstance(scene, Scene) else "", given]
+    own = f"-{_digits(choices)}" if isinstance(scene, Scene) else ""
     return wanted, RESULTS / f"{wanted.name}{own}"
 
 
@@ -179,8 +179,8 @@ def sweep(
     given = _given(entries, more)
     wanted, place = _wanted(scene, given)
     points = [dict(zip(values, combination)) for combination in itertools.product(*values.values())]
-    told = {name: list(one) for name, one in values.items()}
-    folder = Path(out) if out else place.with_name(f"{place.name}-sweep-{_digits([told, given])}")
+    varied = {name: list(one) for name, one in values.items()}
+    folder = Path(out) if out else place.with_name(f"{place.name}-sweep-{_digits([varied, given])}")
     scenes = [wanted.override(given | point) for point in points]  # BadInput before anything is run
     folder.mkdir(parents=True, exist_ok=True)
     acts = {
@@ -209,9 +209,9 @@ def _check(values: Any, workers: Any) -> None:
         raise BadInput(f"workers: '{workers}' (accepted: a whole number from 1 on)")
 
 
-def _digits(told: Any) -> str:
+def _digits(choices: Any) -> str:
     """Eight digits that tell it from others."""
-    text = json.dumps(told, sort_keys=True, default=str)
+    text = json.dumps(choices, sort_keys=True, default=str)
     return hashlib.sha256(text.encode()).hexdigest()[:8]
 
 

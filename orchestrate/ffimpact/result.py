@@ -147,21 +147,25 @@ class Result:
             f"  {name:<26}{row['value']:>12.5g}{_bar(row['error'])} {_unit(row['unit'])}".rstrip()
             for name, row in self.table.iterrows()
         ]
-        told = [line for line in report.told(self.summary) if line.startswith("  warning")]
+        warnings = [line for line in report.notices(self.summary) if line.startswith("  warning")]
         more = (
             [f"  and {len(rows) - report.MOST} more: result.table"]
             if len(rows) > report.MOST
             else []
         )
-        return "\n".join([f"Result in {shown(self.folder)}", *rows[: report.MOST], *more, *told])
+        return "\n".join(
+            [f"Result in {shown(self.folder)}", *rows[: report.MOST], *more, *warnings]
+        )
 
     def _repr_html_(self) -> str:
         rows = "".join(
             f"<tr><td>{escape(str(name))}</td><td>{row['value']:.5g}{_bar(row['error'])}</td><td>{escape(_unit(row['unit']))}</td></tr>"
             for name, row in self.table.iterrows()
         )
-        told = "".join(f"<p>{escape(sentence)}</p>" for sentence in self.warnings)
-        return f"<table><caption>{escape(str(shown(self.folder)))}</caption>{rows}</table>{told}"
+        warnings = "".join(f"<p>{escape(sentence)}</p>" for sentence in self.warnings)
+        return (
+            f"<table><caption>{escape(str(shown(self.folder)))}</caption>{rows}</table>{warnings}"
+        )
 
     @property
     def plot(self) -> Plots:

@@ -7,16 +7,16 @@ import pytest
 
 from ffimpact import progress, scene
 from ffimpact.freefem import freefem
-from ffimpact.running import solver as told
+from ffimpact.running import solver
 
 
 def told_of(name: str, monkeypatch, seen: list[tuple[float, freefem.At]], given: dict | None = None, mesh_file=None) -> list[str]:
     """What is said of a run that reports these, each so many seconds after it began."""
     said, clock = [], iter(seconds for seconds, _ in seen)
-    monkeypatch.setattr(told.time, "monotonic", lambda: next(clock))
+    monkeypatch.setattr(solver.time, "monotonic", lambda: next(clock))
     line = progress.Line(name, {"main run": 1.0})
     line.say = said.append
-    run = told.Told(line, scene.load(name).override(given or {}), mesh_file, "main run", 1)
+    run = solver.Display(line, scene.load(name).override(given or {}), mesh_file, "main run", 1)
     for _, at in seen:
         run.show(at)
     return said

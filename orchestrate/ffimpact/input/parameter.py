@@ -119,17 +119,17 @@ class Parameter(Rule):
         return replace(self, name="").check(given)
 
     def schema(self) -> dict[str, Any]:
-        told = {} if self.default is None else {"default": self.default}
+        found = {} if self.default is None else {"default": self.default}
         if self.kind == "word":
-            return told | {"enum": list(self.words)}
+            return found | {"enum": list(self.words)}
         if self.kind == "numbers":
-            return told | {"type": ["string", "number", "array"]}
+            return found | {"type": ["string", "number", "array"]}
         number = {
             "type": "integer" if self.kind == "int" else "number",
             "minimum": self.low,
             "maximum": self.high,
         }
-        return told | ({"anyOf": [number, {"enum": list(self.words)}]} if self.words else number)
+        return found | ({"anyOf": [number, {"enum": list(self.words)}]} if self.words else number)
 
     @property
     def accepted(self) -> str:  # type: ignore[override]

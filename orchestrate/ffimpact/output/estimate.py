@@ -239,9 +239,9 @@ def settle(
             flat or estimated[SCATTERS] ** 2 / before > WORTH * asked
         )
         before = estimated[SCATTERS]
-        told = excess(stated, asked, values["accuracy_of"])
-        told = told and (touches(summary, coarse) or told)
-        sentences, notes = (told, []) if above and (flat or not scatters) else ([], told)
+        exceeding = excess(stated, asked, values["accuracy_of"])
+        exceeding = exceeding and (touches(summary, coarse) or exceeding)
+        sentences, notes = (exceeding, []) if above and (flat or not scatters) else ([], exceeding)
         fixed = not own_mesh or any(values[name] for name in SIZES)
         if (
             not above

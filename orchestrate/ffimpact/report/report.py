@@ -15,7 +15,7 @@ from ..output.results import Record, body_names, suffixes
 from ..places import shown
 from . import literature
 
-__all__ = ["MAIN", "MOST", "Quantity", "draw", "marks", "report", "rows", "stiffness", "told"]
+__all__ = ["MAIN", "MOST", "Quantity", "draw", "marks", "report", "rows", "stiffness", "notices"]
 
 LEFT_OUT_AT_ZERO = (
     "external_work",
@@ -204,7 +204,7 @@ def marks(summary: dict) -> dict[str, str]:
     }
 
 
-def told(summary: dict, verbose: bool = False) -> list[str]:
+def notices(summary: dict, verbose: bool = False) -> list[str]:
     """A line for each warning, then for each note of a main number behind its mark. If `verbose`
     all notes, in whole sentences.
     """
@@ -240,7 +240,7 @@ def report(result: Record, verbose: bool = False) -> str:
         f"{place}: " + ("finished earlier, same scene and code" if result.reused else "finished"),
         *_scene(scene),
         *_numbers(result, verbose),
-        *told(summary, verbose),
+        *notices(summary, verbose),
     ]
     lines += [f"  released  {sentence}" for sentence in summary.get("released", [])]
     if summary.get("skipped"):

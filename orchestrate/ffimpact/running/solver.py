@@ -27,7 +27,7 @@ from ..scene import Scene
 from ..scenes.assembly import prepare
 from ..scenes.finer import scaled
 
-__all__ = ["FAILURES", "Solver", "Told", "USED", "between", "entry", "forecast", "runs"]
+__all__ = ["FAILURES", "Solver", "Display", "USED", "between", "entry", "forecast", "runs"]
 
 FAILURES = {
     10: "bad input",
@@ -93,7 +93,7 @@ class Solver(AbstractContextManager):
         where it is finished.
         """
         self.number += 1
-        told = Told(
+        display = Display(
             self.line,
             self.scene,
             self.mesh_file,
@@ -103,15 +103,19 @@ class Solver(AbstractContextManager):
         taken, exit_code, said = self._taken(given, where), 0, ""
         if taken or not (where / "summary.json").exists():
             with ExitStack() as leaving:
-                process = taken or self._started(given, where, leaving, told)
-                exit_code, said = process.end(told.show)
+                process = taken or self._started(given, where, leaving, display)
+                exit_code, said = process.end(display.show)
         if (where / USED).exists() and (where / "scene.toml").exists():
             os.replace(where / USED, where / "scene.toml")
         _check(where, exit_code, said)
-        told.at("ready", 1.0)
+        display.at("ready", 1.0)
 
     def _started(
-        self, given: dict[str, Value], where: Path, leaving: ExitStack, told: "Told | None" = None
+        self,
+        given: dict[str, Value],
+        where: Path,
+        leaving: ExitStack,
+        display: "Display | None" = None,
     ) -> freefem.Process:
         """A process at work in the folder until `leaving`."""
         scene, goes_on = self.scene.override(given), (where / "checkpoint").exists()
@@ -121,13 +125,13 @@ class Solver(AbstractContextManager):
             where.mkdir(exist_ok=True)
             if not (where / "checkpoint.json").exists():  # what makes the folder ours
                 write_json(where / "checkpoint.json", scene.asked)
-        if told:
-            told.at("mesh")
+        if display:
+            display.at("mesh")
         flags, used, scene_toml = prepare(scene, where, self.foreign, self.scene)
         if scene_toml:
             (where / USED).write_text(scene_toml, "utf-8")
-        if told:
-            told.at("set-up")
+        if display:
+            display.at("set-up")
         flags = flags | {"out": where} | ({"restart": where / "checkpoint"} if goes_on else {})
         process = leaving.enter_context(
             freefem.start(
@@ -214,7 +218,7 @@ def _tail(stage: Path) -> str:
     return "end of its log: " + " | ".join(said[-4:])
 
 
-# ---- what is told of the runs
+# ---- progress of the runs
 
 
 def runs(estimate: bool) -> dict[str, float]:
@@ -222,7 +226,7 @@ def runs(estimate: bool) -> dict[str, float]:
     return {"main run": 1.0} | ({"coarser run": COST} if estimate else {})
 
 
-class Told:
+class Display:
     """One run, the `number`th of those in the line."""
 
     def __init__(self, line: Line, scene: Scene, mesh_file: Path | None, kind: str, number: int):

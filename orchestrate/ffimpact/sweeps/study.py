@@ -128,10 +128,10 @@ def side_by_side(
     shares: dict[Key, float] = {}  # of the acts that are running
     mesh.start_gmsh()  # resets signal handlers, which only the main thread can restore
 
-    def told() -> str:
+    def words() -> str:
         return f"{done} of {before + len(acts)} done"
 
-    with Line(name, dict.fromkeys(acts, 1.0), words=told()) as line:
+    with Line(name, dict.fromkeys(acts, 1.0), words=words()) as line:
         pool = ThreadPoolExecutor(cores)
         try:
             running = {pool.submit(_work, key, act, stop, shares): key for key, act in acts.items()}
@@ -144,10 +144,10 @@ def side_by_side(
                         running[pool.submit(_work, key, acts[key], stop, shares)] = key
                         continue
                     done += 1
-                    line.at(key, 1.0, told())
+                    line.at(key, 1.0, words())
                     yield key, outcome
                 for key, share in shares.copy().items():
-                    line.at(key, share, told())
+                    line.at(key, share, words())
         finally:
             stop.set()
             pool.shutdown(cancel_futures=True)
