@@ -177,7 +177,7 @@ def measure(name: str, out: Path, quick: bool) -> tuple[pd.DataFrame, dict[str, 
     rows = study.study([point for _, point in labels], folder, {"fields": 0} | case.base, LIMIT, case.scene, cores=1)
     if fine.exit.any():
         raise study.Failure(f"bench: the reference of {name} failed: {fine.message[fine.exit != 0].iloc[0]}", code=int(fine.exit.max()))
-    histories = [_force(study.place(best_folder, point)) for point in wanted]
+    histories = [force_of(study.place(best_folder, point)) for point in wanted]
     best = fine[list(case.answers)].mean()
     bars = {answer: 50 * abs(fine[answer].iloc[0] - fine[answer].iloc[1]) / abs(best[answer]) for answer in case.answers}
     bars["force"] = 100 * distance(*histories)
@@ -186,7 +186,7 @@ def measure(name: str, out: Path, quick: bool) -> tuple[pd.DataFrame, dict[str, 
                           "seconds": rows.cpu_seconds, "exit": rows.exit, "message": rows.message})
     for answer in case.answers:
         found[f"{answer}_error"] = 100 * (rows[answer] / best[answer] - 1).abs()
-    found["force_error"] = [100 * distance(histories[0], _force(study.place(folder, point))) if code == 0 else np.nan
+    found["force_error"] = [100 * distance(histories[0], force_of(study.place(folder, point))) if code == 0 else np.nan
                             for (_, point), code in zip(labels, rows.exit)]
     if others := (PEERS_QUICK if quick else PEERS).get(name):
         ours = {study.place(folder, point) for (_, point), code in zip(labels, rows.exit) if code == 0}
@@ -197,7 +197,7 @@ def measure(name: str, out: Path, quick: bool) -> tuple[pd.DataFrame, dict[str, 
     return found, bars
 
 
-def _force(folder: Path) -> tuple[np.ndarray, np.ndarray]:
+def force_of(folder: Path) -> tuple[np.ndarray, np.ndarray]:
     """(t, force) of a run."""
     return force(read_history(folder))
 
@@ -227,7 +227,7 @@ def _peers(case: Case, others: list[tuple], best: pd.Series, force: tuple[np.nda
             t, values = np.loadtxt(history, delimiter=",", skiprows=1).T
             row["force_error"] = 100 * distance(force, (t - dt / 2, values))
             if (same := study.place(folder, sizes | {"dt": dt})) in ours:
-                row["force_from_ours"] = 100 * distance((t - dt / 2, values), _force(same))
+                row["force_from_ours"] = 100 * distance((t - dt / 2, values), force_of(same))
         rows.append(row)
     return pd.DataFrame(rows)
 

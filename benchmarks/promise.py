@@ -121,12 +121,12 @@ def _row(out: Path, name: str, point: study.Point) -> dict:
     """Of one scene. Its runs are kept, each without an estimate, so that other rules for estimates need no run again."""
     try:
         with freefem.limited(LIMIT):
-            return _compared(_scene(name, point), study.place(out / name, point))
+            return _compared(open_scene(name, point), study.place(out / name, point))
     except (Failure, TooLong) as failure:
         return {"message": str(failure)}
 
 
-def _scene(name: str, point: study.Point) -> scene.Scene:
+def open_scene(name: str, point: study.Point) -> scene.Scene:
     """With the penalty left open, which built-in scenes state."""
     own = draws.FLAT / f"{name}.toml"
     open_one = scene.load(str(own) if own.exists() else name)

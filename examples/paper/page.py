@@ -55,13 +55,13 @@ def _section(k: int, item: str, text: str, found: Finding, shown: dict[Path, int
             pictures.append(f'<p><a href="#figure{shown[path]}">Figure {shown[path]}</a> above: {escape(caption(path))}.</p>')
         else:
             shown[path] = len(shown) + 1
-            pictures.append(_picture(path, shown[path], f"#s{k}", item))
+            pictures.append(picture_of(path, shown[path], f"#s{k}", item))
     return (f'<h2 id="s{k}">{escape(item)}: {escape(text)}</h2>\n<p><b style="color:{COLOURS[found.verdict]}">{found.verdict}</b>: '
             f'{escape(found.ours)}</p>\n'
-            + "\n".join(pictures) + f'\n{_provenance(found.runs)}\n<p><a href="#row{k}">Back to its row in the table</a> · {BACK}</p>')
+            + "\n".join(pictures) + f'\n{provenance_of(found.runs)}\n<p><a href="#row{k}">Back to its row in the table</a> · {BACK}</p>')
 
 
-def _picture(path: Path, number: int = 0, back: str = "", item: str = "") -> str:
+def picture_of(path: Path, number: int = 0, back: str = "", item: str = "") -> str:
     """A picture with its caption, as wide as it was drawn, so that the text of all has one size; with a number and what it belongs to where
     they are given."""
     words, data = escape(caption(path)), path.read_bytes()
@@ -91,7 +91,7 @@ def verification(folder: Path) -> str:
         rows, asked = frame[frame.case == case.name], judged[judged.case == case.name]
         figure = folder / f"{verify.slug(case)}.png"
         parts.append(f"<h3>{escape(case.name)}: {escape(case.title)}</h3>\n<p>{escape(case.note)}</p>\n"
-                     f"{_picture(figure) if figure.exists() else ''}\n<details><summary>all numbers ({len(rows)}, of which "
+                     f"{picture_of(figure) if figure.exists() else ''}\n<details><summary>all numbers ({len(rows)}, of which "
                      f"{len(asked)} are judged)</summary>{_table(rows, verify.NUMBERS)}</details>")
     return ('<h2 id="verification">Verification</h2>' "\n<p>Against exact solutions, by tolerances fixed beforehand (make verify): "
             f"<b>{'all pass' if judged['pass'].all() else 'NOT all pass'}</b>. A row a case, with the number that is nearest to "
@@ -106,7 +106,7 @@ def _table(frame: pd.DataFrame, formats: dict[str, str]) -> str:
                                  for tag, row in zip(["th"] + ["td"] * len(frame), rows)) + "</table>"
 
 
-def _provenance(folders: list[Path]) -> str:
+def provenance_of(folders: list[Path]) -> str:
     """nu, and parameters that differ from their defaults, common to all runs and by run, and where the runs come from."""
     scenes = [read_scene(folder) for folder in folders if (folder / "scene.toml").exists()]
     if not scenes:

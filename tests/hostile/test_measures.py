@@ -49,7 +49,7 @@ def test_bench_of_two_bodies(tmp_path, monkeypatch):
             return None, "is not installed"
         runs = tmp_path / "disc-block-svk/runs"
         ours.update(results.read_summary(runs / "accuracy=0.04"))
-        t, force = bench._force(runs / "accuracy=0.04")
+        t, force = bench.force_of(runs / "accuracy=0.04")
         np.savetxt(history, np.stack([t, force], axis=1), delimiter=",", header="t,normal_force", comments="")
         return {"dofs": 1, "steps": 1, "cpu_seconds": 1.0} | {name: 1.1 * ours[answer] for answer, name in bench.NGSOLVE.items()}, ""
 

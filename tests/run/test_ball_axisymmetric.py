@@ -55,14 +55,14 @@ def test_units_are_those_of_a_ball(result):
 def test_a_disc_beside_a_ball(result, tmp_path, monkeypatch):
     """Figure 11: a disc, per metre, and a ball are compared by the accelerations of their centres, v'(t) of the histories, and by shares of energy."""
     disc = run.run(scene.load("disc-normal-neohookean"), {"accuracy": 0.2}, tmp_path / "disc", estimate=False)
-    assert compare._mass(disc) == pytest.approx(math.pi * 0.05**2 * 1722, rel=1e-3)
-    assert compare._mass(result) == pytest.approx(MASS, rel=1e-3)
+    assert compare.mass_of(disc) == pytest.approx(math.pi * 0.05**2 * 1722, rel=1e-3)
+    assert compare.mass_of(result) == pytest.approx(MASS, rel=1e-3)
     monkeypatch.setattr(compare.plt, "close", lambda figure: None)
     compare.draw({"disc": disc, "ball": result}, tmp_path / "both.png")
     force, _, energy, _ = compare.plt.gcf().axes
     assert "acceleration" in force.get_ylabel() and "over that at the start" in energy.get_ylabel()
     totals = [line for line in energy.lines if line.get_linewidth() > 2]
-    assert len({line._unscaled_dash_pattern[0] for line in totals}) == len(totals) == 2     # totals that lie on one another: dashes in turn
+    assert len({line._unscaled_dash_pattern[0] for line in totals}) == len(totals) == 2     # noqa: SLF001 matplotlib tells an offset of dashes nowhere else; totals that lie on one another: dashes in turn
     h, line = result.history, [line for line in force.lines if len(line.get_ydata()) > 2][1]     # not the marks of the last touch
     inside = slice(1, None)
     np.testing.assert_allclose(1e3 * line.get_ydata()[inside], np.diff(h["vy"]) / h["dt"][inside], rtol=1e-6, atol=1e-3)

@@ -32,7 +32,7 @@ def test_it_serves_on_a_path_that_cannot_be_preloaded_by_its_name(monkeypatch, t
         pytest.skip("no compiler here")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "a b:c"))
     environment = {key: value for key, value in program.environment.items() if key != "LD_PRELOAD"}
-    program = replace(program, environment=environment | freefem._quick_clock(environment))
+    program = replace(program, environment=environment | freefem.quick_clock(environment))
     assert len(program.preloaded) == 1
     program.call("edp/disc-plane.edp", "-accuracy", "0.2", "-out", str(tmp_path / "out"), check=True)
     assert json.loads((tmp_path / "out/summary.json").read_text())["quick_clock"] == 1

@@ -79,7 +79,7 @@ def test_two_bodies_and_three(tmp_path, pairing):
     assert [s["impulse"], rows.impulse.sum(), (h["normal_force"] * h["dt"]).sum()] == pytest.approx([given[0]] * 3, rel=1e-6) and given[1] == pytest.approx(given[0], rel=1e-6)
     assert s["peak_force"] == h["normal_force"].max() and (h["normal_load"] >= h["normal_force"] * (1 - 1e-12)).all()
     assert (h["normal_load"] * h["dt"]).sum() > 1.005 * s["impulse"]
-    assert np.diff(h["vy_1"]) / h["dt"][1:] == pytest.approx((compare._push(h) / compare._mass(found))[1:], abs=1e-6 * compare._push(h).max() / s["mass_1"])
+    assert np.diff(h["vy_1"]) / h["dt"][1:] == pytest.approx((compare.contact_force(h) / compare.mass_of(found))[1:], abs=1e-6 * compare.contact_force(h).max() / s["mass_1"])
     closing = found.history["vy_1"][0] - found.history["vy_2"][0]
     after = found.summary["rebound_vy_1"] - found.summary["rebound_vy_2"]
     assert rows.approach.iloc[0] == pytest.approx(-closing) and rows.separation.iloc[-1] == pytest.approx(after, rel=1e-6)

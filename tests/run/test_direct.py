@@ -71,7 +71,7 @@ def test_second_run_on_a_folder_is_refused(tmp_path):
 def test_run_in_a_folder_that_python_is_at_is_refused(tmp_path):
     """Python makes the files of DIR in DIR.part: as long as that is locked, DIR is taken."""
     (tmp_path / "out.part").mkdir()
-    lock = folder._hold(tmp_path / "out.part", tmp_path / "out")
+    lock = folder.lock_folder(tmp_path / "out.part", tmp_path / "out")
     code, _, error = call(*COARSE, "-out", "out", cwd=tmp_path)
     os.close(lock)
     assert code == 14 and "another run" in error

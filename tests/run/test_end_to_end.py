@@ -80,7 +80,7 @@ def test_von_mises_stress_of_the_snapshots_is_that_of_their_stress(tmp_path, ker
     given = {"accuracy": 0.2, "fields": 4} | ({} if kernels else {"without": "kernels"})
     result = run.run(scene.load("disc-normal"), given, tmp_path / "out", estimate=False)
     for _, path in vtu.series(result.folder / "fields.pvd"):
-        fields = vtu._parts(path)[3]
+        fields = vtu.read_parts(path)[3]
         xx, yy, zz, xy, yz, xz = fields["cauchy_stress"].T
         mises = np.sqrt(((xx - yy)**2 + (yy - zz)**2 + (zz - xx)**2) / 2 + 3 * (xy**2 + yz**2 + xz**2))
         np.testing.assert_allclose(fields["von_mises"], mises, atol=1e-7 * np.abs(fields["cauchy_stress"]).max())

@@ -86,7 +86,7 @@ def test_report_tells_breakdown_and_unsolved_jumps(oblique):
 
 def test_pose_is_the_whole_outline(oblique):
     """The outline of the first snapshot is the closed circle of the disc, its diameter is upright with the mark on top."""
-    pose = figures._pose(*vtu.series(oblique.folder / "fields.pvd")[0], oblique.history)
+    pose = figures.pose_at(*vtu.series(oblique.folder / "fields.pvd")[0], oblique.history)
     assert (pose.outline[0] == pose.outline[-1]).all()
     assert np.hypot(pose.outline[:, 0], pose.outline[:, 1] - 0.05) == pytest.approx(0.05, rel=0.01)   # a polygon of 10 mm or less a side
     assert np.ptp(pose.diameter[:, 0]) < 1e-4 and pose.diameter[0, 1] > 0.09 and pose.diameter[-1, 1] < 0.01
@@ -95,9 +95,9 @@ def test_pose_is_the_whole_outline(oblique):
 def test_flight_is_rigid_motion(oblique):
     """Outside the run the body flies on the parabola of its centre, turns with its spin and keeps its shape."""
     h = oblique.history
-    pose = figures._pose(*vtu.series(oblique.folder / "fields.pvd")[-1], h)
+    pose = figures.pose_at(*vtu.series(oblique.folder / "fields.pvd")[-1], h)
     wait, pull = 0.01, 9.81
-    moved = figures._fly(pose, wait, -1, h, {"gravity": pull})
+    moved = figures.fly(pose, wait, -1, h, {"gravity": pull})
     centre = np.array([h["x"][-1], h["y"][-1]])
     place = centre + wait * np.array([h["vx"][-1], h["vy"][-1]]) - [0, pull * wait**2 / 2]
     before, after = pose.outline - centre, moved.outline - place

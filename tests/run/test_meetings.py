@@ -139,8 +139,8 @@ def test_elements_follow_the_radius_of_an_obstacle(dimension, kind):
         tables = scene(body, peg(radius, kind, axes), dimension=dimension)
         ask = assembly.Asker(tables, approach.meetings(tables), lambda values: describe(values, tables.dimension.like))
         values = assembly.contact_values(tables.bodies, tables.contact, ask, "contact")
-        sizes.append(assembly._sizes(0, ask).contact)
-        own = [assembly.pair_values(pair, ask, values) for pair in assembly._with_open_penalties(tables, ask)]
+        sizes.append(assembly.element_sizes(0, ask).contact)
+        own = [assembly.pair_values(pair, ask, values) for pair in assembly.with_open_penalties(tables, ask)]
         penalties.append(own[0]["penalty"] if own else values["penalty"])
     assert sizes[1] == pytest.approx(sizes[0] / 10, rel=0.05) and sizes[0] <= 0.005 / 4 * 1.01
     assert penalties[1] == pytest.approx(10 * penalties[0], rel=0.05) and penalties[2] == penalties[3]
@@ -149,7 +149,7 @@ def test_elements_follow_the_radius_of_an_obstacle(dimension, kind):
 
 def contact_size(tables: Scene) -> float:
     """Of the elements of its first body in the contact."""
-    return assembly._sizes(0, assembly.Asker(tables, approach.meetings(tables), lambda values: describe(values, tables.dimension.like))).contact
+    return assembly.element_sizes(0, assembly.Asker(tables, approach.meetings(tables), lambda values: describe(values, tables.dimension.like))).contact
 
 
 @pytest.mark.parametrize("distance", ["sqrt(x^2+(y+0.0401)^2)-0.02", "x^2+(y+0.0401)^2-0.0004"])

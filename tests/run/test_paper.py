@@ -188,7 +188,7 @@ def test_values_are_listed_as_numbers(tmp_path):
     for k, speed in enumerate((0.5, 9.9, 12.1, 1, 2, 3, 4, 5, 6)):
         (tmp_path / str(k)).mkdir()
         fake_freefem.write_scene(tmp_path / str(k), dict(speed=str(speed)))
-    assert "speed: 9 values from 0.5 to 12.1" in paper_page._provenance(sorted(tmp_path.iterdir()))
+    assert "speed: 9 values from 0.5 to 12.1" in paper_page.provenance_of(sorted(tmp_path.iterdir()))
 
 
 def test_the_map_of_the_oblique_disc_has_both_angles(tmp_path):

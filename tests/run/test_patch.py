@@ -81,8 +81,8 @@ def test_cells_have_the_number_of_their_body(ran, which, bodies):
     _, path = vtu.series(ran(which).folder / "fields.pvd")[0]
     piece = xml.parse(path).getroot().find("UnstructuredGrid/Piece")
     array = piece.find("CellData/DataArray[@Name='body']")
-    numbers, points = np.array(array.text.split()), vtu._parts(path)[0]
-    cells = vtu._parts(path)[2]
+    numbers, points = np.array(array.text.split()), vtu.read_parts(path)[0]
+    cells = vtu.read_parts(path)[2]
     assert array.get("type") == "Int32" and len(numbers) == len(cells) and set(numbers) == {str(k + 1) for k in range(bodies)}
     heights = [points[cells[numbers == str(k + 1)], 1] for k in range(bodies)]
     assert bodies == 1 or heights[1].max() < heights[0].min() + 1e-6

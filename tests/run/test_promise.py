@@ -39,7 +39,7 @@ def test_a_mixture_has_all_dimensions_friction_and_two_bodies(count):
     assert drawn == draws.mixture(promise.SEED, count) and not any(one in drawn for one in draws.mixture(7, count))
     assert {name for name, _ in drawn} == set(draws.MIXTURE) and abs(len(drawn) - count) < 3
     for name, point in drawn:
-        made = promise._scene(name, point)
+        made = promise.open_scene(name, point)
         assert (made.contact or made.values)["penalty"] == "auto" and draws.words(point)
     if count == 60:
         rubs = [point.get("friction_static", point.get("contact.friction_static", 0)) > 0 for _, point in drawn]

@@ -52,7 +52,7 @@ def test_failed_points_have_rows_of_their_own():
     """Points without a value are marked below the axis, a row a curve; a law that breaks down is named; the paper's number is a star at its speed."""
     wanted = sweep.load("contact-time-svk")
     rows = pd.DataFrame([point | dict(exit=12 * (point["speed"] > 10), contact_time=5e-3, thresholded_contact_time=4.9e-3) for point in wanted.points])
-    figure = sweep_figures._lines(wanted, rows, None)
+    figure = sweep_figures.draw_lines(wanted, rows, None)
     crosses = [line for line in figure.axes[0].lines if line.get_marker() == "x"]
     heights = [set(line.get_ydata()) for line in crosses]
     assert len(crosses) == 2 and all(max(each) < 0 for each in heights) and not heights[0] & heights[1]

@@ -142,7 +142,7 @@ def test_whole_ball_is_cut_for_figures_and_films(ball, no_pyvista, tmp_path):
     t, path = vtu.series(result.folder / "fields.pvd")[0]
     snapshot = vtu.read(path)
     assert areas(snapshot).sum() == pytest.approx(np.pi * RADIUS**2, rel=0.02)
-    outline = figures._pose(t, path, result.history).outline
+    outline = figures.pose_at(t, path, result.history).outline
     assert len(outline) > 12 and np.hypot(*(outline - (0, RADIUS)).T) == pytest.approx(RADIUS, rel=0.03)
     assert "shapes" in {drawn.stem for drawn in drawing.draw(result.folder)}
     stage = movie.of(result)

@@ -102,7 +102,7 @@ def test_built_in_sweeps_are_sound(name):
     wanted = sweep.load(name)
     given = sweep.scene.load(wanted.scene)
     assert not {said for point in wanted.points for said in given.override(wanted.base | point).released}
-    assert "nu" in wanted.axes or "ν = " in sweep_figures._constants(wanted)
+    assert "nu" in wanted.axes or "ν = " in sweep_figures.constants(wanted)
     assert wanted.title != name and wanted.figure and f" {name}" in (parameters.ROOT / "Makefile").read_text()
 
 
@@ -238,7 +238,7 @@ def test_the_papers_star_stands_in_studies_of_its_scene(fake, tmp_path, given, s
     text = f"[set]\n{given}\n[figure]\nx = 'speed'\ny = 'contact_time'\n{by}"
     wanted = sweep.load(str(write(tmp_path, text)))
     rows = pd.DataFrame(wanted.points).assign(exit=0, contact_time=4.7e-3)
-    figure = sweep_figures._lines(wanted, rows, tmp_path)
+    figure = sweep_figures.draw_lines(wanted, rows, tmp_path)
     assert sum(line.get_marker() == "*" for line in figure.axes[0].lines) == stars
     plt.close(figure)
 

@@ -51,7 +51,7 @@ def test_distances_from_slender_triangles():
     ends = [(one[0], one[k], one[k + 1]) for one in ring for k in range(1, count - 1)]
     angle, z = turn * (np.arange(count) + 0.5), np.linspace(-49, 49, count)
     beside = (math.cos(turn / 2) + 0.2) * np.column_stack([np.cos(angle), np.sin(angle), z / (math.cos(turn / 2) + 0.2)])
-    assert solids._distances(np.array(faces + ends))(beside) == pytest.approx(np.full(count, 0.2))
+    assert solids.distances_from(np.array(faces + ends))(beside) == pytest.approx(np.full(count, 0.2))
 
 
 def test_places_turns_and_motions():

@@ -342,7 +342,7 @@ def test_a_promised_answer_far_above_the_accuracy_is_a_warning(tmp_path, monkeyp
 def test_a_contact_time_that_is_far_off_is_a_note_only_where_it_scatters(tmp_path, monkeypatch, transit, kind):
     """Alone above what was asked, and not halved by a finer run: that of a round impact scatters, that of a flat strike is late."""
     disc, far = Disc(tmp_path, 1e-9), {"thresholded_contact_time": 0.03}
-    monkeypatch.setattr(estimate, "_stated", lambda *_: dict.fromkeys([*estimate.BOUND, estimate.OF_ITSELF], 0.0) | far)
+    monkeypatch.setattr(estimate, "error_estimates", lambda *_: dict.fromkeys([*estimate.BOUND, estimate.OF_ITSELF], 0.0) | far)
     found = estimate.settle(tmp_path, disc.values, True, disc.solve, lambda folder: told(folder)._replace(summary=told(folder).summary | {"front_transit": transit}))
     assert {each: [notes.name(one) for one in found[each]] for each in ("warnings", "notes")} == {"warnings": [], "notes": []} | {kind: ["estimated errors"]}
 

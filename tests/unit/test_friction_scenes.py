@@ -32,9 +32,9 @@ def test_rigid_rolling_is_the_closed_form():
     used = scene.load("disc-rolling").values
     v0, pull = used["speed"], used["friction_dynamic"] * used["gravity"]
     t = np.array([0.0, 0.5, 1.0, 2.0]) * v0 / (3 * pull)
-    centre, rim = figures._rigid_rolling(t, used)
+    centre, rim = figures.rigid_rolling(t, used)
     assert centre == pytest.approx(v0 * np.array([1, 5 / 6, 2 / 3, 2 / 3])) and rim == pytest.approx(v0 * np.array([0, 1 / 3, 2 / 3, 2 / 3]))
-    spun = figures._rigid_rolling(t, used | {"spin": -v0 / used["radius"]})
+    spun = figures.rigid_rolling(t, used | {"spin": -v0 / used["radius"]})
     assert np.ptp(spun) == 0    # it rolls already
     for other in ({"angle": 60.0}, {"gravity": 0.0}, {"height": 0.1}, {"friction_dynamic": 0.0}):
-        assert figures._rigid_rolling(t, used | other) is None
+        assert figures.rigid_rolling(t, used | other) is None

@@ -79,5 +79,5 @@ def test_text_of_all_pictures_has_one_size(tmp_path):
         figure = figures.plt.figure(figsize=(inches, 1), dpi=figures.STYLE["savefig.dpi"])
         figure.savefig(tmp_path / f"{inches}.png")
         figures.plt.close(figure)
-    widths = [int(re.search(' width="([0-9]+)"', paper_page._picture(tmp_path / f"{inches}.png"))[1]) for inches in (2.5, 5.0)]
+    widths = [int(re.search(' width="([0-9]+)"', paper_page.picture_of(tmp_path / f"{inches}.png"))[1]) for inches in (2.5, 5.0)]
     assert widths[1] == pytest.approx(2 * widths[0], abs=1) and widths[1] == pytest.approx(5 * paper_page.PIXELS, abs=2)

@@ -23,7 +23,7 @@ def cloud(bodies: int, turn: float) -> np.recarray:
 def test_rings_are_means_over_the_surface():
     """Over the distance from the first touch: the pressure of a ring is that of its radius, it slides beyond 0.7 mm and sticks within; their load is that of all."""
     table = cloud(1, 0.0)
-    own, words, states = contact._radial(table, None)
+    own, words, states = contact.radial(table, None)
     now = own[own.t == 1e-3]
     assert words == "distance from the first contact point" and states == contact.SLIDES
     np.testing.assert_allclose(now.pressure, 1e6 * np.sqrt(1 - (1e3 * now.s) ** 2), atol=1e5)

@@ -23,7 +23,7 @@ def test_coarse_scenes_are_discs_and_balls_at_each_accuracy():
     kinds = [(name, point["accuracy"]) for name, point in drawn]
     assert {kinds.count(kind) for kind in kinds} == {20} and len(set(kinds)) == 2 * len(draws.COARSE)
     assert 12 < sum(point["nu"] >= 0.48 for _, point in drawn) < 40
-    assert all(promise._scene(name, point) and draws.words(point) for name, point in drawn)
+    assert all(promise.open_scene(name, point) and draws.words(point) for name, point in drawn)
 
 
 # ---- the promise

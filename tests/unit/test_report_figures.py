@@ -122,7 +122,7 @@ def test_cut_of_a_whole_body(low, high, count):
     """The cut covers the cross-section once, 4 m2, all triangles one way round, with fields that are exact where they are linear; nodes in the plane or not."""
     solid = block(low, high, count)
     on_plane = np.abs(solid.points[:, 2]) < 1e-9
-    snapshot = vtu._cut(solid, on_plane)
+    snapshot = vtu.cut_in_plane(solid, on_plane)
     assert areas(snapshot).sum() == pytest.approx(4) and areas(snapshot).min() > 0
     assert snapshot.fields["von_mises"] == pytest.approx(1 + snapshot.points @ (2.0, -1.0))
     assert snapshot.fields["displacement"] == pytest.approx(np.pad(snapshot.points, [(0, 0), (0, 1)]))
@@ -134,7 +134,7 @@ def test_cut_of_a_whole_body(low, high, count):
 
 def test_a_body_beside_the_plane_has_no_cut():
     solid = block(0.5, 1, 1)
-    assert len(vtu._cut(solid, np.zeros(len(solid.points), bool)).triangles) == 0
+    assert len(vtu.cut_in_plane(solid, np.zeros(len(solid.points), bool)).triangles) == 0
 
 
 @pytest.mark.parametrize("restitution, drawn", [(np.nan, False), (0.8, True)])

@@ -52,9 +52,9 @@ def test_set_of_a_level():
     """The range of y in which the level is met within its band, interpolated in the logarithm."""
     group = pd.DataFrame({"nu": 0.3, "penalty": [1e9, 1e10, 1e11], "contact_time": [5e-3, 4.8e-3, 4.6e-3], "exit": 0})
     figure = {"x": "nu", "y": "penalty", "colour": "contact_time", "level": 4.8e-3, "band": 1e-4}
-    lines = sweep_figures._set(figure, "", group)
+    lines = sweep_figures.level_set_words(figure, "", group)
     assert "4.8 ± 0.1 ms is met" in lines[0] and lines[1] == "  ν = 0.3: k [Pa/m^m] 3.2e+09 to 3.2e+10"
-    assert sweep_figures._set(figure | {"level": 1.0}, "", group)[1] == "  ν = 0.3: no k [Pa/m^m]"
+    assert sweep_figures.level_set_words(figure | {"level": 1.0}, "", group)[1] == "  ν = 0.3: no k [Pa/m^m]"
 
 
 def test_distance_of_histories():

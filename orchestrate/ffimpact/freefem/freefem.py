@@ -35,6 +35,7 @@ __all__ = [
     "Process",
     "find",
     "limited",
+    "quick_clock",
     "run",
     "said_in",
     "start",
@@ -160,7 +161,7 @@ def _find(variables: tuple[tuple[str, str], ...]) -> FreeFem:
     if not command:
         raise NotInstalled(f"{wanted} not found; {HOW}")
     environment |= _threads(environment.get("FFIMPACT_THREADS", "1"))
-    environment = _blas_kernels() | environment | _quick_clock(environment)
+    environment = _blas_kernels() | environment | quick_clock(environment)
     description = _probe(command, environment)
     if not description and "FF_LOADPATH" not in environment:
         environment["FF_LOADPATH"] = DEBIAN_PLUGINS
@@ -216,7 +217,7 @@ def _blas_kernels() -> dict[str, str]:
     )
 
 
-def _quick_clock(environment: Mapping[str, str]) -> dict[str, str]:
+def quick_clock(environment: Mapping[str, str]) -> dict[str, str]:
     """The preloaded clock() of edp/clock.c; nothing where it cannot be compiled. On a path that
     LD_PRELOAD, whose names end at blanks and colons, cannot name, it is an open file that
     processes are handed.

@@ -25,6 +25,7 @@ __all__ = [
     "box",
     "cylinder",
     "distance_to_triangles",
+    "distances_from",
     "mesh_of",
     "motion",
     "shape",
@@ -172,7 +173,7 @@ def surface(triangles: np.ndarray) -> Shape:
     # times its volume times (s s^T + a a^T + b b^T + c c^T), s = a + b + c
     square = sum(np.einsum("t,ti,tj->ij", six, one, one) for one in (a + b + c, a, b, c)) / 120
 
-    distances = _distances(triangles)
+    distances = distances_from(triangles)
 
     def gap(points: np.ndarray) -> np.ndarray:
         """The distance from the nearest triangle; inside, where they are seen under a full
@@ -215,7 +216,7 @@ def surface(triangles: np.ndarray) -> Shape:
     )
 
 
-def _distances(triangles: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+def distances_from(triangles: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
     """The function that gives the distances (n,) of points (n, 3) from the nearest of the
     triangles (t, 3, 3).
     """

@@ -57,6 +57,7 @@ __all__ = [
     "course",
     "difference",
     "driven",
+    "error_estimates",
     "errors",
     "excess",
     "front_errors",
@@ -229,7 +230,7 @@ def settle(
         if all(coarse.get(name) == summary.get(name) is not None for name in ("dofs", "steps")):
             sentences = [SAME_STEPS]
             break
-        estimated = _stated(answers, before_it, estimated)
+        estimated = error_estimates(answers, before_it, estimated)
         stated = held_errors(estimated, answers, before_it)
         above = [name for name in wanted(values["accuracy_of"]) if estimated[name] > WORTH * asked]
         flat = (
@@ -282,7 +283,7 @@ def _excludes(summary: Mapping, own_mesh: bool) -> list[str]:
     return alike if own_mesh else [*alike, "mesh"]
 
 
-def _stated(
+def error_estimates(
     fine: Answers, coarse: Answers, before: Mapping[str, float] | None = None
 ) -> dict[str, float]:
     """The error that is stated of every answer of the finer run of a pair; `before`: what was

@@ -28,6 +28,7 @@ __all__ = [
     "clear",
     "failed_beside",
     "finished_in",
+    "lock_folder",
     "replace",
     "result_folder",
     "staging",
@@ -151,7 +152,7 @@ def staging(folder: Path) -> Iterator[tuple[Path, int]]:
             os.rename(stage, folder)  # with its lock, which stays
             leaving.callback(os.close, lock := _lock(stage, folder))
         elif folder.exists():
-            leaving.callback(os.close, _hold(folder, folder))  # against a run without Python
+            leaving.callback(os.close, lock_folder(folder, folder))  # against a run without Python
         # what a run makes has checkpoint.json from the first to the last moment; a folder of that
         # name that lacks it is somebody's
         if os.listdir(stage) and not (stage / "checkpoint.json").exists():
@@ -195,7 +196,7 @@ def _lock(stage: Path, folder: Path) -> int:
                 f"{stage} cannot be made: {error.strerror}; choose another --out"
             ) from None
         try:
-            lock = _hold(stage, folder)
+            lock = lock_folder(stage, folder)
         except FileNotFoundError:  # its run has just put it in its place
             continue
         if _holds(lock, stage):  # not likewise, while we locked it
@@ -211,7 +212,7 @@ def _holds(lock: int, path: Path) -> bool:
         return False
 
 
-def _hold(path: Path, folder: Path) -> int:
+def lock_folder(path: Path, folder: Path) -> int:
     """The folder `path` opened and locked; Busy where a run in `folder` holds it.
 
     The lock is flock() on the folder itself. The scripts without Python lock their folder in

@@ -19,8 +19,10 @@ __all__ = [
     "Snapshot",
     "Solid",
     "between",
+    "cut_in_plane",
     "lattice",
     "read",
+    "read_parts",
     "read_solid",
     "series",
     "split",
@@ -96,13 +98,13 @@ def read(path: Path) -> Snapshot:
     0, are split into straight ones, so many that curved sides look it. Where a body in three
     dimensions has no such faces, it is cut there. Unreadable where it is not such a file.
     """
-    points, kind, cells, fields = _parts(path)
+    points, kind, cells, fields = read_parts(path)
     on_plane = np.ones(len(points), dtype=bool)
     if kind == QUADRATIC_TETRAHEDRON:
         on_plane, solid = np.abs(points[:, 2]) < 1e-9 * np.ptp(points, axis=0).max(), cells
         cells = _in_plane(solid, on_plane, points)
         if not len(cells):
-            return _cut(Solid(points, solid, fields), on_plane)
+            return cut_in_plane(Solid(points, solid, fields), on_plane)
     row = np.cumsum(on_plane) - 1
     points, cells, fields = (
         points[on_plane, :2],
@@ -121,11 +123,11 @@ def read(path: Path) -> Snapshot:
 
 def read_solid(path: Path) -> Solid | None:
     """The same of all of a body in three dimensions; None of one in the plane."""
-    points, kind, cells, fields = _parts(path)
+    points, kind, cells, fields = read_parts(path)
     return Solid(points, cells, fields) if kind == QUADRATIC_TETRAHEDRON else None
 
 
-def _parts(path: Path) -> tuple[np.ndarray, str, np.ndarray, dict[str, np.ndarray]]:
+def read_parts(path: Path) -> tuple[np.ndarray, str, np.ndarray, dict[str, np.ndarray]]:
     """Points, the type of all cells, their nodes (cells, nodes) and the fields. Unreadable
     where it is not such a file.
     """
@@ -201,7 +203,7 @@ def _in_plane(tetrahedra: np.ndarray, on_plane: np.ndarray, points: np.ndarray) 
     return np.where(clockwise[:, None], faces[:, [0, 2, 1, 5, 4, 3]], faces)
 
 
-def _cut(solid: Solid, on_plane: np.ndarray) -> Snapshot:
+def cut_in_plane(solid: Solid, on_plane: np.ndarray) -> Snapshot:
     """The body's cut with the plane z = 0, on which nodes are where marked: every edge that
     crosses it has a point there, the fields linear along it.
     """

@@ -31,7 +31,7 @@ from .figures import (
     touched,
 )
 
-__all__ = ["draw", "main"]
+__all__ = ["contact_force", "draw", "main", "mass_of"]
 
 
 def main(argv: list[str]) -> int:
@@ -92,11 +92,11 @@ def draw(results: dict[str, Record], path: Path) -> None:
             h, used = result.history, result.scene
             t, per = 1e3 * h["t"], per_metre(used)
             heavy, start = (
-                (_mass(result), result.summary["energy_initial"]) if mixed else (1.0, 1.0)
+                (mass_of(result), result.summary["energy_initial"]) if mixed else (1.0, 1.0)
             )
             force.plot(
                 t,
-                1e-3 * (_push(h) if mixed else h["normal_force"]) / heavy,
+                1e-3 * (contact_force(h) if mixed else h["normal_force"]) / heavy,
                 color=colour,
                 label=f"{name}: {_material(used)}{result.summary['dofs']} dofs",
             )
@@ -174,7 +174,7 @@ def _contact(axes: plt.Axes, result: Record, colour: str) -> None:
         axes.axvline(1e3 * (when[0] + seconds), color=colour, linestyle="-.", linewidth=0.9)
 
 
-def _push(history: dict[str, np.ndarray]) -> np.ndarray:
+def contact_force(history: dict[str, np.ndarray]) -> np.ndarray:
     """Force on the body by its contacts: normal to the plane; of several bodies the size of all
     that acts on the first.
     """
@@ -184,7 +184,7 @@ def _push(history: dict[str, np.ndarray]) -> np.ndarray:
     return np.linalg.norm(on_first, axis=0) if on_first else history["normal_force"]
 
 
-def _mass(result: Record) -> float:
+def mass_of(result: Record) -> float:
     """Of the body, of several the first [kg, in plane strain kg/m]."""
     if "mass_1" in result.summary:
         return result.summary["mass_1"]

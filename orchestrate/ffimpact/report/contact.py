@@ -14,7 +14,7 @@ from ..input.parameters import Value
 from ..output.results import read_table
 from .figures import BLACK, BLUE, ORANGE, STICKS, evenly, legend, plt
 
-__all__ = ["PRESSURE", "SLIDES", "draw", "hertz", "read"]
+__all__ = ["PRESSURE", "SLIDES", "draw", "draw_profiles", "hertz", "radial", "read"]
 
 INSTANTS = 6  # profiles at most
 SLOW = 0.03  # speed over sqrt(E/rho) up to which the pressure of a ball is shown beside Hertz'
@@ -118,9 +118,9 @@ def draw(
     for k, body in enumerate(bodies):
         points, panels = table[table.body == body], dict(zip(shown, rows[k]))
         own, words, states = (
-            _radial(points, ball) if ball or solid and len(names) > 1 else _section(points, half)
+            radial(points, ball) if ball or solid and len(names) > 1 else _section(points, half)
         )
-        _profiles(panels["profiles"], own, words, "" if solid and words == ALONG else "-")
+        draw_profiles(panels["profiles"], own, words, "" if solid and words == ALONG else "-")
         if ball:
             _beside_hertz(panels["profiles"], points, ball)
         picture = _over_time(
@@ -182,7 +182,7 @@ def _section(points: np.recarray, half: bool) -> tuple[np.recarray, str, dict[st
     return own[once], ALONG, SLIP
 
 
-def _radial(
+def radial(
     points: np.recarray, ball: dict[str, Value] | None
 ) -> tuple[np.recarray, str, dict[str, str]]:
     """Over the distance from the axis, of a ball, or from the first touch: t, s [m], pressure,
@@ -353,7 +353,7 @@ def _instants(table: np.recarray, most: int = INSTANTS) -> list[tuple[float, np.
     ]
 
 
-def _profiles(axes: plt.Axes, own: np.recarray, words: str, line: str) -> None:
+def draw_profiles(axes: plt.Axes, own: np.recarray, words: str, line: str) -> None:
     """Pressure [MPa] over s [mm], which is the distance in these words, at up to INSTANTS
     times: along a line, broken between contacts that are far from each other; without a line
     the points.

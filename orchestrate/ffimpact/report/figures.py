@@ -53,6 +53,7 @@ __all__ = [
     "end_of_contact",
     "evenly",
     "flight",
+    "fly",
     "friction_force",
     "goes_along",
     "is_half",
@@ -62,7 +63,9 @@ __all__ = [
     "numbers_of_the_paper",
     "over_time",
     "per_metre",
+    "pose_at",
     "published",
+    "rigid_rolling",
     "rolling",
     "save",
     "scale_bar",
@@ -422,7 +425,7 @@ def rolling(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figu
     t = 1e3 * history["t"]
     figure, (top, bottom) = plt.subplots(2, sharex=True, figsize=(5.6, 4.6), height_ratios=[1.6, 1])
     top.axhline(0, color=GREY, linewidth=0.6)
-    if rigid := _rigid_rolling(history["t"], scene):
+    if rigid := rigid_rolling(history["t"], scene):
         for values, label in zip(rigid, ("rigid disc", None)):
             top.plot(t, values, color=BLACK, linestyle="--", linewidth=0.9, label=label)
     top.plot(t, history["vx"], color=BLUE, label="centre, along x")
@@ -460,7 +463,7 @@ def rolling(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figu
     return figure
 
 
-def _rigid_rolling(t: np.ndarray, scene: dict[str, Value]) -> tuple[np.ndarray, np.ndarray] | None:
+def rigid_rolling(t: np.ndarray, scene: dict[str, Value]) -> tuple[np.ndarray, np.ndarray] | None:
     """v_x and -omega R [m/s] of a rigid disc on the plane, each (steps,): it slides until both
     are equal, then rolls.
 
@@ -526,7 +529,7 @@ def flight(
     axes.plot(
         history["x"][run], history["y"][run], color=BLACK, linewidth=1.0, label="centre of mass"
     )
-    poses = [_pose(t, path, history) for (t, path), _, _ in picked]
+    poses = [pose_at(t, path, history) for (t, path), _, _ in picked]
     for pose, (_, name, colour) in zip(poses, picked):
         _draw_pose(axes, pose, colour, "-", f"{name}, {1e3 * pose.t:.2f} ms" if name else None)
         if not name:
@@ -589,7 +592,7 @@ def _draw_flight(
     if sign < 0 and scene.get("height", 0) > 0:
         pause = min(pause, pose.t / 2)  # not before the start
     for k in (1, 2):
-        moved = _fly(pose, sign * k * pause, row, history, scene)
+        moved = fly(pose, sign * k * pause, row, history, scene)
         _draw_pose(axes, moved, colour, DASHED, None)
         axes.annotate(
             f"{1e3 * moved.t:.1f} ms".replace("-", "−"),
@@ -601,11 +604,11 @@ def _draw_flight(
             va="center",
         )
     waits = np.linspace(0, 2 * sign * pause, 50)
-    way = np.array([_fly(pose, wait, row, history, scene).centre for wait in waits])
+    way = np.array([fly(pose, wait, row, history, scene).centre for wait in waits])
     axes.plot(*way.T, color=BLACK, linewidth=0.8, linestyle=":")
 
 
-def _pose(t: float, path: Path, history: dict[str, np.ndarray]) -> Pose:
+def pose_at(t: float, path: Path, history: dict[str, np.ndarray]) -> Pose:
     """The deformed outline and the deformed upright diameter of a snapshot of a whole disc, the
     mark at its top.
     """
@@ -633,7 +636,7 @@ def diameter(snapshot: vtu.Snapshot) -> np.ndarray:
     )
 
 
-def _fly(
+def fly(
     pose: Pose, wait: float, row: int, history: dict[str, np.ndarray], scene: dict[str, Value]
 ) -> Pose:
     """The pose after another `wait` seconds (before, if negative) of rigid flight with the

@@ -38,11 +38,13 @@ __all__ = [
     "assemble",
     "contact_values",
     "data_file",
+    "element_sizes",
     "pair_values",
     "prepare",
     "side_by_side",
     "stack",
     "used_tables",
+    "with_open_penalties",
 ]
 
 ROUND = 0.5  # largest element size on a circle or ellipse, over its smaller semi-axis
@@ -153,9 +155,9 @@ def assemble(scene: Scene, rule: Rule | None = None, met: list[Meeting] | None =
         else body
         for k, body in enumerate(scene.bodies)
     ]
-    scene = replace(scene, pairs=_with_open_penalties(scene, ask), bodies=bodies)
+    scene = replace(scene, pairs=with_open_penalties(scene, ask), bodies=bodies)
     pairs = [pair_values(pair, ask, values) for pair in scene.pairs]
-    sizes = [None if body.mesh else _sizes(k, ask) for k, body in enumerate(scene.bodies)]
+    sizes = [None if body.mesh else element_sizes(k, ask) for k, body in enumerate(scene.bodies)]
     meshes, centres, rounds = (_solids if scene.dimension is SOLID else _sections)(scene, sizes)
     together, regions = stack(meshes, centres)
     conditions = sections(scene.bodies, meshes, scene.obstacles, scene.dimension, copies(scene))
@@ -387,7 +389,7 @@ def pair_values(pair: Pair, ask: Asker, values: dict[str, Value]) -> dict[str, V
     return {name: own[name] for name in OWN}
 
 
-def _with_open_penalties(scene: Scene, ask: "Asker") -> list[Pair]:
+def with_open_penalties(scene: Scene, ask: "Asker") -> list[Pair]:
     """The scene's pairs, and those that an open penalty makes differ: flat strikes, and a body
     and an obstacle smaller than its contact on a plane.
     """
@@ -459,7 +461,7 @@ def _of_body(k: int, ask: Asker, **given: Value) -> dict:
         ) from None
 
 
-def _sizes(k: int, ask: Asker) -> Sizes:
+def element_sizes(k: int, ask: Asker) -> Sizes:
     """The element sizes of body k: in the bulk for its own thickness, in the contacts as each
     pair asks for.
     """

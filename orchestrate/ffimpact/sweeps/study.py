@@ -32,6 +32,7 @@ __all__ = [
     "Point",
     "cell",
     "complete",
+    "outcome_of",
     "outcomes",
     "place",
     "save",
@@ -80,7 +81,7 @@ def study(
         (folder / "runs").mkdir(
             parents=True, exist_ok=True
         )  # here: a run takes away what it had to make if it is interrupted
-    acts = {where: partial(_outcome, where, wanted, limit) for where, wanted in tasks.items()}
+    acts = {where: partial(outcome_of, where, wanted, limit) for where, wanted in tasks.items()}
     for where, outcome in side_by_side(acts, cores, "/".join(folder.parts[-2:]), len(found)):
         found[where] = _row(1, str(outcome), False, {}) if isinstance(outcome, Failure) else outcome
     return pd.DataFrame([point | found[where] for where, point in zip(places, points)])
@@ -194,7 +195,7 @@ def there(folder: Path, wanted: scene.Scene) -> dict | None:
     return result and _row(0, result.summary["message"], True, result.summary)
 
 
-def _outcome(folder: Path, wanted: scene.Scene, limit: float) -> dict | None:
+def outcome_of(folder: Path, wanted: scene.Scene, limit: float) -> dict | None:
     """Exit code, message, whether it was there already, and the numbers of the summary, as far
     as the run came in `limit` seconds; None where another run is at it.
     """

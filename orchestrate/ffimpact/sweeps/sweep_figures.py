@@ -53,14 +53,17 @@ __all__ = [
     "bars",
     "bars_of_all",
     "check",
+    "constants",
     "course",
     "distance",
     "distances",
     "draw",
+    "draw_lines",
     "findings",
     "force",
     "label",
     "level_set",
+    "level_set_words",
     "ranges",
     "spans",
     "steps_against",
@@ -157,15 +160,15 @@ def draw(sweep, rows: pd.DataFrame, out: Path) -> None:
     if not sweep.figure:
         return
     with plt.rc_context(STYLE):
-        figure = {"lines": _lines, "map": _map, "histories": _histories}[sweep.figure["kind"]](
+        figure = {"lines": draw_lines, "map": _map, "histories": _histories}[sweep.figure["kind"]](
             sweep, rows, out
         )
-        figure.suptitle("\n".join(filter(None, [as_written(sweep.title), _constants(sweep)])))
+        figure.suptitle("\n".join(filter(None, [as_written(sweep.title), constants(sweep)])))
         with study.complete(out / "sweep.png") as part:
             save(figure, part)
 
 
-def _constants(sweep) -> str:
+def constants(sweep) -> str:
     """What is the same in all runs of a body: law, nu, speed, contact stiffness and, with
     friction, the slip velocity.
     """
@@ -196,7 +199,9 @@ def findings(sweep, rows: pd.DataFrame, out: Path) -> list[str]:
         ]
     if kind == "map":
         return [
-            line for words, group in _maps(sweep, rows) for line in _set(sweep.figure, words, group)
+            line
+            for words, group in _maps(sweep, rows)
+            for line in level_set_words(sweep.figure, words, group)
         ]
     return [
         f"{panel}: ".removeprefix(": ")
@@ -265,7 +270,7 @@ def _groups(sweep, rows: pd.DataFrame, key: str) -> Iterator[tuple[str, pd.DataF
 # ---- lines
 
 
-def _lines(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
+def draw_lines(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
     x, names = sweep.figure["x"], sweep.figure["y"]
     figure, grid = plt.subplots(
         len(names),
@@ -636,7 +641,7 @@ def _typical(group: pd.DataFrame, name: str) -> float:
     return float(np.nanmin(errors)) if np.isfinite(errors).any() else 0.0
 
 
-def _set(figure: dict, words: str, group: pd.DataFrame) -> list[str]:
+def level_set_words(figure: dict, words: str, group: pd.DataFrame) -> list[str]:
     """The level set in words, a line for each value of x."""
     if figure["level"] is None:
         return []
