@@ -23,6 +23,7 @@ from ffimpact import __main__ as command_line, failure, schema
 from ffimpact.freefem.describe import describe_results
 from ffimpact.input import models, parameters
 from ffimpact.input.parameter import Parameter, Rule
+from ffimpact.output.fields import POINT_COLUMNS
 from ffimpact.places import ROOT, shown
 
 TABLES = (
@@ -204,14 +205,12 @@ def kinds(word: str, table: Mapping[str, type], common: type[models.Entries]) ->
 def results() -> str:
     """Files, columns and numbers of a run."""
     told = [describe_results({}, script) for script in SCRIPTS]
-    text, meanings = "", told[0]["meanings"]
+    text, meanings = "", told[0]["meanings"] | {"points": POINT_COLUMNS}
     for file, table, lists in TABLES:
         known = {
             name: entry for each in reversed(meanings.values()) for name, entry in each.items()
         } | meanings[table]
-        names = {name: None for each in told for key in lists for name in each[key]} or meanings[
-            table
-        ]
+        names = {name: None for each in told for key in lists for name in each[key]}
         names |= {name: None for name in meanings[table]}
         of_body = {
             name for each in told for key in lists if key.startswith("body") for name in each[key]

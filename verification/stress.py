@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from ffimpact.output import vtu
+from ffimpact.output.fields import write_fields
 
 YOUNG, NU = 7e6, 0.4
 LAMBDA, MU = YOUNG * NU / ((1 + NU) * (1 - 2 * NU)), YOUNG / (2 * (1 + NU))
@@ -23,9 +24,10 @@ def cauchy(law: str, F: np.ndarray = F) -> np.ndarray:
     return F @ S @ F.T / J
 
 
-def assert_stress(largest: dict, path: Path, sigma: np.ndarray, F: np.ndarray) -> None:
-    """Cauchy stress, its von Mises stress and det F of a snapshot are these at every node; von Mises, tension and shear of stress.idp are those of this stress."""
-    found, principal = vtu.read(path).fields, np.linalg.eigvalsh(sigma)
+def assert_stress(largest: dict, folder: Path, sigma: np.ndarray, F: np.ndarray) -> None:
+    """Cauchy stress, its von Mises stress and det F of the state recorded in `folder` are these at every node; von Mises, tension and shear of stress.idp are those of this stress."""
+    write_fields(folder)
+    found, principal = vtu.read(folder / "fields/0000.vtu").fields, np.linalg.eigvalsh(sigma)
     mises, count = np.sqrt(((principal - np.roll(principal, 1)) ** 2).sum() / 2), len(found["jacobian"])
     assert count > 20 and found["cauchy_stress"] == pytest.approx(np.tile(sigma[[0, 1, 2, 0, 1, 0], [0, 1, 2, 1, 2, 2]], (count, 1)), rel=1e-7)   # xx yy zz xy yz xz
     assert found["von_mises"] == pytest.approx(np.full(count, mises), rel=1e-7)

@@ -9,7 +9,6 @@
 #include "factor.hpp"
 #include "contact.hpp"
 #include "pairs.hpp"
-#include "numbers.hpp"
 #include "surface.hpp"
 
 static bodies::Bodies body;
@@ -99,7 +98,6 @@ static void addKernels() {
   contact::addContact();
   pairs::addPairs();
   surface::addSurface();
-  add("kernelRows", numbers::write);
 }
 
 LOADFUNC(addKernels)

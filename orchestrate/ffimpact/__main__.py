@@ -152,6 +152,12 @@ def _parser() -> argparse.ArgumentParser:
     )
     command.set_defaults(command=_view)
 
+    command = commands.add_parser(
+        "evaluate", help="write the fields of a run of an .edp script, for view and ParaView"
+    )
+    command.add_argument("folder", metavar="DIR", type=Path, help="the folder of the run")
+    command.set_defaults(command=_evaluate)
+
     command = commands.add_parser("list", help="list the built-in scenes, with their scripts")
     command.set_defaults(command=_list)
     command = commands.add_parser(
@@ -206,6 +212,19 @@ def _view(options: argparse.Namespace) -> None:
 
     path = options.html or options.folder / "view.html"
     print(shown(load(options.folder).view(path, options.field, not options.section)))
+
+
+def _evaluate(options: argparse.Namespace) -> None:
+    from .output import fields, results
+
+    results.read_summary(options.folder)  # Unreadable where there is no finished run
+    if not (options.folder / fields.RECORDED).exists():
+        raise Unreadable(
+            f"{options.folder / fields.RECORDED} cannot be read: there is no such file "
+            "(accepted: the folder of a run of an .edp script with -fields 1 or more)"
+        )
+    fields.write_fields(options.folder)
+    print(shown(options.folder / "fields.pvd"))
 
 
 def _list(options: argparse.Namespace) -> None:

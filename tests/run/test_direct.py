@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from ffimpact import scene
+from ffimpact.__main__ import main
 from ffimpact.failure import Busy, Unreadable
 from ffimpact.freefem import freefem
 from ffimpact.input import parameters
@@ -36,8 +37,11 @@ def test_any_name_will_do(tmp_path, name):
     flags = ("-checkpoint_every", "5", "-fields", "2")
     given = name if name != "-out" else "./-out"
     assert call(*COARSE, *flags, "-out", given, cwd=tmp_path)[0::2] == (0, "")
+    assert RESULTS | {"states.bin"} == names(tmp_path / name)
+    assert main(["evaluate", str(tmp_path / name)]) == 0
     assert RESULTS | {"fields.pvd", "fields/0000.vtu", "fields/0001.vtu", "fields/contact.csv",
-                      "fields/contact.pvd", "fields/contact-0000.vtp", "fields/contact-0001.vtp"} == names(tmp_path / name)
+                      "fields/contact.pvd", "fields/contact-0000.vtu", "fields/contact-0001.vtu"} == names(tmp_path / name)
+    assert main(["evaluate", str(tmp_path / name)]) == 14      # there is nothing left to evaluate
     mesh.write(mesh.disc(0.05, 0.02, 0.01, True), tmp_path / name / "my.msh")
     assert call(*COARSE, "-mesh", f"{given}/my.msh", "-out", "out", cwd=tmp_path)[0::2] == (0, "")
     code, _, error = call(*COARSE, "-restart", f"{given}/x", "-out", "out", cwd=tmp_path)
@@ -144,12 +148,13 @@ def test_an_earlier_run_that_cannot_be_put_aside(tmp_path):
 def test_earlier_runs(tmp_path):
     """Another scene, or mesh, puts the folder aside; the same one replaces what the program wrote, and what the user put there stays."""
     assert call(*COARSE, "-fields", "4", "-out", "out", cwd=tmp_path)[0] == 0
+    assert main(["evaluate", str(tmp_path / "out")]) == 0
     for name in ("notes.txt", "fields/mine.txt", ".hidden"):
         (tmp_path / "out" / name).write_text("mine")
     first = (tmp_path / "out/summary.json").read_bytes()
     code, said, _ = call(*COARSE, "-fields", "4", "-checkpoint_every", "5", "-out", "out/", cwd=tmp_path)
     assert code == 0 and "earlier run" not in said and [path.name for path in tmp_path.iterdir()] == ["out"]
-    assert {"notes.txt", "fields/mine.txt", ".hidden"} < names(tmp_path / "out") and (tmp_path / "out/summary.json").read_bytes() != first
+    assert {"notes.txt", "fields/mine.txt", ".hidden", "states.bin"} < names(tmp_path / "out") and (tmp_path / "out/summary.json").read_bytes() != first
     before = {name: (tmp_path / "out" / name).read_bytes() for name in names(tmp_path / "out")}
     code, said, _ = call(*COARSE, "-speed", "7", "-out", "out", cwd=tmp_path)
     assert code == 0 and f"is now in {tmp_path}/out.1\n" in said and names(tmp_path / "out") == RESULTS
@@ -202,7 +207,7 @@ def test_full_disk_of_its_own(tmp_path, files):
     error = (tmp_path / "error").read_text()
     assert (tmp_path / "code").read_text() == "14\n" and error.startswith("ffimpact: ") and error.count("\n") == 1, error
     assert "summary.json" not in (tmp_path / "left").read_text()
-    assert set((tmp_path / "finished").read_text().split()) == RESULTS | {"fields", "fields.pvd"}
+    assert set((tmp_path / "finished").read_text().split()) == RESULTS | {"states.bin"}
 
 
 @pytest.mark.parametrize("given", [

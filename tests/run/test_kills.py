@@ -32,7 +32,7 @@ fields = 5
 [product]
 speed = [4, 8, 11]
 """
-EARLY, LATE = "unfinished/history.csv", "unfinished/fields/0002.vtu"   # appear in the folder on the way, both long before the end
+EARLY, LATE = "unfinished/history.csv", "unfinished/states.bin"   # appear in the folder on the way, both long before the end
 # route, signal, receiver, what the folder holds by then, whether a finished run of another scene is there already
 KILLS = [
     ("run", signal.SIGINT, "python", EARLY, False),
@@ -86,7 +86,7 @@ def answers(route: str, out: Path) -> object:
     """What a route gives, to the last digit."""
     if route == "sweep":
         return pd.read_csv(out / "sweep.csv").drop(columns="seconds").to_csv()
-    return (out / "history.csv").read_text(), sorted((path.name, path.read_text()) for path in (out / "fields").iterdir())
+    return (out / "history.csv").read_text(), sorted((path.name, path.read_bytes()) for path in [*out.glob("fields/*"), *out.glob("states.bin")])
 
 
 @functools.cache

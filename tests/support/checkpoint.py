@@ -5,6 +5,7 @@ import subprocess
 import time
 from pathlib import Path
 
+import meshio
 import numpy as np
 import pandas as pd
 import pytest
@@ -12,6 +13,7 @@ import pytest
 from ffimpact.freefem import freefem
 from ffimpact.input import parameters
 from ffimpact.output import results
+from ffimpact.output.fields import write_fields
 
 EFFORT = ("start_seconds", "wall_seconds", "total_seconds", "cpu_seconds", "estimate_cpu_seconds", "peak_memory", "phase_seconds", "resumed_at", "provenance")
 
@@ -58,9 +60,12 @@ def assert_same(folder: Path, straight: Path) -> None:
         assert there[name] == (expected[name] if exact else pytest.approx(expected[name], rel=1e-9, abs=1e-11)), name
     there, expected = (pd.read_csv(each / "contacts.csv") for each in (folder, straight))
     pd.testing.assert_frame_equal(there, expected, rtol=1e-9)
-    fields = sorted(path.name for path in (straight / "fields").glob("*"))
-    assert fields == sorted(path.name for path in (folder / "fields").glob("*"))
-    for name in fields:
-        numbers = [np.array([float(word) for word in (place / "fields" / name).read_text().replace("<", " <").replace(",", " ").split()
-                             if word[0] in "-0123456789"]) for place in (folder, straight)]
-        np.testing.assert_allclose(*numbers, rtol=1e-7, atol=1e-7 * np.abs(numbers[1]).max(initial=0))
+    for place in (folder, straight):
+        write_fields(place)
+    states, expected = (sorted(place.glob("fields/[0-9]*.vtu")) for place in (folder, straight))
+    assert [path.name for path in states] == [path.name for path in expected]
+    for path, other in zip(states, expected):
+        there, wanted = meshio.read(path).point_data, meshio.read(other).point_data
+        assert list(there) == list(wanted)
+        for name, values in wanted.items():
+            np.testing.assert_allclose(there[name], values, rtol=1e-7, atol=1e-7 * np.abs(values).max(), err_msg=name)

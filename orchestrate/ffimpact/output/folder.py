@@ -37,14 +37,21 @@ __all__ = [
 
 # what the program writes into a folder: what a run leaves, what it needs on its way, and its
 # pictures
-RECORDS = ("scene.toml", "history.csv", "contacts.csv", "modes.csv", "summary.json")
+RECORDS = (
+    "scene.toml",
+    "history.csv",
+    "contacts.csv",
+    "modes.csv",
+    "states.bin",
+    "summary.json",
+)
 FIELDS = [
     f"fields/{name}"
     for name in (
         "[0-9][0-9][0-9][0-9].vtu",
         "contact.csv",
         "contact.pvd",
-        "contact-[0-9][0-9][0-9][0-9].vtp",
+        "contact-[0-9][0-9][0-9][0-9].vtu",
     )
 ]
 FIGURES = (

@@ -21,6 +21,7 @@ from ..failure import Failure, NotInstalled, Unreadable, of_code
 from ..freefem import freefem
 from ..input.parameters import Value
 from ..output import estimate
+from ..output.fields import write_fields
 from ..output.results import read_history, read_json, read_summary, write_json
 from ..progress import Line
 from ..scene import Scene
@@ -107,6 +108,7 @@ class Solver(AbstractContextManager):
                 exit_code, said = process.end(display.show)
         if (where / USED).exists() and (where / "scene.toml").exists():
             os.replace(where / USED, where / "scene.toml")
+        write_fields(where)
         _check(where, exit_code, said)
         display.at("ready", 1.0)
 
