@@ -67,7 +67,9 @@ def write_fields(folder: Path) -> None:
         return
     surface, states = read_arrays(path)
     (folder / "fields").mkdir(exist_ok=True)
-    along, rows, times = _Along(surface), [], []
+    along = _Along(surface)
+    rows: list[np.ndarray] = []
+    times: list[float] = []
     for state in states:
         points = _points_under_load(surface, state, along)
         rows.append(np.stack(list(points.values()), axis=1))
@@ -260,7 +262,8 @@ def _chains(surface: Arrays) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.nda
     following = np.array([starting.get(node, -1) for node in last])
     begins = np.setdiff1d(np.arange(len(first)), following)
     before, chain = np.full(len(first), -1.0), np.zeros(len(first), int)
-    lengths, closed = [], []
+    lengths: list[float] = []
+    closed: list[bool] = []
     for start in (
         *begins,
         *range(len(first)),
