@@ -1,6 +1,5 @@
 """FreeFem++ without Python: its folder is as safe as Python's, and nothing that the user gives reaches a shell as a command."""
 
-import os
 import resource
 import signal
 import subprocess
@@ -12,11 +11,10 @@ import pytest
 
 from ffimpact import scene
 from ffimpact.__main__ import main
-from ffimpact.failure import Busy, Unreadable
 from ffimpact.freefem import freefem
 from ffimpact.input import parameters
 from ffimpact.mesh import mesh
-from ffimpact.output import folder, results
+from ffimpact.output import results
 from ffimpact.running import run
 from tests.support.direct import COARSE, call, start
 
@@ -44,7 +42,7 @@ def test_any_name_will_do(tmp_path, name):
     assert main(["evaluate", str(tmp_path / name)]) == 14      # there is nothing left to evaluate
     mesh.write(mesh.disc(0.05, 0.02, 0.01, True), tmp_path / name / "my.msh")
     assert call(*COARSE, "-mesh", f"{given}/my.msh", "-out", "out", cwd=tmp_path)[0::2] == (0, "")
-    code, _, error = call(*COARSE, "-restart", f"{given}/x", "-out", "out", cwd=tmp_path)
+    code, _, error = call(*COARSE, "-restart", f"{given}/x", "-out", "other", cwd=tmp_path)
     assert code == 14 and error.count("\n") == 1 and "no such file" in error
     assert not list(tmp_path.rglob("pwned"))
 
@@ -56,15 +54,13 @@ def test_any_name_will_do_for_python(tmp_path):
 
 
 def test_second_run_on_a_folder_is_refused(tmp_path):
-    """The lock is the kernel's: the second run is refused with 14 as long as the first one lives, and no longer, even if it was killed."""
+    """The second run is refused with 14 as long as the first one lives, and no longer, even if it was killed."""
     first = start(*COARSE, "-dt", "1e-6", "-out", "out", cwd=tmp_path)
     end = time.monotonic() + 20
-    while not (tmp_path / "out/unfinished/history.csv").exists() and time.monotonic() < end:
+    while not (tmp_path / "out/history.csv").exists() and time.monotonic() < end:
         time.sleep(0.01)
     code, _, error = call(*COARSE, "-out", str(tmp_path / "out/"), cwd=tmp_path)
     assert code == 14 and error.startswith("ffimpact: out: ") and "another run" in error and error.count("\n") == 1
-    with pytest.raises(Busy):
-        run.run(scene.load("disc-normal"), {"accuracy": 0.4}, tmp_path / "out")
     assert first.poll() is None
     first.kill()
     first.communicate()
@@ -72,105 +68,24 @@ def test_second_run_on_a_folder_is_refused(tmp_path):
     assert names(tmp_path / "out") == RESULTS
 
 
-def test_run_in_a_folder_that_python_is_at_is_refused(tmp_path):
-    """Python makes the files of DIR in DIR.part: as long as that is locked, DIR is taken."""
-    (tmp_path / "out.part").mkdir()
-    lock = folder.lock_folder(tmp_path / "out.part", tmp_path / "out")
-    code, _, error = call(*COARSE, "-out", "out", cwd=tmp_path)
-    os.close(lock)
-    assert code == 14 and "another run" in error
-
-
-def test_files_of_others_are_left_alone(tmp_path):
-    """A folder that is not the program's is refused with 14, as it is through Python."""
+def test_a_finished_run_is_not_overwritten(tmp_path):
+    """A second run in the folder of a finished one is refused with 14, of whatever scene; that of a failed one is taken, and files of others stay."""
     (tmp_path / "out").mkdir()
-    (tmp_path / "out/thesis.tex").write_text("years of work")
-    code, _, error = call(*COARSE, "-out", "out", cwd=tmp_path)
-    assert code == 14 and "files of others" in error and error.count("\n") == 1 and names(tmp_path) == {"out/thesis.tex"}
-    (tmp_path / "out").rename(tmp_path / "unfinished")
-    assert call(*COARSE, "-out", "out", cwd=tmp_path)[0] == 0
-    (tmp_path / "unfinished").rename(tmp_path / "out/unfinished")
-    code, _, error = call(*COARSE, "-out", "out", cwd=tmp_path)
-    assert code == 14 and "files of others" in error and (tmp_path / "out/unfinished/thesis.tex").exists()
-
-
-@pytest.mark.parametrize("name", ["out/unfinished", "unfinished/", "unfinished/deeper"])
-def test_the_folder_of_a_run_under_way_is_no_folder_of_results(tmp_path, name):
-    """What a run in DIR would take away, DIR/unfinished, is refused as -out and --out with 14: a finished run there would be lost."""
-    code, _, error = call(*COARSE, "-out", name, cwd=tmp_path)
-    assert code == 14 and "is in a folder unfinished" in error and error.count("\n") == 1 and not names(tmp_path)
-    with pytest.raises(Unreadable, match="is in a folder unfinished"):
-        folder.result_folder(tmp_path / name)
-
-
-def test_a_run_killed_while_its_files_took_their_places_goes_on(tmp_path, monkeypatch):
-    """kill -9 when some of its files are in their places and others are not: from the checkpoint it comes to the same end."""
-    assert call(*COARSE, "-fields", "2", "-out", "straight", cwd=tmp_path)[0] == 0
-    (tmp_path / "mv").write_text("""#!/bin/sh
-if [ "$2" = scene.toml ]; then PATH=${PATH#*:}; mv "$2" "$3" ..; kill -9 0; fi
-PATH=${PATH#*:}; exec mv "$@"\n""")
-    (tmp_path / "mv").chmod(0o755)
-    flags = (*COARSE, "-fields", "2", "-checkpoint_every", "5", "-out", "out")
-    with monkeypatch.context() as patched:
-        patched.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
-        assert call(*flags, cwd=tmp_path, process_group=0)[0] == -signal.SIGKILL
-    assert (tmp_path / "out/history.csv").exists() and not (tmp_path / "out/summary.json").exists()
-    assert call(*flags, "-restart", "out/checkpoint", cwd=tmp_path)[0::2] == (0, "")
-    assert names(tmp_path / "out") == names(tmp_path / "straight")
-    assert (tmp_path / "out/history.csv").read_bytes() == (tmp_path / "straight/history.csv").read_bytes()
-
-
-def test_an_interrupt_while_files_take_their_places_is_no_success(tmp_path, monkeypatch):
-    """Ctrl-C that reaches the commands which FreeFEM waits for, and not itself: exit code 130, no results claimed, none half in place."""
-    (tmp_path / "mv").write_text("#!/bin/sh\nkill -INT 0\n")
-    (tmp_path / "mv").chmod(0o755)
-    monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
-    code, said, _ = call(*COARSE, "-out", "out", cwd=tmp_path, process_group=0)
-    assert code == 130 and "results in" not in said and not (tmp_path / "out/summary.json").exists()
-
-
-def test_an_earlier_run_that_cannot_be_put_aside(tmp_path):
-    """On a mount point, which cannot be renamed, a second run is refused with 14 before it begins, and through Python any run."""
-    disk = tmp_path / "disk"
-    disk.mkdir()
-    if subprocess.run(["mount", "-t", "tmpfs", "none", disk], capture_output=True).returncode:
-        pytest.skip("nothing can be mounted here")
-    try:
-        assert call(*COARSE, "-out", "disk", cwd=tmp_path)[0] == 0
-        code, said, error = call(*COARSE, "-speed", "3", "-out", "disk", cwd=tmp_path)
-        assert code == 14 and "cannot be put aside" in error and "progress" not in said and names(disk) == RESULTS
-        with pytest.raises(Unreadable, match="cannot be put aside"):
-            folder.finished_in(disk, force=False)
-    finally:
-        subprocess.run(["umount", disk], check=True)
-
-
-def test_earlier_runs(tmp_path):
-    """Another scene, or mesh, puts the folder aside; the same one replaces what the program wrote, and what the user put there stays."""
-    assert call(*COARSE, "-fields", "4", "-out", "out", cwd=tmp_path)[0] == 0
-    assert main(["evaluate", str(tmp_path / "out")]) == 0
-    for name in ("notes.txt", "fields/mine.txt", ".hidden"):
-        (tmp_path / "out" / name).write_text("mine")
-    first = (tmp_path / "out/summary.json").read_bytes()
-    code, said, _ = call(*COARSE, "-fields", "4", "-checkpoint_every", "5", "-out", "out/", cwd=tmp_path)
-    assert code == 0 and "earlier run" not in said and [path.name for path in tmp_path.iterdir()] == ["out"]
-    assert {"notes.txt", "fields/mine.txt", ".hidden", "states.bin"} < names(tmp_path / "out") and (tmp_path / "out/summary.json").read_bytes() != first
-    before = {name: (tmp_path / "out" / name).read_bytes() for name in names(tmp_path / "out")}
-    code, said, _ = call(*COARSE, "-speed", "7", "-out", "out", cwd=tmp_path)
-    assert code == 0 and f"is now in {tmp_path}/out.1\n" in said and names(tmp_path / "out") == RESULTS
-    assert before == {name: (tmp_path / "out.1" / name).read_bytes() for name in names(tmp_path / "out.1")}
-    mesh.write(mesh.disc(0.05, 0.02, 0.01, True), tmp_path / "my.msh")
-    assert f"{tmp_path}/out.2\n" in call(*COARSE, "-speed", "7", "-mesh", "my.msh", "-out", "out", cwd=tmp_path)[1]
-
-
-def test_failure_does_not_cost_an_earlier_result(tmp_path):
-    """A run that fails puts a finished one of the same folder aside, whole; bad input leaves it where it is."""
-    assert call(*COARSE, "-out", "out", cwd=tmp_path)[0] == 0
-    before = (tmp_path / "out/history.csv").read_bytes()
-    assert call(*COARSE, "-speed", "0", "-out", "out", cwd=tmp_path)[0] == 10
-    assert names(tmp_path) == {f"out/{name}" for name in RESULTS}
+    (tmp_path / "out/notes.txt").write_text("mine")
     assert call("-accuracy", "0.4", "-speed", "60", "-out", "out", cwd=tmp_path)[0] in (11, 12)
-    assert names(tmp_path / "out") == {"scene.toml", "history.csv", "contacts.csv", "failure.json"} and (tmp_path / "out.1/history.csv").read_bytes() == before
+    assert names(tmp_path / "out") == {"scene.toml", "history.csv", "contacts.csv", "failure.json", "notes.txt"}
+    assert call(*COARSE, "-out", "out", cwd=tmp_path)[0] == 0
+    before = {name: (tmp_path / "out" / name).read_bytes() for name in names(tmp_path / "out")}
+    assert set(before) == RESULTS | {"notes.txt"}
+    for flags in ((), ("-speed", "7"), ("-speed", "0")):
+        code, _, error = call(*COARSE, *flags, "-out", "out", cwd=tmp_path)
+        assert code == 14 and "has a finished run" in error and error.count("\n") == 1
+    assert before == {name: (tmp_path / "out" / name).read_bytes() for name in names(tmp_path / "out")}
+
+
+def test_bad_input_leaves_nothing(tmp_path):
+    """Where the scene is refused the folders that the run has made are gone."""
+    assert call(*COARSE, "-speed", "0", "-out", "new/out", cwd=tmp_path)[0] == 10 and not list(tmp_path.iterdir())
 
 
 @pytest.mark.few(1)
@@ -183,7 +98,7 @@ def test_full_disk(tmp_path, size):
     def small_files():   # as a full disk: a write fails, without the signal
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
         resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
-    for flags in (("-out", "out", "-speed", "7"), ("-out", "new/out"), ("-out", "new/out", "-fields", "2")):
+    for flags in (("-out", "new/out"), ("-out", "new/out", "-fields", "2")):
         code, _, error = call(*COARSE, *flags, cwd=tmp_path, preexec_fn=small_files, restore_signals=False)
         assert code == 14 and error.startswith("ffimpact: out: ") and error.count("\n") == 1, error
         assert before == {name: (tmp_path / name).read_bytes() for name in names(tmp_path)} and not (tmp_path / "new").exists()

@@ -32,18 +32,18 @@ fields = 5
 [product]
 speed = [4, 8, 11]
 """
-EARLY, LATE = "unfinished/history.csv", "unfinished/states.bin"   # appear in the folder on the way, both long before the end
+EARLY, LATE = "history.csv", "checkpoint"   # appear in the folder on the way, both long before the end; LATE of a run with checkpoints
 # route, signal, receiver, what the folder holds by then, whether a finished run of another scene is there already
 KILLS = [
     ("run", signal.SIGINT, "python", EARLY, False),
-    ("run", signal.SIGKILL, "python", LATE, True),
+    ("run", signal.SIGKILL, "python", EARLY, True),
     ("checkpoints", signal.SIGTERM, "python", LATE, False),
     ("checkpoints", signal.SIGKILL, "freefem", LATE, True),
     ("sweep", signal.SIGTERM, "python", EARLY, False),
-    ("sweep", signal.SIGKILL, "python", LATE, False),
-    ("direct-checkpoints", signal.SIGKILL, "freefem", LATE, True),
+    ("sweep", signal.SIGKILL, "python", EARLY, False),
+    ("direct-checkpoints", signal.SIGKILL, "freefem", LATE, False),
 ]
-MORE = [(route, number, receiver, point, False) for route in ("run", "checkpoints", "sweep", "direct", "direct-checkpoints")
+MORE = [(route, number, receiver, point if "checkpoints" in route else EARLY, False) for route in ("run", "checkpoints", "sweep", "direct", "direct-checkpoints")
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL) for receiver, point in (("python", EARLY), ("freefem", LATE))
         if not (route.startswith("direct") and receiver == "python")]
 
@@ -138,7 +138,7 @@ def another(route: str, folder: Path) -> Path:
 def content(folder: Path) -> dict[str, bytes]:
     """All files but those of a run without Python that is at work there or was killed."""
     return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*")
-            if path.is_file() and path.relative_to(folder).parts[0] != "unfinished" and not path.name.startswith("checkpoint")}
+            if path.is_file() and path.name != "unfinished" and not path.name.startswith("checkpoint")}
 
 
 @pytest.mark.parametrize("route, number, receiver, point, before", [

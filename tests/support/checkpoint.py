@@ -28,7 +28,7 @@ def direct(flags: dict, out: Path, script: str = "disc-plane") -> subprocess.Pop
 def rows_known(checkpoint: Path) -> int:
     """Rows of the history that the checkpoint knows; 0 where there is none yet."""
     try:
-        return int(checkpoint.read_bytes().split(b"\n", 2)[1])
+        return int(checkpoint.read_bytes().split(b"\n", 1)[0] or 0)
     except FileNotFoundError:
         return 0
 

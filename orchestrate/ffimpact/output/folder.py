@@ -70,7 +70,7 @@ FIGURES = (
 )
 OWN = (
     *RECORDS,
-    "unfinished/*",
+    "unfinished",
     "failure.json",
     "log.txt",
     "view.html",
@@ -79,6 +79,7 @@ OWN = (
     "scene.dat",
     "summary.json.part",
     "checkpoint",
+    "checkpoint.new",
     "checkpoint.json",
     "body-files/*",
     "fields.pvd",
@@ -101,10 +102,6 @@ def result_folder(out: Path) -> Path:
         raise Unreadable(
             f"{out} cannot be made: {getattr(error, 'strerror', None) or error}; choose another --out"
         ) from None
-    if "unfinished" in folder.parts:
-        raise Unreadable(
-            f"{out} is in a folder unfinished, which runs write and take away; choose another --out"
-        )
     if not folder.name:
         raise Unreadable(f"{out} cannot be the folder of a run; choose another --out")
     return folder
@@ -222,8 +219,7 @@ def _holds(lock: int, path: Path) -> bool:
 def lock_folder(path: Path, folder: Path) -> int:
     """The folder `path` opened and locked; Busy where a run in `folder` holds it.
 
-    The lock is flock() on the folder itself. The scripts without Python lock their folder in
-    the same way (edp/core/run/folder.idp), FreeFem++ shares the open folder and so the lock,
+    The lock is flock() on the folder itself. FreeFem++ shares the open folder and so the lock,
     and no lock file is left.
     """
     lock = os.open(path, os.O_RDONLY)
