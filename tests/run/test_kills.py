@@ -32,7 +32,7 @@ fields = 5
 [product]
 speed = [4, 8, 11]
 """
-EARLY, LATE = "history.csv", "checkpoint"   # appear in the folder on the way, both long before the end; LATE of a run with checkpoints
+EARLY, LATE = "unfinished", "checkpoint"   # are in the folder of a run that goes on; LATE where it makes checkpoints
 # route, signal, receiver, what the folder holds by then, whether a finished run of another scene is there already
 KILLS = [
     ("run", signal.SIGINT, "python", EARLY, False),
