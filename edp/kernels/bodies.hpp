@@ -123,8 +123,7 @@ public:
   }
 
   // Of elements with a volume of their own: cellOfPoint (nq).
-  void cells(const std::vector<int> &cellOfPoint, const Volume &arrays) {
-    volume = arrays;
+  void cells(const std::vector<int> &cellOfPoint) {
     cell.clear();
     cellWeight.assign(firstPoint.size() - 1, 0.);
     for (size_t g = 0; g + 1 < firstPoint.size(); g++) {

@@ -1,8 +1,19 @@
 // call.hpp: a C++ function as a function of FreeFEM's language, with any number of arguments: add(name, function).
 #pragma once
+#include <cstdio>
+#include <cstdlib>
+#include <new>
 #include <utility>
 #include <vector>
 #include "ff++.hpp"
+
+// A library that had no memory, or was called with what it does not take: one line on stderr, and out with exit code 14.
+[[noreturn]] inline void giveUp(const char *what) {
+  std::fprintf(stderr, "ffimpact: memory: %s: take larger elements (mesh_size, contact_mesh_size) or a larger accuracy\n", what);
+  std::fflush(nullptr);
+  std::_Exit(14);
+}
+inline void check(bool good, const char *what) { if (!good) giveUp(what); }
 
 typedef KN<double> &Reals;                 // real[int], also where double * is asked for
 typedef KN<long> &Ints;                    // int[int]
@@ -35,7 +46,10 @@ template <class F, class... A> struct Called : E_F0mps {
     f(Given<A>::of((*argument[i])(s))...);
     return 0;
   }
-  AnyType operator()(Stack s) const { return SetAny<long>(call(f, s, std::index_sequence_for<A...>())); }
+  AnyType operator()(Stack s) const {
+    try { return SetAny<long>(call(f, s, std::index_sequence_for<A...>())); }
+    catch (const std::bad_alloc &) { giveUp("there is not enough of it for the compiled kernels"); }
+  }
 };
 
 struct Types : ArrayOfaType {

@@ -11,6 +11,7 @@
 #include <umfpack.h>
 #include <memory>
 #include <vector>
+#include "call.hpp"
 #include "contact-law.hpp"
 
 extern "C" {
@@ -131,8 +132,10 @@ struct Rows {
         for (int o = first[b]; o < first[b + 1]; o++) { I.push_back(column[o]);  J.push_back(column[e]); }
     for (int j = 0; j < n; j++) { I.push_back(j);  J.push_back(j); }
     Pattern made{first, column, Indices(n + 1), Indices(I.size()), Indices(I.size()), nullptr};
-    umfpack_di_triplet_to_col(n, n, I.size(), I.data(), J.data(), nullptr, made.start.data(), made.row.data(), nullptr, made.place.data());
-    umfpack_di_symbolic(n, n, made.start.data(), made.row.data(), nullptr, &symbolic, nullptr, nullptr);
+    check(umfpack_di_triplet_to_col(n, n, I.size(), I.data(), J.data(), nullptr, made.start.data(), made.row.data(), nullptr,
+                                    made.place.data()) == UMFPACK_OK
+          && umfpack_di_symbolic(n, n, made.start.data(), made.row.data(), nullptr, &symbolic, nullptr, nullptr) == UMFPACK_OK,
+          "there is not enough of it for the pattern of the contact");
     made.symbolic.reset(symbolic, [](void *s) { umfpack_di_free_symbolic(&s); });
     pattern = std::make_shared<const Pattern>(std::move(made));
   }
@@ -183,7 +186,7 @@ class Newton {
   std::shared_ptr<void> numeric;                                   // its LU
 
   void factorDense(const Rows &B, const Vector &S) {
-    int info;
+    int info;                                                      // above 0: singular, and its solution is not a number
     LU = S;
     pivots.resize(n);
     B.stiffness(D, [this](int, int i, int j, double K) { LU[(size_t)n * j + i] += K; });
@@ -198,7 +201,8 @@ class Newton {
     for (int j = 0; j < n; j++) for (int e = start[j]; e < start[j + 1]; e++)
       P[e] = isDiagonal(S, n) ? (row[e] == j) * S[j] : rounded[(size_t)n * j + row[e]];
     B.stiffness(D, [&](int t, int, int, double K) { P[pattern->place[t]] += K; });
-    umfpack_di_numeric(start.data(), row.data(), P.data(), pattern->symbolic.get(), &made, nullptr, nullptr);
+    const int status = umfpack_di_numeric(start.data(), row.data(), P.data(), pattern->symbolic.get(), &made, nullptr, nullptr);
+    check(status == UMFPACK_OK || status == UMFPACK_WARNING_singular_matrix, "there is not enough of it for the matrix of the contact");
     numeric.reset(made, [](void *s) { umfpack_di_free_numeric(&s); });
   }
 
@@ -212,8 +216,9 @@ class Newton {
     y.assign(n, 0.);
     for (iterations = 0; iterations < 200 && norm(left) > goal; iterations++) {
       Vector way(n), image;
-      umfpack_di_solve(UMFPACK_A, pattern->start.data(), pattern->row.data(), P.data(), way.data(), left.data(), numeric.get(), control,
-                       nullptr);
+      const int status = umfpack_di_solve(UMFPACK_A, pattern->start.data(), pattern->row.data(), P.data(), way.data(), left.data(),
+                                          numeric.get(), control, nullptr);
+      check(status == UMFPACK_OK || status == UMFPACK_WARNING_singular_matrix, "there is not enough of it to solve the contact");
       if (isDiagonal(S, n)) symmetric(S, way, image); else symmetric(rounded, way, image);
       B.pull(way, move);
       B.slope(D, move, change);

@@ -159,6 +159,7 @@ public:
     }
     if (L) cholmod_free_factor(&L, &common);
     cholmod_factor *alone = cholmod_analyze(&A, &common);   // by AMD, or METIS where that is poor
+    check(alone, "there is not enough of it for the order of the matrix");
     ordered.assign((int *)alone->Perm, (int *)alone->Perm + n);
     cholmod_free_factor(&alone, &common);
   }
@@ -177,6 +178,7 @@ public:
     tail.assign(last.size() * last.size(), 0.);
     if (!L->is_super) {
       cholmod_factorize(&A, L, &common);
+      check(common.status == CHOLMOD_OK || common.status == CHOLMOD_NOT_POSDEF, "there is not enough of it for the matrix");
       if (common.status != CHOLMOD_OK || L->minor < L->n) return 1;
       takeColumns();
     }
@@ -202,7 +204,8 @@ public:
       given.ncol = 1;
       given.x = const_cast<double *>(b);
       given.xtype = CHOLMOD_REAL;  given.dtype = CHOLMOD_DOUBLE;
-      cholmod_solve2(CHOLMOD_A, L, &given, nullptr, &solution, nullptr, &work1, &work2, &common);
+      check(cholmod_solve2(CHOLMOD_A, L, &given, nullptr, &solution, nullptr, &work1, &work2, &common),
+            "there is not enough of it to solve with the matrix");
       std::copy((double *)solution->x, (double *)solution->x + n, x);
       return;
     }
@@ -285,6 +288,7 @@ private:
     common.method[0].ordering = CHOLMOD_GIVEN;
     common.postorder = 0;
     L = cholmod_analyze_p(&A, permutation.data(), nullptr, 0, &common);
+    check(L, "there is not enough of it for the pattern of the matrix");
     place.resize(n);
     for (int k = 0; k < n; k++) place[((int *)L->Perm)[k]] = k;
     blockOf.resize(n);

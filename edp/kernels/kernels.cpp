@@ -12,7 +12,20 @@
 #include "surface.hpp"
 
 static bodies::Bodies body;
-static bodies::Deformation deformation;
+// Arrays of the scripts that calls read and fill without being given them. FreeFEM may move the numbers of an array, not the array.
+struct Array {
+  KN<double> *of = nullptr;
+  operator double *() const { return of ? static_cast<double *>(*of) : nullptr; }
+};
+static struct { Array F0, C0, F1, C1, jacobian1, Fs, Ss, damping, carried, star, now, dBase, lag; } arrays;
+static bodies::Deformation deformation() {
+  return {arrays.F0, arrays.C0, arrays.F1, arrays.C1, arrays.jacobian1, arrays.Fs, arrays.Ss};
+}
+static bodies::Bodies &bodyNow() {
+  body.damping = arrays.damping;
+  body.volume = {arrays.carried, arrays.star, arrays.now, arrays.dBase, arrays.lag};
+  return body;
+}
 static std::vector<const laws::Law *> law;
 static Factor factor;
 
@@ -33,7 +46,7 @@ static void addBodies() {
                            Reals dampingState, Ints lawOfPoint, Ints traced, Ints held, Reals weight) {
     const long nq = weight.N();
     body.weight = copied<double>(weight);
-    body.damping = dampingState;
+    arrays.damping = {&dampingState};
     for (long q = 0; q < nq; q++) {
       laws::Material m = {law[lawOfPoint[q]], lambda[q], mu[q], {}, eta[q], zeta[q], relaxing[q], relaxTime[q], bulk[q], traced[q],
                           held[q]};
@@ -48,25 +61,27 @@ static void addBodies() {
   });
   add("kernelFree", +[](Reals free) { body.free = copied<double>(free); });   // where supports hold other unknowns than before
   add("kernelDeformation", +[](Reals F0, Reals C0, Reals F1, Reals C1, Reals jacobian1, Reals Fs, Reals Ss) {
-    deformation = {F0, C0, F1, C1, jacobian1, Fs, Ss};
+    arrays.F0 = {&F0};  arrays.C0 = {&C0};  arrays.F1 = {&F1};  arrays.C1 = {&C1};  arrays.jacobian1 = {&jacobian1};
+    arrays.Fs = {&Fs};  arrays.Ss = {&Ss};
   });
   add("kernelVolume", +[](Ints cellOfPoint, Reals carried, Reals star, Reals now, Reals dBase, Reals lag) {
-    body.cells(copied<int>(cellOfPoint), {carried, star, now, dBase, lag});
+    arrays.carried = {&carried};  arrays.star = {&star};  arrays.now = {&now};  arrays.dBase = {&dBase};  arrays.lag = {&lag};
+    body.cells(copied<int>(cellOfPoint));
   });
   add("kernelForces", +[](Reals d, Reals inertiaKnown, Reals bodyForce, double massScale, double rate, long where, bool breaks,
                           bool carries, Reals residual) {
-    return long(body.forces(d, inertiaKnown, bodyForce, {massScale, rate, int(where), breaks, carries}, deformation, residual));
+    return long(bodyNow().forces(d, inertiaKnown, bodyForce, {massScale, rate, int(where), breaks, carries}, deformation(), residual));
   });
-  add("kernelEnergy", +[](Reals C, Reals W) { body.energies(C, W); });
-  add("kernelDamp", +[](Reals C0, Reals C1, double dt) { body.damp(C0, C1, dt); });
+  add("kernelEnergy", +[](Reals C, Reals W) { bodyNow().energies(C, W); });
+  add("kernelDamp", +[](Reals C0, Reals C1, double dt) { bodyNow().damp(C0, C1, dt); });
   add("kernelSmallestStretch", +[](Reals C, Reals stretch) { body.smallestStretches(C, stretch); });
   add("kernelEllipticity", +[](Reals C, Reals e) { body.ellipticities(C, e); });
-  add("kernelStresses", +[](Reals F, Reals p, Reals sigma, Reals mises) { body.stresses(F, p, sigma, mises); });
+  add("kernelStresses", +[](Reals F, Reals p, Reals sigma, Reals mises) { bodyNow().stresses(F, p, sigma, mises); });
 }
 
 static void addFactor() {
   add("kernelTangent", +[](Reals F, Reals S, Reals p, double massScale, double stiffnessScale, double rate) {
-    body.tangent(F, S, p, massScale, stiffnessScale, rate);
+    bodyNow().tangent(F, S, p, massScale, stiffnessScale, rate);
     factor.numbers(body);
   });
   add("kernelTangentProduct", +[](Reals x, Reals y) { factor.product(x, y); });

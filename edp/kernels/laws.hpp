@@ -169,7 +169,7 @@ struct Logarithm {
     const Symmetric inverse = 1 / det * cofactor(C);
     D.add(inverse, inverse, l, m - l / 2 * ln(det));
   }
-  // of Q(N) = first I + a g (x) g, over mu: logarithmEllipticity()
+  // the smallest eigenvalue of Q(N) = first I + a g (x) g over mu, of all directions N
   double ellipticity(const Symmetric &C, bool spatial, double first, double mu) const {
     const double a = m + l * (1 - 0.5 * ln(determinant(C)));
     return a < 0 ? (first + a / std::max(0., principal(C, spatial)[spatial ? 2 : 1])) / mu : 1;

@@ -86,3 +86,15 @@ def test_a_step_that_is_given_is_parted(runs, tmp_path):
 def test_every_kind_of_scene_conserves(tmp_path, name, settings):
     """Rows that turn with two bodies are iterated until momenta are exact; so they are at several obstacles, in space and of revolution."""
     conserves(run.run(scene.load(name), settings | EXPLICIT | {"accuracy": 0.2}, tmp_path / "out", estimate=False), 5e-3)
+
+
+def test_pairs_of_points_are_softened_too(tmp_path):
+    """A penalty beyond what explicit steps take is the same one: with pairs of points as well, and the warning names the one in use and the requested one."""
+    found = {}
+    for penalty in (1e13, 1e14):
+        given = dict(script="disc-block", pairing="pairwise", pairing_range=0.02, radius=0.5, speed=5, accuracy=0.1, end_time=0.01, **EXPLICIT)
+        found[penalty] = disc(tmp_path / f"{penalty:g}", **given, penalty=penalty).summary
+        words, = (words for words in found[penalty]["warnings"] if words.startswith("explicit penalty: "))
+        assert f"in place of the requested {penalty:g} Pa/m".replace("e+", "e+") in words
+    one, other = found.values()
+    assert one["impulse"] == pytest.approx(other["impulse"], rel=1e-9) and one["impulse"] > 0
