@@ -33,7 +33,7 @@ BRIEF = 30.0  # transits after a strike: in longer runs the front does not matte
 # area (volume) of an element over h^2 (h^3).
 MOST_UNKNOWNS, UNKNOWNS, ELEMENT = {2: 40000, 3: 60000}, {2: 9.5, 3: 36.0}, {2: 0.43, 3: 0.12}
 # Largest nu in the wave speed. The stiffness by a larger nu acts on the volume of elements
-# (docs/explanation/method.md).
+# (docs/explanation/materials.md).
 STIFFEST = 0.45
 
 
