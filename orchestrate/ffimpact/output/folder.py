@@ -105,7 +105,9 @@ def result_folder(out: Path) -> Path:
 
 
 def failed_beside(folder: Path) -> Path:
-    """Returns the folder for the files of a failed run if `folder` holds an earlier finished one."""
+    """Returns the folder for the files of a failed run if `folder` holds an earlier finished
+    one.
+    """
     return folder.with_name(folder.name + ".failed")
 
 

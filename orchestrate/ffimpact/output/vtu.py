@@ -258,7 +258,9 @@ def series(pvd: Path) -> list[tuple[float, Path]]:
 
 
 def between(times: np.ndarray, values: Sequence[np.ndarray], t: float) -> np.ndarray:
-    """Returns the value at t of `values` at `times`: linear between them, constant beyond the ends."""
+    """Returns the value at t of `values` at `times`: linear between them, constant beyond the
+    ends.
+    """
     place = np.interp(t, times, np.arange(len(times)))
     low, share = int(place), place % 1
     return (1 - share) * values[low] + share * values[min(low + 1, len(values) - 1)]

@@ -317,9 +317,9 @@ def turned(scene: Scene) -> Scene:
 
 
 def refuse_nothing(scene: Scene, met: list[Meeting]) -> None:
-    """Raises BadInput if nothing ever moves, or if the end of a run is open and it has none: a body
-    is driven, no bodies ever come into contact, or a body set down on an obstacle does not leave
-    it.
+    """Raises BadInput if nothing ever moves, or if a run whose end is automatic would have none: a
+    body is driven, no bodies ever come into contact, or a body set down on an obstacle does not
+    leave it.
     """
     driven = [
         f"{kind}.{k}"
@@ -372,8 +372,8 @@ def refuse_nothing(scene: Scene, met: list[Meeting]) -> None:
 
 
 def refuse_sinking(scene: Scene, met: list[Meeting]) -> None:
-    """Raises BadInput if a body first reaches a plane or another body with a part of its boundary
-    that is no contact boundary. It would pass through.
+    """Raises BadInput if the first contact of a body with a plane or another body is at a part of
+    its boundary that is no contact boundary. It would pass through.
     """
     for k, body in enumerate(scene.bodies):
         mine = [one for one in met if k in (one.first, one.second)]

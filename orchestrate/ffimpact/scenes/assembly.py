@@ -265,7 +265,9 @@ class Asker:
         return {(front.meeting.first, front.meeting.second): front for front in found}
 
     def open_front(self, pair: Pair) -> Front | None:
-        """Returns the front of a pair that strikes flat and whose penalty is automatic, else None."""
+        """Returns the front of a pair that strikes flat and whose penalty is automatic, else
+        None.
+        """
         is_open = pair.values.get("penalty", self.scene.contact["penalty"]) == "auto"
         return self.fronts.get((pair.first, pair.second)) if is_open else None
 

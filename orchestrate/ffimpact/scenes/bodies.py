@@ -81,7 +81,9 @@ class Body:
 
     @property
     def driven(self) -> bool:
-        """Whether a support moves the body, or a prescribed stress loads it (a gas does not count)."""
+        """Whether a support moves the body, or a prescribed stress loads it (a gas does not
+        count).
+        """
         return any(one.moves for one in self.supports) or any(
             one.kind != "gas" for one in self.loads
         )

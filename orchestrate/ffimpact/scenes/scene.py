@@ -490,7 +490,9 @@ def _touching_themselves(
 
 
 def _partners(path: str, given, index: dict[str, int]) -> tuple[int, int]:
-    """Returns the indices of the two surfaces of a contact pair, the body or the first body first."""
+    """Returns the indices of the two surfaces of a contact pair, the body or the first body
+    first.
+    """
     accepted = f"accepted: two names, one at least of a body, of {', '.join(index)}"
     if (
         not isinstance(given, list)

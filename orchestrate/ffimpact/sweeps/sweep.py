@@ -337,7 +337,9 @@ def _flat(table: dict, path: str = "") -> dict:
 
 
 def _values(name: str, given: list | dict, of: scene.Scene) -> list[Value]:
-    """Returns the checked values of an axis of a sweep over the scene `of`, from a list or a range."""
+    """Returns the checked values of an axis of a sweep over the scene `of`, from a list or a
+    range.
+    """
     if isinstance(given, dict):
         if not set(RANGE[:3]) <= set(given) <= set(RANGE):
             raise BadInput(
