@@ -158,7 +158,7 @@ def staging(folder: Path) -> Iterator[tuple[Path, int]]:
             os.rename(stage, folder)  # its lock stays
             leaving.callback(os.close, lock := _lock(stage, folder))
         elif folder.exists():
-            leaving.callback(os.close, lock_folder(folder, folder))  # excludes a run without Python
+            leaving.callback(os.close, lock_folder(folder, folder))  # Busy if it is in use
         # The folder of a run always contains checkpoint.json. A folder of that name without it
         # belongs to someone else.
         if os.listdir(stage) and not (stage / "checkpoint.json").exists():
@@ -223,8 +223,8 @@ def _holds(lock: int, path: Path) -> bool:
 def lock_folder(path: Path, folder: Path) -> int:
     """Returns the folder `path`, opened and locked. Raises Busy if a run in `folder` holds it.
 
-    The lock is flock() on the folder itself. FreeFem++ shares the open folder and so the lock. No lock
-    file is left.
+    The lock is flock() on the folder itself. FreeFem++ shares the open folder and so the lock. No
+    lock file is left.
     """
     lock = os.open(path, os.O_RDONLY)
     try:
