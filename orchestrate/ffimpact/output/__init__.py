@@ -1,1 +1,1 @@
-"""What a run leaves: its folder, its results, the errors that they state."""
+"""The output of a run: its folder, its results and their error estimates."""

@@ -1,5 +1,5 @@
-"""The error estimate of each number of a run in the unit of the number, from the shares in
-summary.json (`estimated_error`): of the number itself, of the largest energy or of the speed.
+"""Converts the relative error estimates in summary.json (`estimated_error`) to the units of the
+numbers. They are relative to the number itself, to the largest energy or to the speed.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from .results import Record, numbers, read_answers
 
 __all__ = ["errors"]
 
-# numbers whose error is that of an energy, over the largest energy
+# Energies and works whose error estimate is that of the energy, relative to the largest energy.
 ENERGIES = (
     "energy_initial",
     "energy_final",
@@ -20,6 +20,7 @@ ENERGIES = (
     "creep_work",
     "viscous_work",
 )
+# Numbers whose error estimate is relative to the number itself.
 OF_ITSELF = (
     "impulse",
     "thresholded_contact_time",
@@ -31,9 +32,10 @@ OF_ITSELF = (
 
 
 def errors(record: Record) -> dict[str, float]:
-    """The estimated error by the name of the number; numbers without an estimate are left out.
+    """Returns the error estimates by the name of the number, in its unit. Numbers without an
+    estimate are left out.
 
-    What another penalty or slip velocity would change is not included.
+    The estimates do not include the effect of penalty and slip velocity.
     """
     summary = record.summary
     names = numbers(summary)

@@ -1,27 +1,37 @@
-"""The error of a run, estimated from a second one with larger elements and steps; finer runs until
-it is below what is asked.
+"""Estimates the error of a run from a second run with larger elements and steps. Finer runs follow
+until the estimate meets the requested accuracy.
 
-Of the two runs of a pair the finer is the answer. What an answer differs by between them is about
-its error: elements and steps of the coarser are COARSER times as large, so that an error quadratic
-in them doubles. But one difference can be small by chance, and impulse, rebound and energy of an
-impact without friction are one number, small together. So the error that is stated of an answer is
-made from the geometric mean of three measures that mislead for different reasons,
-    BOUND (D d A)^(1/3),   D: the mean of the promised answers' differences, over their usual ones;
-                           d: the largest difference of its course over its scale: running impulse, velocities, elastic energy (course());
-                           A = 1/n^2, n: the steps in which the force is above half its peak: what second-order steps are good for,
-and no less than the difference; what friction ties together is stated together (_together()). Three
-answers differ (MEASURES): the steps of an impact say little of spin and peak force (d for A), the
-other answers little of friction work (d for D). A touch ends between two steps, so that times
-converge more slowly: the fourth root. BOUND is what 97 of 100 runs keep on scenes other than those
-of docs/measurements/promise.md, some three times the usual error. It is that of mesh and steps: penalty and slip
-velocity are the same in all runs. Steps grow no more above 0.3 of a transit of waves (sizes.idp),
-those of a pair asked for an accuracy of 0.06 or more are the same, of 0.05 7 % apart: its
-differences are those of elements alone. The share (alike()) of what steps make of them, ALIKE A,
-joins D and d. Where that of a promised answer is more than WORTH times what is asked finer runs
-follow. The contact time scatters with the vibration at the last touch (by 0.8 % rms in hard
-impacts, on any mesh and at any step that was tried): where it alone is off, a second finer run
-follows only if what the first one gained, gained again, brings its estimate there. An answer that
-is then still above WORTH times what is asked is a warning. What is above it by less, or scatters,
+The program reports the finer run of a pair. Elements and steps of the coarser run are COARSER times
+as large, which doubles an error quadratic in them, so the difference of a result is about its
+error. But one difference can be small by chance. And in an impact without friction impulse, rebound
+and energy are one number: their differences are small together. So the error estimate of a result
+is a geometric mean of three measures that mislead for different reasons,
+
+    BOUND (D d A)^(1/3),   D: mean of the differences of the results PROMISED over USUAL;
+                           d: largest difference of its time history over its scale: running
+                              impulse, velocities, elastic energy (course());
+                           A = 1/n^2, n: steps with a force above half its peak; A is the accuracy
+                              of second-order steps,
+
+and at least the difference. Results that friction couples have common estimates (_together()).
+
+Three results have other measures (MEASURES): the steps of an impact say little about spin and peak
+force (d for A), the other results little about friction work (d for D). Contact ends between two
+steps, so times converge more slowly: their root is the fourth. With the factors BOUND the estimate
+contains the error in 97 of 100 runs (on scenes other than those of docs/measurements/promise.md),
+and is about three times the usual error. The estimate covers mesh and steps: penalty and slip
+velocity are the same in all runs.
+
+Steps do not exceed 0.3 of a transit of waves (sizes.idp). Both runs of a pair have the same steps
+at a requested accuracy of 0.06 or more, and steps 7 % apart at 0.05: the difference is then that of
+the elements alone. The hidden share of the error of the steps (alike()), times ALIKE A, is added to
+D and d.
+
+Finer runs follow if the estimate of a promised result is above WORTH times the request. The contact
+time scatters with the vibration at the end of contact (by 0.8 % rms in hard impacts, on any mesh
+and with any step that was tried). If it alone is above, a second finer run follows only if the gain
+of the first one, gained again, brings its estimate there. An estimate that is still above WORTH
+times the request is a warning. One that is above the request by less, or of a result that scatters
 or is not promised, is a note (notes.py).
 """
 
@@ -74,17 +84,18 @@ __all__ = [
     "wanted",
 ]
 
-COARSER = math.sqrt(2)
-COARSE, FINE = "coarser", "finer"  # folders of the runs beside the main one
-MOST = 2  # refinements: elements and steps are then half as large as at first
+COARSER = math.sqrt(2)  # ratio of elements and steps in the two runs of a pair
+COARSE, FINE = "coarser", "finer"  # folders of the other runs, in that of the main one
+MOST = 2  # largest number of refinements, after which elements and steps are half as large
 SIZES = ("mesh_size", "contact_mesh_size", "dt")
-LARGEST = 0.4  # accuracy that the scripts take
-LOOSER = 2
-WORTH = 1.5  # of what is asked: a stated error that a finer run is worth its price for
+LARGEST = 0.4  # largest accuracy that the scripts accept
+LOOSER = 2  # factor on the accuracy for notes about results that are not promised
+WORTH = 1.5  # error estimate over the requested accuracy above which a finer run follows
 REGULARISED = ("penalty", "slip_velocity")
-NO_ANSWER = (11, 12)  # exit codes of a run that the step or the material ended
-# What the answers of a pair usually differ by, beside each other; the first six are promised. What
-# is stated of them; both calibrated over other scenes than those of docs/measurements/promise.md.
+NO_ANSWER = (11, 12)  # exit codes of runs that the step or the material ended
+# USUAL: usual differences of the results of a pair, relative to each other; the first six are
+# promised. BOUND: factors of the error estimates. Both are calibrated on scenes other than those of
+# docs/measurements/promise.md.
 USUAL = {
     "impulse": 0.06,
     "rebound": 0.12,
@@ -105,12 +116,11 @@ BOUND = {
     "contact_time": 1.22,
     "peak_force": 4.34,
 }
-MEASURES = {
-    "rebound_spin": "Ddd",
-    "friction_work": "Add",
-    "peak_force": "Ddd",
-}  # of the others: DdA
-ROOT = {"thresholded_contact_time": 4, "contact_time": 4}  # of the others: 3
+# Measures whose product gives the estimate of a result, DdA for all others, and the root of the
+# product, 3 for all others.
+MEASURES = {"rebound_spin": "Ddd", "friction_work": "Add", "peak_force": "Ddd"}
+ROOT = {"thresholded_contact_time": 4, "contact_time": 4}
+# D and differences d of results by the error of the steps alone, over A.
 ALIKE = {
     "D": 1.4,
     "impulse": 0.3,
@@ -118,8 +128,8 @@ ALIKE = {
     "rebound_spin": 0.5,
     "energy": 1.0,
     "friction_work": 0.03,
-}  # over A, by steps alone
-# of flat strikes: front_errors(), calibrated likewise
+}
+# Factors of the error estimates of flat strikes (front_errors()), calibrated likewise.
 FRONT = {
     "impulse": 3.0,
     "rebound": 3.0,
@@ -130,8 +140,8 @@ FRONT = {
     "contact_time": 3.2,
     "peak_force": 9.0,
 }
-# of scenes with supports, loads, rigid bodies or moving obstacles: held_errors(), calibrated
-# likewise
+# Smallest error estimates over the accuracy (held_errors()), calibrated likewise: HELD for scenes
+# with supports, rigid bodies or moving obstacles, LOADED for scenes with loads.
 HELD = {
     "impulse": 0.1,
     "rebound": 0.8,
@@ -152,27 +162,29 @@ LOADED = {
     "contact_time": 1.5,
     "peak_force": 7.0,
 }
-TOUCHES_AGAIN = 2.5
+TOUCHES_AGAIN = 2.5  # factor on these if there are several contact intervals
+# SHARP: error by an unresolved front over its transit through an element. It is full if this
+# transit is RESOLVED times the rise time or more (front_errors()).
 SHARP, RESOLVED = {"impulse": 0.12, "rebound": 0.24, "energy": 0.48}, 7.5
 PROMISED = tuple(USUAL)[:6]
+# Results that take the time history of another result.
 COURSE = {
     "thresholded_contact_time": "impulse",
     "contact_time": "impulse",
     "peak_force": "impulse",
-}  # whose course stands for theirs
-# friction work where nothing turns: small slip under a patch that mostly sticks, over BOUND
+}
+# Factor on BOUND of friction work if nothing turns: small slip under a patch that mostly sticks.
 STILL = 1.6
-# of the rim's speed by friction's impulse, what it gives the centre: 1/2 of a disc, 2/5 of a ball,
-# and a margin
+# Velocity that an impulse of friction gives the centre, over the rim speed of the spin that it
+# causes: 1/2 for a disc, 2/5 for a ball, and a margin.
 LEVER = 0.7
-THROUGH = 2  # friction that goes another way changes speed, spin and energy, too: its share in them
-SHARES = np.linspace(0, 1, 201)  # of the impulse
-NONE = 1e-12  # a difference that is round-off
-STEPS = (
-    "explicit steps (",
-    "implicit steps (",
-)  # as `skipped` says of those not chosen by integrator = auto
-SCATTERS = "thresholded_contact_time"
+# Factor of a difference of friction work in those of speed, spin and energy, which it changes, too.
+THROUGH = 2
+SHARES = np.linspace(0, 1, 201)  # shares of the impulse at which friction work is compared
+NONE = 1e-12  # largest relative difference that is round-off
+# First words of the messages `skipped` about steps that integrator = auto has not chosen.
+STEPS = ("explicit steps (", "implicit steps (")
+SCATTERS = "thresholded_contact_time"  # the promised result that scatters
 SAME_STEPS = (
     "the error is not estimated: with steps 1.4 times larger a second run took the same ones: they are too "
     "large for this scene: ask for a smaller accuracy"
@@ -181,14 +193,16 @@ FILE_MESH = (
     "mesh of the file: error estimates are those of the time step: the error of the mesh is not included: "
     "run a finer one beside it"
 )
-OF_ITSELF = "friction_work of itself"  # accuracy_of = friction_work
-HIGHEST = ("max_pressure", "max_penetration")  # largest values of a column of the history
-INSTANT = 2.0  # stated of these, over what the columns differ by; 95 of 100 runs keep it
+# Error of friction work relative to friction work itself, for accuracy_of = friction_work.
+OF_ITSELF = "friction_work of itself"
+HIGHEST = ("max_pressure", "max_penetration")  # largest values of columns of the history
+# Error estimate of these values over the difference of the columns. It contains the error in 95 of
+# 100 runs.
+INSTANT = 2.0
 
 Scaled = Callable[[Mapping, Mapping, float, bool], dict[str, Value]]
-Solve = Callable[
-    [dict[str, Value], Path], None
-]  # runs the scene with these values in a folder; Failure where it fails
+# Runs the scene with these values in a folder, and raises Failure if the run fails.
+Solve = Callable[[dict[str, Value], Path], None]
 
 
 def settle(
@@ -199,22 +213,23 @@ def settle(
     read: Callable,
     scaled: Scaled | None = None,
 ) -> dict:
-    """What joins the summary of the run in `stage`, made from the scene `values`:
-    estimated_error (by answer, see difference(); None if it could not be estimated),
-    estimated_error_excludes (what all runs have alike), estimate_cpu_seconds, refinements, the
-    sentences `warnings` and `notes`, and `skipped`, which steps the first run has not chosen
-    and why, where it is not the one in `stage` at last.
+    """Estimates the error of the run in `stage`, made from the scene `values`, and computes finer
+    runs.
 
-    Where sizes and steps follow from the accuracy and the estimate is above it, finer runs take
-    the run's place in `stage`. `read` gives the Answers of a folder, `scaled` the entries of
-    the scene with larger or smaller elements and steps (left out: other).
+    If sizes and steps follow from the accuracy and the estimate is above it, finer runs replace the
+    run in `stage`. `read` returns the Answers of a folder, `scaled` the entries of the scene with
+    larger or smaller elements and steps (default: other()).
+
+    Returns entries of the summary: estimated_error (by result, see difference(); None if it could
+    not be estimated), estimated_error_excludes (what all runs have in common),
+    estimate_cpu_seconds, refinements, the messages `warnings` and `notes`, and `skipped`: which
+    steps the first run has not chosen and why, if a finer run has replaced it.
     """
     coarser, finer = stage / COARSE, stage / FINE
     answers = read(stage)
     summary, used = answers.summary, answers.used
-    chosen = (
-        {"integrator": summary["integrator"]} if values.get("integrator") == "auto" else {}
-    )  # a pair differs in sizes alone
+    # The runs of a pair differ in sizes alone, so the second one has the integrator of the first.
+    chosen = {"integrator": summary["integrator"]} if values.get("integrator") == "auto" else {}
     why = [words for words in summary["skipped"] if words.startswith(STEPS)] if chosen else []
     sizes = lambda *given: (scaled or other)(*given) | chosen  # noqa: E731
     asked, seconds, refinements, before = values["accuracy"], 0.0, 0, math.inf
@@ -233,9 +248,9 @@ def settle(
         estimated = error_estimates(answers, before_it, estimated)
         stated = held_errors(estimated, answers, before_it)
         above = [name for name in wanted(values["accuracy_of"]) if estimated[name] > WORTH * asked]
-        flat = (
-            summary.get("front_transit") is not None
-        )  # its contact time is not of a scatter, but no finer run is worth it
+        # The contact time of a flat strike does not scatter, but no finer run follows from it
+        # alone.
+        flat = summary.get("front_transit") is not None
         scatters = above == [SCATTERS] and (
             flat or estimated[SCATTERS] ** 2 / before > WORTH * asked
         )
@@ -276,8 +291,8 @@ def settle(
 
 
 def _excludes(summary: Mapping, own_mesh: bool) -> list[str]:
-    """What all runs have alike. The rise of a flat strike's front on the penalty is in its
-    estimate (front_errors()).
+    """Returns what all runs have in common. For a flat strike the penalty is not among it, because
+    the estimate includes the rise time of the front on the penalty (front_errors()).
     """
     alike = [name for name in REGULARISED if name != "penalty" or summary.get("front_rise") is None]
     return alike if own_mesh else [*alike, "mesh"]
@@ -286,8 +301,8 @@ def _excludes(summary: Mapping, own_mesh: bool) -> list[str]:
 def error_estimates(
     fine: Answers, coarse: Answers, before: Mapping[str, float] | None = None
 ) -> dict[str, float]:
-    """The error that is stated of every answer of the finer run of a pair; `before`: what was
-    stated of the coarser one.
+    """Returns the error estimates of the results of the finer run of a pair. `before` holds the
+    estimates of the coarser run.
     """
     summary = fine.summary
     apart, way = (
@@ -305,15 +320,14 @@ def error_estimates(
         found = errors(apart, way, resolved(fine), alike(fine, coarse))
     if summary.get("bounces", 1) > 1:
         found = strikes_again(found, way, before)
-    found["energy"] = max(
-        found["energy"], summary.get("energy_drift", 0.0)
-    )  # of which the pair may have the same
+    # Both runs of a pair may have the same drift, so their difference does not show it.
+    found["energy"] = max(found["energy"], summary.get("energy_drift", 0.0))
     return found | highest(fine, coarse) | driven(fine, coarse)
 
 
 def _ended(solve: Solve, values: dict[str, Value], where: Path) -> Failure | None:
-    """With what a run has ended that the step or the material brought to its end; None where it
-    has an answer.
+    """Runs the scene. Returns the failure if the step or the material ended the run, None if the
+    run has a result. Other failures are raised.
     """
     try:
         return solve(values, where)
@@ -324,14 +338,11 @@ def _ended(solve: Solve, values: dict[str, Value], where: Path) -> Failure | Non
 
 
 def _swap(stage: Path, coarser: Path, finer: Path) -> None:
-    """The run in `stage` becomes the coarser one, that in `finer` takes its place."""
+    """Makes the run in `stage` the coarser one and puts the run in `finer` in its place."""
     shutil.rmtree(coarser)
     coarser.mkdir()
-    kept = (
-        "checkpoint.json",
-        coarser.name,
-        finer.name,
-    )  # what the run was asked for stays where it is
+    # checkpoint.json, the request of the run, stays in its folder.
+    kept = ("checkpoint.json", coarser.name, finer.name)
     for source, target in ((stage, coarser), (finer, stage)):
         for entry in [entry for entry in source.iterdir() if entry.name not in kept]:
             os.rename(entry, target / entry.name)
@@ -341,11 +352,11 @@ def _swap(stage: Path, coarser: Path, finer: Path) -> None:
 def other(
     values: Mapping[str, Value], used: Mapping[str, Value], factor: float, own_mesh: bool = True
 ) -> dict[str, Value]:
-    """The scene `values` with `factor` times the elements and steps that it had as `used`; on a
-    mesh file with other steps only.
+    """Returns the scene `values` with `factor` times the elements and steps of `used`; on a mesh
+    file with other steps only.
 
-    The accuracy then sets the adaptive step alone, as the sizes are given; the contact's own
-    parameters stay as they were.
+    The accuracy then sets the adaptive step alone, because the sizes are given. The contact
+    parameters keep their values.
     """
     sizes = {
         name: factor * used[name] for name in SIZES if used[name] > 0 and (own_mesh or name == "dt")
@@ -363,16 +374,16 @@ def other(
 
 
 def output(factor: float) -> dict[str, Value]:
-    """What a run with `factor` times the elements and steps has instead of the requests for
-    output. A coarser run is only compared and writes none. A finer run takes the place of the
-    first one and keeps all its requests.
+    """Returns the requests for output of a run with `factor` times the elements and steps, as
+    entries to override. A coarser run is only compared and writes no output. A finer run takes the
+    place of the first one and keeps all its requests.
     """
     return OUTPUT if factor > 1 else {}
 
 
 def loosened(accuracy: float, factor: float) -> float:
-    """What `factor` times the elements and steps are asked for, in as many digits as a reader
-    wants.
+    """Returns the accuracy for `factor` times the elements and steps, rounded to nine digits for
+    readers.
     """
     return min(LARGEST, float(f"{factor**2 * accuracy:.9g}"))
 
@@ -380,11 +391,15 @@ def loosened(accuracy: float, factor: float) -> float:
 def difference(
     fine: Mapping, coarse: Mapping, speed: float, radius: float | None, held: Collection[str] = ()
 ) -> dict[str, float]:
-    """How far the answers of two summaries differ, each over its scale: impulse, times and
-    force over themselves, velocities and spin over `speed` [m/s] (spin times `radius` [m]; of
-    several bodies the largest, and spin times its reach), energies and friction work over the
-    largest energy, where the summary has it, else over that at the start. A body that is `held`
-    (its suffix) vibrates: its velocities at the end are of an instant and no answer.
+    """Returns the differences of the results of two summaries, relative to their scales.
+
+    - impulse, times and force: the value itself;
+    - velocities: `speed` [m/s]; spin: `speed` over `radius` [m]; of several bodies the one with the
+      largest difference counts, and its spin is scaled by its own bounding radius;
+    - energies and friction work: the largest energy if the summary has it, else that at the start.
+
+    A body with a suffix in `held` vibrates on its support: its velocities at the end are of one
+    instant and are left out.
     """
 
     def value(summary: Mapping, name: str) -> float:
@@ -429,11 +444,14 @@ def difference(
 
 
 def course(fine: Answers, coarse: Answers) -> dict[str, float]:
-    """How far two runs are apart on their way, by answer and over its scale as in difference():
-    impulse, velocities, spins and elastic energy (with the contact's) at the time when they are
-    farthest from each other, and what friction changes in them (in the spin of what turns at
-    all); friction work, by Coulomb's law of impulse and path, at equal shares of the impulse,
-    root mean square: a touch that is a little later is no error.
+    """Returns the largest differences of the time histories of two runs, by result and relative to
+    the scales of difference().
+
+    Histories: running impulse, velocities, spins, and elastic energy with that of the contact.
+    THROUGH times the largest difference of friction work is added to those that friction changes
+    (to spin only if anything turns). Friction work itself is compared at equal shares of the
+    impulse, root mean square, because by Coulomb's law it depends on impulse and path: a contact
+    that is a little later is no error.
     """
     summary, history = fine.summary, (fine.history, coarse.history)
     ends = [one["t"] for one in history]
@@ -483,16 +501,17 @@ def course(fine: Answers, coarse: Answers) -> dict[str, float]:
 
 
 def _over_impulse(history: Mapping) -> np.ndarray:
-    """Friction work [J/m] at equal SHARES of the impulse."""
+    """Returns the friction work [J/m] at equal SHARES of the impulse."""
     impulse = np.cumsum(history["normal_force"] * history["dt"])
     return np.interp(SHARES * impulse[-1], impulse, history["friction_work"])
 
 
 def highest(fine: Answers, coarse: Answers, names: Sequence[str] = HIGHEST) -> dict[str, float]:
-    """The error that is stated of the largest values of columns, over themselves. Such a value
-    is of one instant: two runs may agree in it by chance. So the stated error is INSTANT times
-    the root mean square difference of the two histories while one of them is above half the
-    largest value, and no less than the difference of the largest values.
+    """Returns the error estimates of the largest values of columns, relative to these values.
+
+    Such a value is of one instant, so two runs may agree in it by chance. The estimate is INSTANT
+    times the root mean square difference of the two histories while one of them is above half the
+    largest value, and at least the difference of the largest values.
     """
 
     def stated(name: str) -> float:
@@ -511,9 +530,10 @@ def highest(fine: Answers, coarse: Answers, names: Sequence[str] = HIGHEST) -> d
 
 
 def driven(fine: Answers, coarse: Answers) -> dict[str, float]:
-    """The error that is stated of what supports and loads do: of the largest force of a support
-    as of other largest values (highest()), of their work INSTANT times the largest difference
-    of the histories, over the largest energy.
+    """Returns the error estimates of the results of supports and loads.
+
+    The estimate of the largest force of a support is that of highest(). That of works is INSTANT
+    times the largest difference of the histories, relative to the largest energy.
     """
 
     def force(one: Answers, number: int) -> np.ndarray:
@@ -545,22 +565,24 @@ def driven(fine: Answers, coarse: Answers) -> dict[str, float]:
 
 
 def resolved(run: Answers) -> float:
-    """A = 1/n^2: what second-order steps are good for, n of them with more than half the peak
-    force (without a contact: all).
+    """Returns A = 1/n^2, the accuracy of second-order steps; n is the number of steps with more
+    than half the peak force (without a contact all steps).
     """
     return 1 / np.count_nonzero(_high(run)) ** 2
 
 
 def _high(run: Answers) -> np.ndarray:
-    """Which steps have more than half the peak force."""
+    """Returns which steps (steps + 1,) have at least half the peak force."""
     force = run.history["normal_force"]
     return force >= force.max() / 2
 
 
 def alike(fine: Answers, coarse: Answers) -> float:
-    """The share of the steps' error that does not show in what a pair differs by: 2 - q^2 of an
-    error quadratic in the step, which is q times as large in the coarser run while the force is
-    high; 0 from q = COARSER on, 1 of the same steps.
+    """Returns the share of the error of the steps that the difference of a pair does not show.
+
+    It is 2 - q^2 for an error quadratic in the step; q is the mean step of the coarser run over
+    that of the finer one while the force is high. It is 0 from q = COARSER on, and 1 for equal
+    steps.
     """
     q = coarse.history["dt"][_high(coarse)].mean() / fine.history["dt"][_high(fine)].mean()
     return float(np.clip(COARSER**2 - q**2, 0, 1))
@@ -569,19 +591,23 @@ def alike(fine: Answers, coarse: Answers) -> float:
 def errors(
     apart: Mapping[str, float], way: dict[str, float], steps: float, hidden: float = 0.0
 ) -> dict[str, float]:
-    """The error that is stated of every answer, from the differences of a pair at the end and
-    on its way (course()), in the same units, from resolved(), and from alike().
+    """Returns the error estimates of all results.
+
+    `apart` are the differences of a pair at the end (difference()), `way` those of the time
+    histories (course()), in the same units; `steps` is A (resolved()), `hidden` the share of
+    alike().
     """
     shares = [apart[name] / USUAL[name] for name in PROMISED if apart[name] > NONE]
     measures = {
         "D": sum(shares) / len(shares) + ALIKE["D"] * hidden * steps if shares else 0.0,
         "A": steps,
     }
+    # Without friction no step changes the spin.
     moved = [
         name
         for name in BOUND
         if way[name] > NONE and (name != "rebound_spin" or way["friction_work"] > NONE)
-    ]  # spin by friction
+    ]
     seen = way | {
         name: way[name] + ALIKE[COURSE.get(name, name)] * hidden * steps for name in moved
     }
@@ -605,11 +631,12 @@ def errors(
 def strikes_again(
     stated: Mapping[str, float], way: Mapping[str, float], before: Mapping[str, float] | None
 ) -> dict[str, float]:
-    """The estimated errors of a run with several impacts. A later impact hangs on the vibration
-    that an earlier one left, whose phase the steps change: two runs can then agree by chance in
-    all answers at once. So an error is no less than the largest difference of the time
-    histories, and no less than second order makes of the error that was stated of the coarser
-    run.
+    """Returns the error estimates of a run with several impacts.
+
+    A later impact depends on the vibration that an earlier one left, and the steps change its
+    phase. Two runs can then agree by chance in all results at once. So an estimate is not below the
+    largest difference of the time histories, and not below the estimate of the coarser run divided
+    by COARSER^2 (second order).
     """
     least = {name: before[name] / COARSER**2 if before else 0.0 for name in BOUND}
     return dict(stated) | {
@@ -618,14 +645,14 @@ def strikes_again(
 
 
 def held_errors(estimated: Mapping[str, float], fine: Answers, coarse: Answers) -> dict[str, float]:
-    """What is stated of a scene with supports, loads, rigid bodies or moving obstacles; of
-    others the same as estimated.
+    """Returns the error estimates of a scene with supports, loads, rigid bodies or moving
+    obstacles; those of other scenes are unchanged.
 
-    A heavy rigid body stays in contact for hundreds of steps, a beam and a shell with gas
-    strike again as they vibrate: both runs of a pair then follow the same course, right or
-    wrong, and differ by too little. So an error is no less than HELD of the accuracy of the
-    sizes of elements and steps, of bodies with loads LOADED, and TOUCHES_AGAIN times that where
-    bodies touch several times. No finer run follows from that alone.
+    A heavy rigid body stays in contact for hundreds of steps; a beam and a shell with gas strike
+    again as they vibrate. Both runs of a pair then have the same time history, right or wrong, and
+    differ by too little. So an estimate is not below HELD (with loads LOADED) times the accuracy
+    for which elements and steps were chosen, and not below TOUCHES_AGAIN times that if there are
+    several contact intervals. No finer run follows from this alone.
     """
     loaded = any(body.get("load") for body in fine.used.get("body", []))
     shares = LOADED if loaded else HELD if _is_held(fine.used) else {}
@@ -650,15 +677,15 @@ def _is_held(used: Mapping) -> bool:
 def front_errors(
     apart: Mapping[str, float], way: Mapping[str, float], rise: float, element: float
 ) -> dict[str, float]:
-    """The estimated errors of a flat strike, where answers converge with the first power of the
-    element size and the penalty follows it. `rise` and `element` [1] are the rise time of the
-    front, and its transit through an element, over the contact time.
+    """Returns the error estimates of a flat strike. Its results converge with the first power of
+    the element size, and the penalty follows the element size. `rise` and `element` [1] are the
+    rise time of the front, and its transit through an element, over the contact time.
 
-    As in errors() one difference can be small by chance. An error is FRONT d sqrt(r), d the
-    largest difference of its time history, r the mean of the differences at the end over d.
-    Contact ends 1.7 rises late (front.py), which is about its error. A front that rises in less
-    than its transit through an element keeps a share of the speed, in runs of all element sizes
-    alike: SHARP element.
+    As in errors() one difference can be small by chance. An estimate is FRONT d sqrt(r): d is the
+    largest difference of the time history, r the mean over the results of (difference at the
+    end)/d. Contact ends 1.7 rise times late (front.py), which is about the error of contact times.
+    A front that rises in less than its transit through an element keeps a share of the speed, in
+    runs of all element sizes alike: SHARP element.
     """
     moved = [name for name in ("impulse", "rebound", "energy") if way[name] > NONE]
     share = (
@@ -683,9 +710,11 @@ def front_errors(
 
 
 def _together(stated: dict[str, float], turns: bool) -> dict[str, float]:
-    """With what friction ties together: its impulse turns a body and moves its centre; where
-    nothing turns what it takes is the rebound's energy E, of which dE/E = 2 dv/v = 4 dp/p of
-    speed v and impulse p in a head-on touch that loses little.
+    """Returns the estimates with common values for results that friction couples.
+
+    The impulse of friction turns a body and moves its centre. If nothing turns, friction takes its
+    work from the energy E of the rebound. In a head-on contact that loses little dE/E = 2 dv/v = 4
+    dp/p, with speed v and impulse p.
     """
     rebound, energy = max(stated["rebound"], LEVER * stated["rebound_spin"]), stated["energy"]
     if turns or not stated["friction_work"]:
@@ -701,7 +730,7 @@ def _together(stated: dict[str, float], turns: bool) -> dict[str, float]:
 
 
 def wanted(also: str) -> list[str]:
-    """The promised answers, and the one that accuracy_of names."""
+    """Returns the names PROMISED and the one in the entry accuracy_of."""
     return [
         *PROMISED,
         *([] if also == "promised" else [OF_ITSELF if also == "friction_work" else also]),
@@ -709,13 +738,13 @@ def wanted(also: str) -> list[str]:
 
 
 def largest(estimated: Mapping[str, float]) -> float:
-    """The largest estimated error of the promised answers."""
+    """Returns the largest error estimate of the results PROMISED."""
     return max(estimated[name] for name in PROMISED)
 
 
 def touches(fine: Mapping, coarse: Mapping) -> list[str]:
-    """A sentence where the runs of a pair saw different numbers of touches, so that what they
-    differ by estimates nothing.
+    """Returns a message if the runs of a pair have different numbers of contact intervals. Their
+    difference then estimates nothing.
     """
     seen, other = (summary.get("contact_intervals") for summary in (fine, coarse))
     return (
@@ -730,8 +759,8 @@ def touches(fine: Mapping, coarse: Mapping) -> list[str]:
 
 
 def excess(estimated: Mapping[str, float], accuracy: float, also: str) -> list[str]:
-    """A sentence about the answers whose estimated error is above the accuracy; above LOOSER
-    times it where it is not promised.
+    """Returns a message about the results whose error estimate is above the accuracy, or above
+    LOOSER times the accuracy if they are not promised.
     """
     limits = {name: accuracy for name in wanted(also)} | {
         name: LOOSER * accuracy for name in ("contact_time", "peak_force") if name != also

@@ -1,6 +1,8 @@
-"""Writes the fields of a finished run from the states that FreeFEM has recorded in states.bin:
-fields/*.vtu and fields.pvd for ParaView and the figures; the contact points under load at the same
-instants as fields/contact-*.vtu and fields/contact.pvd, and at more instants as fields/contact.csv.
+"""Writes the fields of a finished run from the states that FreeFEM has recorded in states.bin.
+
+fields/*.vtu and fields.pvd are for ParaView and the figures. fields/contact-*.vtu and
+fields/contact.pvd hold the contact points under load at the same instants, fields/contact.csv at
+more instants.
 """
 
 from pathlib import Path
@@ -12,7 +14,8 @@ from .results import reading
 __all__ = ["POINT_COLUMNS", "RECORDED", "read_arrays", "write_fields"]
 
 RECORDED = "states.bin"  # written by edp/core/run/record.idp
-# unit and meaning of the columns of fields/contact.csv; the names with _z and Z, z in space alone
+# Unit and meaning of the columns of fields/contact.csv. Z, z and the names with _z exist in three
+# dimensions only.
 POINT_COLUMNS = {
     "t": ("s", "instant"),
     "body": ("", "the body of the contact point, from 1"),
@@ -45,22 +48,14 @@ POINT_COLUMNS = {
         "L2 projection of the pressure on the shape functions of the displacement along the outline; it has the same resultant and moment",
     ),
 }
-PLACES = (
-    "t",
-    "s",
-    "X",
-    "Y",
-    "Z",
-    "x",
-    "y",
-    "z",
-)  # columns that the points in ParaView do not repeat
+# Columns that the files of points for ParaView do not repeat.
+PLACES = ("t", "s", "X", "Y", "Z", "x", "y", "z")
 Arrays = dict[str, np.ndarray]
 
 
 def write_fields(folder: Path) -> None:
-    """Writes the files of the recorded states of the run in `folder` and removes the record; does
-    nothing where there is none. Raises Unreadable where the record is damaged.
+    """Writes the files of the recorded states of the run in `folder` and removes the record. Does
+    nothing if there is no record. Raises Unreadable if the record is damaged.
     """
     path = folder / RECORDED
     if not path.exists():
@@ -86,8 +81,8 @@ def write_fields(folder: Path) -> None:
 
 
 def read_arrays(path: Path) -> tuple[Arrays, list[Arrays]]:
-    """The arrays of states.bin by name: those recorded once, and those of every state. Raises
-    Unreadable where the file is not complete.
+    """Returns the arrays of states.bin by name: those recorded once, and those of every state.
+    Raises Unreadable if the file is not complete.
     """
     once: Arrays = {}
     states: list[Arrays] = []
@@ -107,13 +102,13 @@ def read_arrays(path: Path) -> tuple[Arrays, list[Arrays]]:
 
 
 def _columns(values: np.ndarray, rows: int) -> np.ndarray:
-    """A matrix (rows, columns) that FreeFEM has stacked by columns."""
+    """Returns a matrix (rows, columns) that FreeFEM has stacked by columns."""
     return values.reshape(-1, rows).T
 
 
 def _write_body(path: Path, surface: Arrays, state: Arrays) -> None:
-    """The fields of a state at the nodes of quadratic triangles or tetrahedra."""
-    import meshio  # takes longer to load than a run
+    """Writes the fields of a state at the nodes of quadratic triangles or tetrahedra."""
+    import meshio  # slow to load, so it is imported only here
 
     nodes = _columns(surface["nodes"], len(surface["nodes"]) // 3)
     body = surface["cellBody"].astype(np.int32)
@@ -138,7 +133,7 @@ def _write_body(path: Path, surface: Arrays, state: Arrays) -> None:
 
 
 def _write_points(path: Path, points: Arrays) -> None:
-    """The contact points under load as vertices at their reference positions."""
+    """Writes the contact points under load as vertices at their reference positions."""
     import meshio
 
     reference, now = (
@@ -162,7 +157,7 @@ def _write_mesh(path: Path, mesh) -> None:
 
 
 def _write_series(path: Path, prefix: str, times: list[float]) -> None:
-    """The .pvd list of the files of all instants [s]."""
+    """Writes the .pvd list of the files of all instants [s]."""
     sets = "".join(
         f'<DataSet timestep="{t:.9g}" file="{prefix}{k:04d}.vtu"/>\n' for k, t in enumerate(times)
     )
@@ -175,7 +170,9 @@ def _write_series(path: Path, prefix: str, times: list[float]) -> None:
 
 
 def _points_under_load(surface: Arrays, state: Arrays, along: "_Along") -> Arrays:
-    """The columns of fields/contact.csv (POINT_COLUMNS) of the points under load in a state."""
+    """Returns the columns of fields/contact.csv (POINT_COLUMNS) for the points under load in a
+    state.
+    """
     count = len(surface["pointBody"])
     tangents, _, slip_limit = surface["options"]
     tangents = int(tangents)
@@ -211,9 +208,11 @@ def _points_under_load(surface: Arrays, state: Arrays, along: "_Along") -> Array
 
 
 class _Along:
-    """The distance of every contact point from the first contact: in the plane along the outline,
-    the body to the left; of a ball above the plane y = 0 along its sphere from its lowest point,
-    negative where X is; else straight, in the reference configuration.
+    """The distance of every contact point from the first contact.
+
+    In the plane it is measured along the outline, with the body to the left. For a ball above the
+    plane y = 0 it is measured along its sphere from its lowest point, negative where X is negative.
+    Otherwise it is the straight distance in the reference configuration.
     """
 
     def __init__(self, surface: Arrays):
@@ -233,8 +232,8 @@ class _Along:
         self.first = np.full(self.piece.max() + 1, -1)
 
     def distances(self, pressure: np.ndarray) -> np.ndarray:
-        """The distances (np,) [m]; a body or chain of edges that comes under load for the first
-        time is measured from its most loaded point.
+        """Returns the distances (np,) [m]. A body or chain of edges that comes under load for the
+        first time is measured from its most loaded point.
         """
         if self.fixed is not None:
             return self.fixed
@@ -245,7 +244,7 @@ class _Along:
         if self.along is None:
             return np.linalg.norm(self.place - self.place[origin], axis=1)
         length, start = self.length[self.piece], self.along[origin]
-        if self.symmetric:  # half a body, from its axis
+        if self.symmetric:  # half a body is measured from its axis
             start = np.where(start < length / 2, 0.0, length)
         s = self.along - start
         around = np.where(s > length / 2, -length, np.where(s <= -length / 2, length, 0.0))
@@ -253,8 +252,9 @@ class _Along:
 
 
 def _chains(surface: Arrays) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """The outlines as chains of edges that follow each other: of every point its place along its
-    chain [m] and the number of the chain; of every chain its length [m] and whether it closes.
+    """Returns the outlines as chains of edges that follow each other: the position of every point
+    along its chain [m] and the number of the chain; the length [m] of every chain and whether it is
+    closed.
     """
     first, last = (surface[name].astype(int) for name in ("edgeFirst", "edgeLast"))
     edge_length, share = surface["edgeLength"], surface["along"].reshape(len(first), -1)
@@ -264,10 +264,8 @@ def _chains(surface: Arrays) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.nda
     before, chain = np.full(len(first), -1.0), np.zeros(len(first), int)
     lengths: list[float] = []
     closed: list[bool] = []
-    for start in (
-        *begins,
-        *range(len(first)),
-    ):  # open chains from their beginnings, then the others
+    # Open chains start at their first edge. Closed ones, which have none, follow.
+    for start in (*begins, *range(len(first))):
         edge, total = start, 0.0
         while edge >= 0 and before[edge] < 0:
             before[edge], chain[edge] = total, len(lengths)

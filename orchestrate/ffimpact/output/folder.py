@@ -1,11 +1,11 @@
-"""The folder of a run: made beside its place, locked while it is made, gone on with from its
-checkpoint, put in its place by rename.
+"""The folder of a run: created beside its final place, locked during the run, resumed from its
+checkpoint, and renamed at the end.
 
-A run happens in the folder DIR.part. Finished, it takes DIR's place, complete: a folder with
-summary.json is a finished run. Interrupted, it leaves nothing, or DIR.part where it has made a
-checkpoint: there the same scene and code go on. What a run finds in its place stays as DIR.1 (.2
-...), unless it is of the same scene: then what the program wrote goes, and what else is there moves
-over.
+A run writes to the folder DIR.part. When it is finished, DIR.part is renamed to DIR: a folder with
+summary.json is a finished run. An interrupted run leaves nothing, or DIR.part if it has a
+checkpoint; the same scene and code then resume it. An earlier folder DIR stays as DIR.1 (.2 ...),
+unless it is of the same scene: then the files of the program are deleted and all others move to the
+new folder.
 """
 
 import fcntl
@@ -35,8 +35,7 @@ __all__ = [
     "unfinished",
 ]
 
-# what the program writes into a folder: what a run leaves, what it needs on its way, and its
-# pictures
+# Files that the program writes into a folder: results of a run, temporary files, and pictures.
 RECORDS = (
     "scene.toml",
     "history.csv",
@@ -86,16 +85,14 @@ OWN = (
     *FIELDS,
     *(f"figures/{name}.png" for name in FIGURES),
 )
-OURS = {
-    "scene.toml",
-    "failure.json",
-    "unfinished",
-    "checkpoint.json",
-}  # a folder with one of these is the program's
+# A folder with one of these was written by the program.
+OURS = {"scene.toml", "failure.json", "unfinished", "checkpoint.json"}
 
 
 def result_folder(out: Path) -> Path:
-    """The path of a result folder without links; Unreadable where there cannot be one."""
+    """Returns the path of a result folder without links. Raises Unreadable if it cannot be a result
+    folder.
+    """
     try:
         folder = out.resolve()
     except (OSError, RuntimeError) as error:  # a loop of links
@@ -108,13 +105,15 @@ def result_folder(out: Path) -> Path:
 
 
 def failed_beside(folder: Path) -> Path:
-    """Where a failed run leaves its files if `folder` holds an earlier finished one."""
+    """Returns the folder for the files of a failed run if `folder` holds an earlier finished
+    one.
+    """
     return folder.with_name(folder.name + ".failed")
 
 
 def finished_in(folder: Path, force: bool) -> dict | None:
-    """The summary of the finished run in `folder`, None if there is none; Unreadable if the
-    folder is not ours.
+    """Returns the summary of the finished run in `folder`, None if there is none. Raises Unreadable
+    if the folder was not written by this program.
     """
     for path in (folder, failed_beside(folder)):
         if path.exists() and not path.is_dir():
@@ -137,28 +136,31 @@ def finished_in(folder: Path, force: bool) -> dict | None:
         raise
 
 
-# ---- made beside its place
+# ---- created beside its final place
 
 
 @contextmanager
 def staging(folder: Path) -> Iterator[tuple[Path, int]]:
-    """The folder DIR.part and its lock, against a second run. Gone in the end, unless it has
-    the checkpoint of a run that is not finished. What is in it at first was left by a run that
-    was killed.
+    """Yields the folder DIR.part and its lock, which excludes a second run.
+
+    At the end the folder is removed, unless it has the checkpoint of an unfinished run. Files that
+    are in it at the beginning were left by a run that was killed.
     """
     stage = folder.with_name(folder.name + ".part")
     with ExitStack() as leaving:
+        # This is registered before the folders are created, as a signal may come at any moment.
         leaving.callback(
             _take_away, [made for made in (stage, *stage.parents) if not made.exists()]
-        )  # a signal may come at any moment
+        )
         leaving.callback(os.close, lock := _lock(stage, folder))
-        if not folder.exists() and _is_complete(stage):  # killed between the two renames of replace
-            os.rename(stage, folder)  # with its lock, which stays
+        # A run may have been killed between the two renames of replace().
+        if not folder.exists() and _is_complete(stage):
+            os.rename(stage, folder)  # its lock stays
             leaving.callback(os.close, lock := _lock(stage, folder))
         elif folder.exists():
-            leaving.callback(os.close, lock_folder(folder, folder))  # against a run without Python
-        # what a run makes has checkpoint.json from the first to the last moment; a folder of that
-        # name that lacks it is somebody's
+            leaving.callback(os.close, lock_folder(folder, folder))  # Busy if it is in use
+        # The folder of a run always contains checkpoint.json. A folder of that name without it
+        # belongs to someone else.
         if os.listdir(stage) and not (stage / "checkpoint.json").exists():
             raise Unreadable(
                 f"{stage}, where the run would be made, has files of others in it; choose another --out"
@@ -166,9 +168,8 @@ def staging(folder: Path) -> Iterator[tuple[Path, int]]:
         try:
             yield stage, lock
         finally:
-            if _holds(lock, stage) and not checkpoints(
-                stage
-            ):  # once in its place, that name may already be another run's
+            # After the rename another run may already use the name DIR.part.
+            if _holds(lock, stage) and not checkpoints(stage):
                 with suppress(OSError):
                     clear(stage)
                     stage.rmdir()
@@ -183,15 +184,18 @@ def _take_away(folders: list[Path]) -> None:
 
 def _is_complete(stage: Path) -> bool:
     try:
+        # The provenance is the last that a run writes.
         return (stage / "checkpoint.json").exists() and "code" in read_summary(stage).get(
             "provenance", {}
-        )  # the last that _finish writes
+        )
     except Unreadable:
         return False
 
 
 def _lock(stage: Path, folder: Path) -> int:
-    """The open folder `stage`, made if need be and locked; Busy where another run holds it."""
+    """Returns the opened and locked folder `stage`, which is created if it does not exist. Raises
+    Busy if another run holds it.
+    """
     while True:
         try:
             stage.mkdir(parents=True, exist_ok=True)
@@ -201,15 +205,15 @@ def _lock(stage: Path, folder: Path) -> int:
             ) from None
         try:
             lock = lock_folder(stage, folder)
-        except FileNotFoundError:  # its run has just put it in its place
+        except FileNotFoundError:  # its run has just renamed it
             continue
-        if _holds(lock, stage):  # not likewise, while we locked it
+        if _holds(lock, stage):  # else it was renamed before it was locked
             return lock
         os.close(lock)
 
 
 def _holds(lock: int, path: Path) -> bool:
-    """Whether `path` is the folder that was opened as `lock`."""
+    """Whether `path` is still the folder that was opened as `lock`."""
     try:
         return os.path.samestat(os.fstat(lock), os.stat(path))
     except FileNotFoundError:
@@ -217,10 +221,10 @@ def _holds(lock: int, path: Path) -> bool:
 
 
 def lock_folder(path: Path, folder: Path) -> int:
-    """The folder `path` opened and locked; Busy where a run in `folder` holds it.
+    """Returns the folder `path`, opened and locked. Raises Busy if a run in `folder` holds it.
 
-    The lock is flock() on the folder itself. FreeFem++ shares the open folder and so the lock,
-    and no lock file is left.
+    The lock is flock() on the folder itself. FreeFem++ shares the open folder and so the lock. No
+    lock file is left.
     """
     lock = os.open(path, os.O_RDONLY)
     try:
@@ -237,22 +241,21 @@ def lock_folder(path: Path, folder: Path) -> int:
 
 
 def clear(stage: Path) -> None:
-    for checkpoint in checkpoints(stage):  # first: without the rest they are of no use
+    for checkpoint in checkpoints(stage):  # first, as they are of no use without the other files
         checkpoint.unlink()
-    for left_over in sorted(
-        stage.iterdir(), key=lambda path: path.name == "checkpoint.json"
-    ):  # last: what makes the folder ours
+    # checkpoint.json comes last, because it marks the folder as one of the program.
+    for left_over in sorted(stage.iterdir(), key=lambda path: path.name == "checkpoint.json"):
         shutil.rmtree(left_over) if left_over.is_dir() else left_over.unlink()
 
 
 def checkpoints(stage: Path) -> list[Path]:
-    """Those of the run in `stage`, and of the runs that estimate its error."""
+    """Returns the checkpoints of the run in `stage`, and of the runs that estimate its error."""
     return [path for path in (stage / "checkpoint", *stage.glob("*/checkpoint")) if path.exists()]
 
 
 def unfinished(stage: Path) -> dict | None:
-    """What the run was asked for whose checkpoint is in `stage`, None if there is none;
-    Unreadable if it does not say.
+    """Returns the request of the run whose checkpoint is in `stage`, None if there is none. Raises
+    Unreadable if the request cannot be read.
     """
     if not checkpoints(stage):
         return None
@@ -265,14 +268,14 @@ def unfinished(stage: Path) -> dict | None:
         ) from None
 
 
-# ---- put in its place
+# ---- renamed to its final place
 
 
 def replace(stage: Path, folder: Path, same: bool) -> None:
     """Puts `stage` in the place of `folder`, complete or not at all.
 
-    What was there stays as DIR.1 (.2 ...); where it is of the `same` scene, what the program
-    wrote there goes, and what else is there moves over.
+    The earlier folder stays as DIR.1 (.2 ...). If it is of the `same` scene, the files of the
+    program in it are deleted and all others move to `folder`.
     """
     earlier = None
     if folder.exists() and any(folder.iterdir()):
@@ -289,11 +292,11 @@ def replace(stage: Path, folder: Path, same: bool) -> None:
 
 
 def _merge(earlier: Path, folder: Path) -> bool:
-    """Takes away what the program wrote in `earlier`, moves the rest to `folder`; False where
-    something is in the way there.
+    """Deletes the files of the program in `earlier` and moves all others to `folder`. Returns False
+    if `folder` has a file of the same name.
     """
-    (earlier / "summary.json").unlink(missing_ok=True)  # first: no longer a finished run
-    for path in sorted(earlier.rglob("*"), reverse=True):  # what is in a folder, then the folder
+    (earlier / "summary.json").unlink(missing_ok=True)  # first: it is no finished run any longer
+    for path in sorted(earlier.rglob("*"), reverse=True):  # files of a folder, then the folder
         name = path.relative_to(earlier).as_posix()
         if path.is_dir() and not path.is_symlink():
             if not any(path.iterdir()):

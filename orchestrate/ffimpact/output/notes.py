@@ -1,9 +1,9 @@
-"""Warnings and notes of a run: sentences `name: what is so: what it means: what to do`.
+"""Warnings and notes of a run: sentences `name: fact: meaning: advice`.
 
-They are made in edp/core/run/warnings.idp and estimate.py. A warning is something that may make an
-answer wrong. A note is the footnote of a number: what is always so of that number in such a scene,
-or what stands behind a warning that says that the answers are no good. The summary has the
-sentences, the screen a line of each.
+They are made in edp/core/run/warnings.idp and estimate.py. A warning reports that a result may be
+wrong. A note is a remark about a number: a property of this number in every such scene, or a
+warning whose cause or effect another warning reports already. The summary holds the sentences, the
+screen shows one line for each.
 """
 
 from collections.abc import Iterable
@@ -13,12 +13,13 @@ from ..failure import shortened
 __all__ = ["BEHIND", "WIDEST", "line", "name", "number", "settled"]
 
 WIDEST = 100  # columns of a printed line
-# Warnings about the accuracy of an answer. An answer has none where the law has no answer, or a
-# body passes through itself.
-CAUSES = ("contact points", "steps")  # of errors that are estimated
+CAUSES = ("contact points", "steps")  # warnings about causes of estimated errors
+# Warnings about the accuracy of a result. They become notes if the law has no solution or a body
+# passes through itself.
 OF_ACCURACY = ("penalty", "locking", "corner", "touches", "estimated errors", *CAUSES)
-# What a warning of this name makes notes of. Estimated errors that are too large have the effect of
-# their causes in them. Where the mesh decides how often bodies touch, the penalty does, too.
+# By the name of a warning: the warnings that become notes beside it. Estimated errors include the
+# effect of their causes. If the mesh decides how often bodies come into contact, so does the
+# penalty.
 BEHIND = {
     "overlap": OF_ACCURACY,
     "ellipticity": OF_ACCURACY,
@@ -26,7 +27,7 @@ BEHIND = {
     "touches": ("penalty", *CAUSES),
     "estimated errors": CAUSES,
 }
-# the key of the number that a note is about, where the name of the note is not that of the number
+# The key of the number that a note is about, if it differs from the name of the note.
 NUMBERS = {
     "penalty": "max_penetration",
     "locking": "peak_force",
@@ -42,22 +43,24 @@ NUMBERS = {
 
 
 def name(sentence: str) -> str:
-    """By which a sentence is known (docs/reference/warnings.md)."""
+    """Returns the name of a sentence (docs/reference/warnings.md)."""
     return sentence.partition(":")[0]
 
 
 def number(note: str) -> str:
-    """The key of summary.json that a note is about."""
+    """Returns the key of summary.json that a note is about."""
     return NUMBERS.get(name(note), name(note).replace(" ", "_"))
 
 
 def line(kind: str, sentence: str) -> str:
-    """A sentence as printed: up to its second colon, no wider than the screen."""
+    """Returns a sentence as printed: up to its second colon, no wider than the screen."""
     return shortened(kind + ": ".join(sentence.split(": ")[:2]), WIDEST)
 
 
 def settled(warnings: Iterable[str], notes: Iterable[str]) -> dict[str, list[str]]:
-    """Both lists, with warnings that stand behind others (BEHIND) among the notes."""
+    """Returns both lists. Warnings that another warning makes notes of (BEHIND) are among the
+    notes.
+    """
     warnings = list(warnings)
     behind = {each for one in warnings for each in BEHIND.get(name(one), ())}
     return {

@@ -1,6 +1,7 @@
-"""What is in the folder of a finished run: its history, its scene as used, its summary. Whatever is
-wrong with a file of it is Unreadable, in one line: where it is not there, makes no sense or lacks
-what is asked of it, or is another than the run has written (`files` of the provenance).
+"""Reads the folder of a finished run: its history, its scene as used, its summary.
+
+Whatever is wrong with a file is Unreadable, in one line: the file is missing, is damaged, lacks
+what is needed, or differs from the one that the run has written (`files` of the provenance).
 """
 
 import hashlib
@@ -21,7 +22,7 @@ from ..failure import Unreadable, brief, unknown
 from ..input.parameters import Value
 
 if TYPE_CHECKING:
-    from pandas import DataFrame  # takes longer to load than a run: only where a table is wanted
+    from pandas import DataFrame  # slow to load, so it is imported only where a table is needed
 
 __all__ = [
     "Answers",
@@ -48,7 +49,7 @@ __all__ = [
     "write_json",
 ]
 
-# what is read again
+# Files of a run that the program reads again.
 WRITTEN = (
     "scene.toml",
     "history.csv",
@@ -58,14 +59,14 @@ WRITTEN = (
     "fields/*.vtu",
     "fields/contact.csv",
 )
-STILL = 1e-6  # of the speed of all energy: a body as slow does not move
+STILL = 1e-6  # smallest speed that errors are relative to, over sqrt(2 energy/mass)
 AGAIN = "delete its folder, or run it again with --force"
 
 
 @dataclass(frozen=True)
 class Record:
-    """The files of a finished run as they are read: the summary, the scene as used, the
-    history. `reused`: the run was there already.
+    """The files of a finished run, read when they are needed: the summary, the scene as used, the
+    history. `reused`: the run was in the folder already.
     """
 
     folder: Path
@@ -84,8 +85,8 @@ class Record:
 
 
 def read_record(folder: Path) -> Record:
-    """The record of a finished run that is there; Unreadable if a file is not as the run has
-    written it.
+    """Returns the record of a finished run in a folder. Raises Unreadable if a file is not as the
+    run has written it.
     """
     record = Record(folder, read_summary(folder), reused=True)
     check_files(folder)
@@ -96,8 +97,8 @@ def read_record(folder: Path) -> Record:
 
 
 class Contents(dict):
-    """What the file `path` of a run says by name; Unreadable, with the names that are there,
-    where a name is not.
+    """The content of the file `path` of a run by name. A missing name is Unreadable, with a list of
+    the names that exist.
     """
 
     def __init__(self, said: dict, path: Path):
@@ -112,7 +113,7 @@ class Contents(dict):
 
 
 def _contents(value, path: Path):
-    """A value of a file, the tables in it as Contents."""
+    """Returns a value of a file, with the tables in it as Contents."""
     if isinstance(value, list):
         return [_contents(one, path) for one in value]
     return Contents(value, path) if isinstance(value, dict) else value
@@ -120,9 +121,9 @@ def _contents(value, path: Path):
 
 @contextmanager
 def reading(path: Path) -> Iterator[None]:
-    """Unreadable where something fails over what is in the file `path` of a run."""
+    """Makes Unreadable of any error in the content of the file `path` of a run."""
     try:
-        if path.exists() and not path.is_file():  # reading a pipe or a device might never end
+        if path.exists() and not path.is_file():  # a pipe or a device might never end
             raise ValueError("it is no file")
         yield
     except (FileNotFoundError, NotADirectoryError) as error:
@@ -143,8 +144,8 @@ def reading(path: Path) -> Iterator[None]:
 
 
 def content(path: Path) -> str:
-    """The text of the file `path` of a run; Unreadable where there is none, and where the run
-    has written another one.
+    """Returns the text of the file `path` of a run. Raises Unreadable if the file is missing or is
+    not the one that the run has written.
     """
     folder = path.parent.parent if path.parent.name == "fields" else path.parent
     with reading(path):
@@ -158,7 +159,9 @@ def content(path: Path) -> str:
 
 
 def files_of(folder: Path) -> dict[str, str]:
-    """sha256 by name of what a run has written into `folder` to be read."""
+    """Returns the sha256, by name, of the files in `folder` that a run has written and that are
+    read again.
+    """
     return {
         path.relative_to(folder).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
         for pattern in WRITTEN
@@ -167,8 +170,8 @@ def files_of(folder: Path) -> dict[str, str]:
 
 
 def check_files(folder: Path) -> None:
-    """Unreadable where one of the files of a finished run is not as the run has written it; one
-    that was taken away is not missed.
+    """Raises Unreadable if a file of a finished run is not as the run has written it. A file that
+    was deleted is no error.
     """
     for name in (read_json(folder / "summary.json").get("provenance") or {}).get("files", {}):
         if (folder / name).exists():
@@ -176,12 +179,12 @@ def check_files(folder: Path) -> None:
 
 
 def read_table(path: Path, columns: Iterable[str] = ()) -> np.recarray:
-    """A table of a run, all numbers: a field a column; Unreadable where it is not one that has
-    these columns, and where it is cut off.
+    """Returns a table of a run, which holds numbers only, with one field per column. Raises
+    Unreadable if it lacks one of `columns` or is cut off.
     """
     head, end, rows = content(path).partition("\n")
     with reading(path):
-        # what is not known is written as nothing
+        # An empty entry stands for an unknown value.
         names, lines = head.split(","), re.sub(r"(?<![^,\n])(?=[,\n])", "nan", rows).splitlines()
         if (
             not end
@@ -196,7 +199,7 @@ def read_table(path: Path, columns: Iterable[str] = ()) -> np.recarray:
 
 
 def read_frame(path: Path, columns: Iterable[str] = (), **options) -> "DataFrame":
-    """A table that a study or a sweep has written, words too."""
+    """Returns a table that a study or a sweep has written, which may hold words."""
     import pandas as pd
 
     with reading(path):
@@ -207,22 +210,21 @@ def read_frame(path: Path, columns: Iterable[str] = (), **options) -> "DataFrame
 
 
 def read_history(folder: Path) -> dict[str, np.ndarray]:
-    """The columns of history.csv by name, each (steps,)."""
+    """Returns the columns of history.csv by name, each (steps,)."""
     path = folder / "history.csv"
     head, _, rows = content(path).partition("\n")
     with reading(path):
         if not rows.endswith("\n"):
             raise ValueError("it is empty or cut off")
         table = np.loadtxt(rows.splitlines(), delimiter=",", ndmin=2)
-        if len(table) <= (
-            steps := read_json(folder / "summary.json").get("steps", 0)
-        ):  # one more, of the start
+        # The history has one row more than steps, that of the start.
+        if len(table) <= (steps := read_json(folder / "summary.json").get("steps", 0)):
             raise ValueError(f"it has {len(table)} rows of {steps + 1}")
         return Contents(dict(zip(head.split(","), table.T, strict=True)), path)
 
 
 def read_scene(folder: Path) -> dict[str, Value]:
-    """scene.toml: every parameter as used."""
+    """Returns scene.toml: every parameter as used."""
     path = folder / "scene.toml"
     text = content(path)
     with reading(path):
@@ -230,8 +232,8 @@ def read_scene(folder: Path) -> dict[str, Value]:
 
 
 class Answers(NamedTuple):
-    """Of a finished run the summary, with energy_final and largest_energy [J/m], the scene as
-    used, the largest speed of a centre of mass [m/s], and the columns of its history.
+    """The results of a finished run: the summary, with energy_final and largest_energy [J/m], the
+    scene as used, the largest speed of a centre of mass [m/s], and the columns of its history.
     """
 
     summary: dict
@@ -241,15 +243,16 @@ class Answers(NamedTuple):
 
 
 def read_answers(folder: Path) -> Answers:
-    """The answers of a finished run, and what energies and velocities are measured by: as seen
-    by one who moves with the obstacles, or without any with the bodies' common centre of mass:
-    errors do not depend on a motion that all share.
+    """Returns the results of a finished run, and the energy and speed to which errors are relative.
+
+    They refer to the frame of the obstacles, or without obstacles to that of the common centre of
+    mass. So errors do not depend on a motion that all bodies share.
     """
     history, summary, used = read_history(folder), read_summary(folder), read_scene(folder)
     axes, bodies = [axis for axis in "xyz" if f"v{axis}" in history], suffixes(history)
     mass = summary["mass"]
     common = np.column_stack([history[f"v{axis}"] for axis in axes])
-    held = "support_work" in history  # by what does not move with the bodies
+    held = "support_work" in history  # supports do not move with the bodies
     frame = np.zeros_like(common[0]) if held else _frame(used, common[0], len(bodies))
     seen = common if frame is None else np.broadcast_to(frame, common.shape)
     speed = max(
@@ -260,7 +263,8 @@ def read_answers(folder: Path) -> Answers:
         )
         for of in bodies
     )
-    shared = mass * (seen * (seen / 2 - common)).sum(axis=1)  # from the scene's frame to the other
+    # Change of the kinetic energy from the frame of the scene to the moving frame.
+    shared = mass * (seen * (seen / 2 - common)).sum(axis=1)
     energy = float((mechanical_energy(history) + shared).max())
     last = np.array([summary.get(f"rebound_v{axis}", 0.0) for axis in axes])
     at = last if frame is None else frame
@@ -274,11 +278,11 @@ def read_answers(folder: Path) -> Answers:
 
 
 def _frame(used: dict, like: np.ndarray, bodies: int) -> np.ndarray | None:
-    """The velocity of the obstacles of a scene; None where there are none."""
+    """Returns the velocity of the obstacles of a scene [m/s], None if there are none."""
     if "body" not in used:
         return None if bodies > 1 else np.zeros_like(like)
     obstacles = [one.get("velocity", np.zeros_like(like)) for one in used.get("obstacle", [])]
-    # of revolution: along the axis
+    # For bodies of revolution the velocity is a number, along the axis.
     return (
         np.mean([[0.0, one] if np.isscalar(one) else one for one in obstacles], axis=0)
         if obstacles
@@ -287,13 +291,13 @@ def _frame(used: dict, like: np.ndarray, bodies: int) -> np.ndarray | None:
 
 
 def mechanical_energy(history: dict[str, np.ndarray]) -> np.ndarray:
-    """Kinetic, elastic and contact energy together (steps,) [J, in plane strain J/m]."""
+    """Returns the sum of kinetic, elastic and contact energy (steps,) [J, in plane strain J/m]."""
     return history["kinetic"] + history["elastic"] + history["contact"]
 
 
 def suffixes(columns: Iterable[str]) -> list[str]:
-    """What stands behind the names of columns (of history.csv) or numbers (of summary.json)
-    that are of one body: _1, _2 ..., or nothing, where there is one body only.
+    """Returns the suffixes _1, _2 ... of the bodies in names of columns (of history.csv) or numbers
+    (of summary.json); one empty suffix if there is only one body.
     """
     return [
         f"_{b}"
@@ -304,19 +308,21 @@ def suffixes(columns: Iterable[str]) -> list[str]:
 
 
 def body_names(used: dict) -> list[str]:
-    """The names of several bodies of a scene as used, in the order of the suffixes."""
+    """Returns the names of several bodies of a scene as used, in the order of the suffixes."""
     return [body["name"] for body in used["body"]] if "body" in used else ["disc", "block"]
 
 
 def held_bodies(used: Mapping) -> set[str]:
-    """The suffixes of bodies that a support holds until the end, of a scene as used."""
+    """Returns the suffixes of the bodies with a support that holds until the end, for a scene as
+    used.
+    """
     tables = used.get("body", [])
     holding = [any("release" not in one for one in body.get("support", [])) for body in tables]
     return {f"_{b}" if len(tables) > 1 else "" for b, holds in enumerate(holding, 1) if holds}
 
 
 def read_summary(folder: Path) -> dict:
-    """summary.json of a finished run."""
+    """Returns summary.json of a finished run."""
     path = folder / "summary.json"
     with reading(path):
         summary = json.loads(path.read_text("utf-8"))
@@ -329,7 +335,7 @@ def read_summary(folder: Path) -> dict:
 
 
 def numbers(summary: Mapping) -> list[str]:
-    """The names of the numbers of a summary."""
+    """Returns the names of the numbers of a summary."""
     return [
         name
         for name, value in summary.items()
@@ -338,7 +344,7 @@ def numbers(summary: Mapping) -> list[str]:
 
 
 def read_json(path: Path) -> dict:
-    """What is in a file, {} where there is none or it makes no sense."""
+    """Returns the content of a file, {} if it is missing or damaged."""
     try:
         said = json.loads(path.read_text("utf-8")) if path.is_file() else {}
     except (OSError, ValueError, RecursionError):

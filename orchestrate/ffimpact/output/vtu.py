@@ -29,11 +29,10 @@ __all__ = [
 ]
 
 KINDS = TRIANGLE, QUADRATIC_TRIANGLE, QUADRATIC_TETRAHEDRON = "triangle", "triangle6", "tetra10"
-FINEST, MOST = (
-    6,
-    2_000,
-)  # straight triangles along a side of a quadratic one, at most; and of all, where that is more than two a side
-# a quadratic tetrahedron as its corners and the four about the diagonal 4-9
+# Largest number of straight triangles along a side of a quadratic one, and of all. There are always
+# at least two along a side.
+FINEST, MOST = 6, 2_000
+# Straight tetrahedra of a quadratic one: those at its corners and four about the diagonal 4-9.
 EIGHT = [
     [0, 4, 6, 7],
     [4, 1, 5, 8],
@@ -45,21 +44,25 @@ EIGHT = [
     [4, 9, 8, 5],
 ]
 
-# edges of a tetrahedron between its first so many corners and the others, three a triangle
+# By the number of corners above the plane, which come first: the triangles of the cut, each as the
+# three edges of the tetrahedron that cross the plane.
 CUTS = {
     1: [[[0, 1], [0, 2], [0, 3]]],
     2: [[[0, 2], [0, 3], [1, 3]], [[0, 2], [1, 3], [1, 2]]],
     3: [[[0, 3], [1, 3], [2, 3]]],
 }
-# of a quadratic tetrahedron, as quadratic triangles
+# Faces of a quadratic tetrahedron, as quadratic triangles.
 FACES = [[0, 1, 2, 4, 5, 6], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [0, 2, 3, 6, 9, 7]]
 
 
 @dataclass(frozen=True)
 class Snapshot:
-    """points (n, 2) reference coordinates in m; triangles (t, 3) straight; fields by name, SI
-    units: (n,), (n, 3) for vectors, (n, 6) for the Cauchy stress (xx yy zz xy yz xz). Of a body
-    in three dimensions its cut with the plane z = 0 of the reference configuration.
+    """Fields on straight triangles.
+
+    `points` (n, 2) are reference coordinates [m], `triangles` (t, 3) their corners. `fields` holds
+    the fields by name in SI units: scalars (n,), vectors (n, 3), the Cauchy stress (n, 6) (xx yy zz
+    xy yz xz). For a body in three dimensions these are those of its cut with the plane z = 0 of the
+    reference configuration.
     """
 
     points: np.ndarray
@@ -69,8 +72,8 @@ class Snapshot:
 
 @dataclass(frozen=True)
 class Solid:
-    """A body in three dimensions: points (n, 3) reference coordinates in m; tetrahedra (t, 10)
-    quadratic; fields as of a Snapshot.
+    """A body in three dimensions: `points` (n, 3) are reference coordinates [m], `tetrahedra` (t,
+    10) quadratic, `fields` as in a Snapshot.
     """
 
     points: np.ndarray
@@ -80,8 +83,10 @@ class Solid:
 
 @dataclass(frozen=True)
 class Skin:
-    """Quadratic triangles as straight ones (t, 3) between vertices, each of them `shape` (m, 6)
-    of the nodes (m, 6) of a quadratic one: corners, then the middles of 01, 12, 20.
+    """Quadratic triangles split into straight ones, `triangles` (t, 3) between vertices.
+
+    Each vertex is the combination `shape` (m, 6) of the `nodes` (m, 6) of a quadratic triangle: its
+    corners, then the middles of the sides 01, 12, 20.
     """
 
     nodes: np.ndarray
@@ -89,14 +94,16 @@ class Skin:
     triangles: np.ndarray
 
     def at(self, field: np.ndarray) -> np.ndarray:
-        """The field (nodes, ...) at the vertices (m, ...)."""
+        """Returns the field (nodes, ...) at the vertices (m, ...)."""
         return np.einsum("ma,ma...->m...", self.shape, field[self.nodes])
 
 
 def read(path: Path) -> Snapshot:
-    """One snapshot; quadratic triangles, and the faces of quadratic tetrahedra in the plane z =
-    0, are split into straight ones, so many that curved sides look it. Where a body in three
-    dimensions has no such faces, it is cut there. Unreadable where it is not such a file.
+    """Returns one snapshot. Raises Unreadable if the file is no snapshot.
+
+    Quadratic triangles, and the faces of quadratic tetrahedra in the plane z = 0, are split into so
+    many straight triangles that curved sides look curved. A body in three dimensions without such
+    faces is cut in this plane.
     """
     points, kind, cells, fields = read_parts(path)
     on_plane = np.ones(len(points), dtype=bool)
@@ -122,23 +129,22 @@ def read(path: Path) -> Snapshot:
 
 
 def read_solid(path: Path) -> Solid | None:
-    """The same of all of a body in three dimensions; None of one in the plane."""
+    """Returns a snapshot of a whole body in three dimensions, None for a body in the plane."""
     points, kind, cells, fields = read_parts(path)
     return Solid(points, cells, fields) if kind == QUADRATIC_TETRAHEDRON else None
 
 
 def read_parts(path: Path) -> tuple[np.ndarray, str, np.ndarray, dict[str, np.ndarray]]:
-    """Points, the type of all cells, their nodes (cells, nodes) and the fields. Unreadable
-    where it is not such a file.
+    """Returns the points, the common type of the cells, their nodes (cells, nodes) and the fields.
+    Raises Unreadable if the file is no snapshot.
     """
-    import meshio  # takes longer to load than a run
+    import meshio  # slow to load, so it is imported only here
 
-    content(path)  # it is as the run has written it
+    content(path)  # checks that the file is as the run has written it
     with reading(path):
         try:
-            with redirect_stderr(
-                None
-            ):  # its warnings: a field that it leaves out is missed where it is wanted
+            # Warnings of meshio are hidden. A missing field is reported where it is needed.
+            with redirect_stderr(None):
                 mesh = meshio.vtu.read(path)
         except meshio.ReadError as error:
             raise ValueError(str(error) or "it is no VTU file") from None
@@ -151,10 +157,12 @@ def read_parts(path: Path) -> tuple[np.ndarray, str, np.ndarray, dict[str, np.nd
         return mesh.points, kinds.pop(), nodes, Contents(mesh.point_data, path)
 
 
-@lru_cache(1)  # snapshots of a run have the same triangles
+@lru_cache(1)  # all snapshots of a run have the same triangles
 def split(cells: bytes, n: int) -> Skin:
-    """Quadratic triangles (t, 6) as n * n straight ones each; a vertex where they meet is one:
-    known by its corners and their shares.
+    """Returns quadratic triangles (t, 6), as bytes, split into n * n straight ones each.
+
+    Adjacent triangles share vertices: a vertex is identified by the corners and its barycentric
+    coordinates.
     """
     nodes = np.frombuffer(cells, dtype=int).reshape(-1, 6)
     places, values, triangles = lattice(n)
@@ -173,9 +181,9 @@ def split(cells: bytes, n: int) -> Skin:
 
 
 def lattice(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """A triangle as n * n straight ones: their corners (points, 3), as shares of its own, the
-    values (points, 6) there of the quadratic functions of its corners and the middles of 01,
-    12, 20, and the triangles (n * n, 3).
+    """Returns a triangle as n * n straight ones: their corners (points, 3) in barycentric
+    coordinates, the values (points, 6) there of the quadratic shape functions of the corners and
+    the middles of 01, 12, 20, and the triangles (n * n, 3).
     """
     points = [(i, j) for j in range(n + 1) for i in range(n + 1 - j)]
     place = {each: k for k, each in enumerate(points)}
@@ -192,7 +200,7 @@ def lattice(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def _in_plane(tetrahedra: np.ndarray, on_plane: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """The faces (f, 6) of quadratic tetrahedra (t, 10) of which all nodes are marked in
+    """Returns the faces (f, 6) of quadratic tetrahedra (t, 10) whose nodes are all marked in
     `on_plane`, each once, counter-clockwise.
     """
     faces = tetrahedra[:, FACES].reshape(-1, 6)
@@ -204,14 +212,13 @@ def _in_plane(tetrahedra: np.ndarray, on_plane: np.ndarray, points: np.ndarray) 
 
 
 def cut_in_plane(solid: Solid, on_plane: np.ndarray) -> Snapshot:
-    """The body's cut with the plane z = 0, on which nodes are where marked: every edge that
-    crosses it has a point there, the fields linear along it.
+    """Returns the cut of a body with the plane z = 0. Nodes marked in `on_plane` are on it. Every
+    edge that crosses the plane gives a point, to which the fields are interpolated linearly.
     """
     z = np.where(on_plane, 0.0, solid.points[:, 2])
     parts = solid.tetrahedra[:, EIGHT].reshape(-1, 4)
-    parts = np.take_along_axis(
-        parts, np.argsort(z[parts] <= 0, axis=1, kind="stable"), axis=1
-    )  # first the corners above
+    # The corners above the plane come first.
+    parts = np.take_along_axis(parts, np.argsort(z[parts] <= 0, axis=1, kind="stable"), axis=1)
     above = (z[parts] > 0).sum(axis=1)
     edges = np.concatenate(
         [
@@ -220,7 +227,8 @@ def cut_in_plane(solid: Solid, on_plane: np.ndarray) -> Snapshot:
             for three in cuts
         ]
     )
-    edges[on_plane[edges[:, 1]], 0] = edges[on_plane[edges[:, 1]], 1]  # through a node itself
+    # An edge that ends on the plane is cut at its node.
+    edges[on_plane[edges[:, 1]], 0] = edges[on_plane[edges[:, 1]], 1]
     different, which = np.unique(edges, axis=0, return_inverse=True)
     (first, second), triangles = different.T, which.reshape(-1, 3)
     share = np.divide(
@@ -238,7 +246,7 @@ def cut_in_plane(solid: Solid, on_plane: np.ndarray) -> Snapshot:
 
 
 def series(pvd: Path) -> list[tuple[float, Path]]:
-    """(time in s, file) of every snapshot, in the order of time; empty where there is no such
+    """Returns (time [s], file) of every snapshot in the order of time, empty if there is no such
     list.
     """
     if not pvd.exists():
@@ -250,8 +258,8 @@ def series(pvd: Path) -> list[tuple[float, Path]]:
 
 
 def between(times: np.ndarray, values: Sequence[np.ndarray], t: float) -> np.ndarray:
-    """What is at t, of values at times: linear between them, beyond the ends the first and the
-    last.
+    """Returns the value at t of `values` at `times`: linear between them, constant beyond the
+    ends.
     """
     place = np.interp(t, times, np.arange(len(times)))
     low, share = int(place), place % 1

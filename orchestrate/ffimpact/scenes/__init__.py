@@ -1,1 +1,3 @@
-"""Scenes of bodies, as tables say them and as the scripts read them; the built-in ones beside."""
+"""Scenes of bodies: reads their tables, prepares them for the scripts, and holds the built-in
+scenes.
+"""

@@ -1,7 +1,8 @@
-"""Where bodies of a scene first touch: they fly as rigid bodies, r = r0 + v t + b t^2 / 2, angle =
-angle0 + spin t, until the gap closes.
+"""Onset of contact of the bodies of a scene. They move as rigid bodies, r = r0 + v t + b t^2 / 2,
+angle = angle0 + spin t, until the gap closes.
 
-While the spheres around them are apart time is skipped at once, between roots of polynomials.
+While the bounding spheres are apart no gap is computed: the search goes on from one root of
+polynomials of time to the next.
 """
 
 import itertools
@@ -24,29 +25,34 @@ from .scene import Scene, gap_between
 
 __all__ = ["Meeting", "loaded_pull", "meetings", "refuse_nothing", "refuse_sinking", "turned"]
 
-STEPS = 2000  # of bodies within reach of each other: what has not met by then is not known to
-# of the smaller thickness: a gap from an obstacle without parts to be within reach of, that is
-# followed no further
+STEPS = 2000  # steps of conservative advancement, after which the onset of contact is unknown
+# Gap over the smaller half thickness at which the search ends. It matters for implicit obstacles
+# and surfaces, which have no parts with a search distance.
 FAR = 1e9
-RESTITUTION = (
-    0.5  # of a hit that turns bodies: much of it goes to vibration, and they turn while it lasts
-)
-ECCENTRIC = 1e-2  # lever of a hit over the reach of the body that it turns
-MORE = 3  # touches of two bodies that follow the first one
-MET, CLOSED = (
-    1e-3,
-    1e-9,
-)  # of the smaller thickness: a gap that counts as met, and one that is followed no further
+# Restitution of an impact that turns bodies. It is low because much energy goes into vibration, and
+# because the bodies turn during contact.
+RESTITUTION = 0.5
+ECCENTRIC = 1e-2  # smallest lever arm of an impact that turns a body, over its bounding radius
+MORE = 3  # further onsets of contact of two bodies that are computed after the first one
+# Gaps over the smaller half thickness: the pair counts as in contact, and the search ends.
+MET, CLOSED = 1e-3, 1e-9
 
 
 @dataclass(frozen=True)
 class Meeting:
-    """Body `first` and `second` (body k, or -1 - k for obstacle k) when they first touch, or,
-    where they do not, at the start: both as they are then; the parts along and across the
-    normal, positive, of their relative velocity [m/s] and of the constant force between them
-    [m/s2]; the radius that stands for the pair [m]; the time [s], infinite where they do not;
-    the normal, outward of the second; whether as rigid bodies they never meet; the closing
-    speed [m/s] of an impact that presses as much as the motion of a support does.
+    """The onset of contact of one contact pair: body `first` and the body or obstacle `second`
+    (body k, or -1 - k for obstacle k).
+
+    - `outlines`: both shapes at the onset, or at the start if the pair does not come into contact.
+    - `closing`, `sliding`: components of the relative velocity along and across the normal,
+      positive [m/s].
+    - `pressing`, `pulling`: those of the acceleration by constant forces between them [m/s2].
+    - `radius`: the radius that represents the pair in the rules of sizes [m].
+    - `time`: of the onset [s], infinite without one.
+    - `normal`: outward normal of `second`.
+    - `never`: whether the pair, as rigid bodies, never comes into contact.
+    - `pressed`: closing speed [m/s] of an impact with as wide a contact as the motion of a support
+      makes.
     """
 
     first: int
@@ -63,16 +69,17 @@ class Meeting:
     pressed: float = 0.0
 
     def gaps(self, body: int, points: np.ndarray) -> np.ndarray:
-        """Gaps (n,) from the other one of the points of `body`, as it is at the meeting,
-        for the sizes of elements.
+        """Returns the gaps (n,) [m] between points of `body`, where it is at the onset, and the
+        other surface. They serve for element sizes.
         """
         other = self.outlines[1 if body == self.first else 0]
         return other.gap_for_sizes(points) if isinstance(other, Obstacle) else other.gap(points)
 
 
 def meetings(scene: Scene) -> list[Meeting]:
-    """One for each two bodies that may come near each other and each body with each obstacle,
-    and those that follow as a hit turns them.
+    """Returns the onsets of contact of a scene: one for each body with each obstacle and for each
+    two bodies that may come near each other, and those that follow because an impact turns the
+    bodies.
     """
     scene = replace(
         scene,
@@ -85,9 +92,10 @@ def meetings(scene: Scene) -> list[Meeting]:
 
 
 def _near(scene: Scene) -> list[list[int]]:
-    """Of every body the later ones that it may touch: all but those that pass it by, the
-    spheres around them apart, where nothing turns either from its straight way, or both fall
-    alike.
+    """Returns for each body the later bodies that it may come into contact with.
+
+    A pair is left out if its bounding spheres stay apart on straight paths. Bodies that fall freely
+    have such relative paths; driven or supported bodies do not.
     """
     places, ways = (
         np.array([getattr(body, name) for body in scene.bodies])
@@ -106,7 +114,7 @@ def _near(scene: Scene) -> list[list[int]]:
 
 
 def _fall(scene: Scene) -> np.ndarray:
-    """The acceleration of free bodies [m/s2]."""
+    """Returns the acceleration of free bodies [m/s2]."""
     fall = np.zeros(scene.dimension.axes)
     fall[:2] = (
         scene.values.get("body_force_x", 0.0),
@@ -116,8 +124,8 @@ def _fall(scene: Scene) -> np.ndarray:
 
 
 def _in_turn(scene: Scene, one: Meeting) -> list[Meeting]:
-    """A meeting, and in the plane those of the same two that follow, where it turns rigid
-    bodies without friction: other corners strike.
+    """Returns an onset of contact and, in the plane, those of the same pair that follow: the impact
+    turns the rigid bodies, without friction, and other corners strike.
     """
     found = [one]
     while scene.dimension is PLANE_STRAIN and len(found) <= MORE and math.isfinite(one.time):
@@ -130,15 +138,14 @@ def _in_turn(scene: Scene, one: Meeting) -> list[Meeting]:
 
 
 def _rebound(scene: Scene, one: Meeting) -> Scene | None:
-    """The bodies of a meeting a little later, when they have parted and nothing pulls them on.
-    None where it does not turn them.
+    """Returns the scene a little after an onset of contact, when the bodies have separated, without
+    gravity and body forces. None if the impact does not turn the bodies.
     """
     n = one.normal
     point = _middle(one)
     fall = _fall(scene) * one.time
-    moves = (
-        scene.obstacles[-1 - one.second].velocity if one.second < 0 else np.zeros(len(n))
-    )  # of the obstacle, which stays where it is
+    # Velocity of the obstacle. Its position stays, so the body moves relative to it.
+    moves = scene.obstacles[-1 - one.second].velocity if one.second < 0 else np.zeros(len(n))
     hit, yields, closing = [], 0.0, 0.0
     for sign, k in ((1, one.first), (-1, one.second)):
         if k < 0:
@@ -171,8 +178,8 @@ def _rebound(scene: Scene, one: Meeting) -> Scene | None:
 
 
 def _middle(one: Meeting) -> np.ndarray:
-    """Where the two bodies of a meeting touch; of a face on another the middle, so that a body
-    set down flat is not turned.
+    """Returns the point of contact at an onset. For a face on another face it is the middle, so
+    that a body set down flat does not turn.
     """
     points = np.vstack([shape.points for shape in one.outlines if isinstance(shape, Outline)])
     off = np.max([abs(shape.gap(points)) for shape in one.outlines], axis=0)
@@ -184,9 +191,9 @@ def _middle(one: Meeting) -> np.ndarray:
 def _meeting(scene: Scene, first: int, second: int) -> Meeting:
     body = scene.bodies[first]
     other = scene.bodies[second] if second >= 0 else scene.obstacles[-1 - second]
-    falls = [
-        not one.supports for one in (body, other) if isinstance(one, Body)
-    ]  # two bodies fall alike
+    # Two bodies without supports fall alike, so that gravity does not change their relative
+    # velocity.
+    falls = [not one.supports for one in (body, other) if isinstance(one, Body)]
     pull = _fall(scene) * (falls[0] - (falls[1] if second >= 0 else 0))
     start = body.velocity - other.velocity
     radius = min(
@@ -203,7 +210,7 @@ def _meeting(scene: Scene, first: int, second: int) -> Meeting:
     t = t if met else 0.0
     outlines, velocity = _at(body, other, t, pull), start + pull * t
     normal = outlines[0].normal_from(outlines[1])
-    if not met:  # what lets them meet later may turn them in any direction
+    if not met:  # a later contact may have any normal: all of the velocity counts as closing
         driven = body.driven or other.driven
         return Meeting(
             first,
@@ -231,15 +238,13 @@ def _meeting(scene: Scene, first: int, second: int) -> Meeting:
         normal,
     )
     one = replace(one, pressed=_pressed(scene, one))
-    if isinstance(other, Obstacle) and other.drive:  # its surface slides by as it turns
+    if isinstance(other, Obstacle) and other.drive:  # the surface of a turning obstacle slides
         away = np.linalg.norm(outlines[0].points - other.drive.pivot, axis=1).min()
         one = replace(one, sliding=one.sliding + other.drive.fastest_turn * float(away))
     if scene.dimension is not PLANE_STRAIN:
         return one
-    point, spun = (
-        _middle(one),
-        velocity @ normal,
-    )  # of the points that touch: what turns strikes by its spin, too
+    # `spun` [m/s] is the closing velocity of the points in contact, with that by spin.
+    point, spun = _middle(one), velocity @ normal
     for sign, each, shape in zip((1, -1), (body, other), outlines):
         if (
             isinstance(each, Body)
@@ -250,8 +255,9 @@ def _meeting(scene: Scene, first: int, second: int) -> Meeting:
 
 
 def loaded_pull(body: Body) -> float:
-    """The acceleration [m/s2] of a body by its loads, on parts as wide as the body is thick. What
-    acts all around the body or a cavity has no resultant."""
+    """Returns the acceleration [m/s2] of a body by its loads, each on a part as wide as the body is
+    thick. A pressure all around the body or a cavity has no resultant.
+    """
     stress = [
         one.largest
         for one in body.loads
@@ -265,10 +271,11 @@ def loaded_pull(body: Body) -> float:
 
 
 def _pressed(scene: Scene, one: Meeting) -> float:
-    """The speed [m/s] of an impact whose contact is as wide as a support makes it, that goes on
-    by a depth [m] after the touch. Half-widths b of discs: b^2 = 0.8 R depth (R/10 deep), of
-    the impact 2 R^2 v/c (edp/core/input/sizes.idp); of balls b^2 = R depth, and b = 1.31 R
-    (v/c)^0.4.
+    """Returns the closing speed [m/s] of an impact with as wide a contact as the motion of a
+    support makes. The support moves on by a depth [m] after the onset of contact.
+
+    Half-widths b of discs: b^2 = 0.8 R depth under a support (R/10 deep), b^2 = 2 R^2 v/c in an
+    impact (edp/core/input/sizes.idp). Of balls: b^2 = R depth and b = 1.31 R (v/c)^0.4.
     """
     bodies = [scene.bodies[k] for k in (one.first, one.second) if k >= 0]
     ends = [support.path()[1] for body in bodies for support in body.supports if support.moves]
@@ -278,15 +285,16 @@ def _pressed(scene: Scene, one: Meeting) -> float:
 
 
 def _lever(shape: Shape, point: np.ndarray, n: np.ndarray) -> float:
-    """How far from its centre a force along n at a point of it goes by [m]."""
+    """Returns the signed lever arm [m] about the centre of a body of a force along n at a point."""
     arm = point - shape.area_centre
     return arm[0] * n[1] - arm[1] * n[0]
 
 
 def turned(scene: Scene) -> Scene:
-    """The scene with the discs that gmsh meshes turned so that what touches first is their
-    lowest point when they are not turned: where a disc is meshed finely does not depend on the
-    frame in which the scene is written.
+    """Returns the scene with its discs turned, except those of mesh files. The point of a disc that
+    first comes into contact is then the lowest point of its mesh, which is not turned.
+
+    So the region of small elements does not depend on the frame in which the scene is written.
     """
     if scene.dimension is not PLANE_STRAIN:
         return scene
@@ -309,7 +317,10 @@ def turned(scene: Scene) -> Scene:
 
 
 def refuse_nothing(scene: Scene, met: list[Meeting]) -> None:
-    """BadInput where nothing can ever move, or nothing touch before an end that is left open."""
+    """Raises BadInput if nothing ever moves, or if a run whose end is automatic would have none: a
+    body is driven, no bodies ever come into contact, or a body set down on an obstacle does not
+    leave it.
+    """
     driven = [
         f"{kind}.{k}"
         for kind, all_of in (("body", scene.bodies), ("obstacle", scene.obstacles))
@@ -361,8 +372,9 @@ def refuse_nothing(scene: Scene, met: list[Meeting]) -> None:
 
 
 def refuse_sinking(scene: Scene, met: list[Meeting]) -> None:
-    """BadInput where a body first comes to a plane or another body, and with a part of its boundary
-    that may not touch: it would go through."""
+    """Raises BadInput if the first contact of a body with a plane or another body is at a part of
+    its boundary that is no contact boundary. It would pass through.
+    """
     for k, body in enumerate(scene.bodies):
         mine = [one for one in met if k in (one.first, one.second)]
         first = min(mine, key=lambda one: one.time, default=None)
@@ -377,7 +389,8 @@ def refuse_sinking(scene: Scene, met: list[Meeting]) -> None:
         placed = body.outline.carried(own, corners.reshape(-1, corners.shape[2]))
         gaps = other.gap(placed)
         nearest = gaps.reshape(corners.shape[:2]).min(axis=1)
-        # from a plane the nearest point is a corner, from a body it may lie within a side
+        # The point nearest to a plane is a vertex. The point nearest to a body may lie within a
+        # side.
         near = MET * first.radius if isinstance(other, Obstacle) else np.ptp(corners, axis=1).max()
         if nearest[may_touch].min() > nearest.min() + near:
             partner = first.second if k == first.first else first.first
@@ -391,8 +404,8 @@ def refuse_sinking(scene: Scene, met: list[Meeting]) -> None:
 
 
 def _parts(vector: np.ndarray, normal: np.ndarray) -> tuple[float, float]:
-    """Its parts along and across a unit vector, positive; what is left of the latter by
-    round-off is none.
+    """Returns the magnitudes of the components of a vector along and across a unit vector. A
+    component across that is round-off becomes 0.
     """
     along, across = abs(vector @ normal), np.linalg.norm(vector - (vector @ normal) * normal)
     return float(along), float(across) if across > 1e-6 * along else 0.0
@@ -401,7 +414,9 @@ def _parts(vector: np.ndarray, normal: np.ndarray) -> tuple[float, float]:
 def _at(
     body: Body, other: Body | Obstacle, t: float, pull: np.ndarray
 ) -> tuple[Shape, Shape | Obstacle]:
-    """Both at a time, seen by one who moves with the obstacle, or falls with the bodies."""
+    """Returns both shapes at the time t [s], in the frame of the obstacle or of bodies that fall
+    freely.
+    """
 
     def flown(one: Body, velocity: np.ndarray) -> Shape:
         return one.at(t, one.position + velocity * t + pull * t**2 / 2)
@@ -419,9 +434,11 @@ def _first_touch(
     turning: float,
     radius: float,
 ) -> tuple[float, bool]:
-    """When the gap is closed [s], infinite where it is not known to, and whether it never is.
-    By conservative advancement where they are within reach of each other: in each step no point
-    can come nearer than the gap.
+    """Returns the time [s] of the onset of contact, infinite if none is found, and whether there
+    never is contact.
+
+    While the pair is within its search distance, conservative advancement is used: each step is so
+    short that no point can travel farther than the gap.
     """
     rate, steps, met, before = np.linalg.norm(pull), 0, False, math.inf
     for t, end in _within_reach(body, other, start, pull):
@@ -431,24 +448,24 @@ def _first_touch(
                 np.linalg.norm(start + pull * t) + turning,
             )
             met = met or gap <= MET * radius
-            if met and (gap <= CLOSED * radius or gap >= before):  # closed, or passing by
+            # The search ends when the gap is closed, or grows again as the body passes by.
+            if met and (gap <= CLOSED * radius or gap >= before):
                 return t, False
             steps, before = steps + 1, gap
             if steps > STEPS or gap > FAR * radius:
                 return math.inf, False
             if speed + rate == 0:
                 return math.inf, True
-            t += (
-                2 * gap / (speed + math.sqrt(speed**2 + 2 * rate * gap))
-            )  # speed t + rate t^2 / 2 = gap
+            # The step dt solves speed dt + rate dt^2 / 2 = gap.
+            t += 2 * gap / (speed + math.sqrt(speed**2 + 2 * rate * gap))
     return math.inf, True
 
 
 def _within_reach(
     body: Body, other: Body | Obstacle, start: np.ndarray, pull: np.ndarray
 ) -> Iterator[tuple[float, float]]:
-    """From when to when the sphere around the body touches that around the other one, or some
-    part of the obstacle.
+    """Yields the intervals of time [s] in which the bounding sphere of the body overlaps that of
+    the other body, or is near a segment of the obstacle.
     """
     if isinstance(other, Body) and not pull.any():
         yield from _passing(
@@ -473,7 +490,7 @@ def _within_reach(
 
 
 def _passing(r: np.ndarray, v: np.ndarray, within: float) -> Iterator[tuple[float, float]]:
-    """From when to when |r + v t| <= within, t >= 0: none or one interval."""
+    """Yields the interval of times t >= 0 in which |r + v t| <= within, if there is one."""
     square, along, beyond = v @ v, r @ v, r @ r - within**2
     if square == 0:
         yield from [(0.0, math.inf)] if beyond <= 0 else []
@@ -485,7 +502,9 @@ def _passing(r: np.ndarray, v: np.ndarray, within: float) -> Iterator[tuple[floa
 def _gates(
     body: Body, other: Body | Obstacle, start: np.ndarray, pull: np.ndarray
 ) -> Iterator[list[Polynomial]]:
-    """Of each part of the other one polynomials of time that are all <= 0 within reach of it."""
+    """Yields a list of polynomials of time for each part of the other surface. All of a list are <=
+    0 while the bounding sphere of the body is near that part.
+    """
     reach = 1.01 * body.outline.reach
 
     def seen_from(point: np.ndarray) -> np.ndarray:
@@ -520,7 +539,9 @@ def _gates(
 
 
 def _gap(first: Shape, second: Shape | Obstacle) -> float:
-    """The gap; of two bodies far apart that of the circles around them, which is no larger."""
+    """Returns the gap [m]. For two bodies far apart it is that of their bounding circles, a lower
+    bound.
+    """
     if isinstance(second, Obstacle):
         return second.gap_from(first)
     away, around = (

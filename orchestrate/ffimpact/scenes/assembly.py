@@ -1,10 +1,11 @@
-"""What FreeFEM computes a scene of bodies on: one mesh of all of them, apart from each other, and a
-data file of words and numbers.
+"""Prepares a scene of bodies for FreeFEM: one mesh of all bodies, apart from each other, and the
+data file scene.dat.
 
-Region k of the mesh is body k, from 0. Its edges have the label 1 where the body may touch, another
-one where its file excludes that or nothing reaches them. The bodies stand side by side along x, not
-turned, each about its own centre of area; scene.dat says where they are at the start. Of bodies of
-revolution it is the half x >= 0 of their sections, the axis with the label 2, one above the other.
+Region k of the mesh is body k, from 0. Its edges have the label 1 where contact may occur, and
+another label where the mesh file excludes contact or nothing can reach them. The bodies stand side
+by side along x, not turned, each about its own centre of area; scene.dat holds their positions at
+the start. For bodies of revolution the mesh is the half x >= 0 of their sections, one above the
+other, with the label 2 on the axis.
 """
 
 import math
@@ -49,27 +50,29 @@ __all__ = [
 
 ROUND = 0.5  # largest element size on a circle or ellipse, over its smaller semi-axis
 LIKE = ("radius", "young", "nu", "density", "speed", "angle", "spin")
-# of the contact of a disc on a plane: where less of an outline is near, elements are smaller; of
-# two equal discs it is 0.71
+# Width of an outline near contact, over that of a disc on a plane, below which elements are
+# smaller. Two equal discs have 0.71.
 NARROW = 0.6
-# largest half-width of a contact over the radius of the obstacle, as over that of a disc on a plane
-# (sizes.idp)
+# Largest half-width of a contact over the radius of the obstacle; the same as over that of a disc
+# on a plane (sizes.idp).
 POINTED = 0.5
-ASIDE = 0.02  # of the pair's radius: as near to a corner of an obstacle is on it
-SMALLEST = 1e-3  # element in a contact over the pair's radius, however small the obstacle is
-BETWEEN = 0.2  # from body to body in the reference configuration, over the largest extent
+ASIDE = 0.02  # distance from a corner of an obstacle that counts as on it, over the pair's radius
+SMALLEST = 1e-3  # smallest element in a contact over the pair's radius
+BETWEEN = 0.2  # distance of bodies in the mesh over their largest extent
 
-Rule = Callable[
-    [dict[str, Value]], dict
-]  # describe: what the scripts make of a disc or a ball on a plane
+# Returns the automatic values of the scripts for a disc or a ball on a plane, as describe() does.
+Rule = Callable[[dict[str, Value]], dict]
 
 
 @dataclass(frozen=True)
 class Assembly:
-    """`mesh` holds all bodies, `regions` (t,) their numbers, `centres` (bodies, axes) where
-    their centres of area are in it; `data` is the text of scene.dat; `values` are all
-    parameters of run and contact, nothing left open, and `used` the tables of the scene with
-    them in it: read again, they make this very assembly.
+    """A scene as prepared for FreeFEM.
+
+    - `mesh`: of all bodies; `regions` (t,) are the numbers of the bodies in it.
+    - `centres`: centres of area of the bodies in the mesh (bodies, axes) [m].
+    - `data`: the text of scene.dat.
+    - `values`: all parameters of run and contact, none of them automatic.
+    - `used`: the tables of the scene with these values. Read again, they give the same assembly.
     """
 
     mesh: mesh.Mesh | solid_mesh.SolidMesh
@@ -80,7 +83,9 @@ class Assembly:
     used: dict
 
     def write(self, folder: Path) -> None:
-        """mesh.msh (in three dimensions mesh.mesh) and scene.dat, what edp/bodies.edp reads."""
+        """Writes mesh.msh (in three dimensions mesh.mesh) and scene.dat, which edp/bodies.edp
+        reads.
+        """
         if isinstance(self.mesh, solid_mesh.SolidMesh):
             solid_mesh.write(self.mesh, self.regions, folder / "mesh.mesh")
         else:
@@ -91,11 +96,13 @@ class Assembly:
 def prepare(
     scene: Scene, where: Path, foreign: bytes | None = None, like: Scene | None = None
 ) -> tuple[dict[str, Value | Path], dict, str]:
-    """The flags of a run in the folder `where`, the scene as it will be used, and the text of
-    its scene.toml, "" where the script writes it. Puts into the folder what the flags name: the
-    mesh of all bodies and what the script reads of them; of one of the paper's scenes the mesh,
-    `foreign` or our own, of the sizes and the part of the body that its description says, or
-    that of the scene `like` it, which has other sizes and steps alone.
+    """Prepares a run in the folder `where`: writes the mesh and the data file of a scene of tables,
+    or the mesh of one of the paper's cases. Returns the flags of the run, the scene as used, and
+    the text of its scene.toml ("" if the script writes it).
+
+    The mesh of a case is `foreign` (the content of a mesh file) or is made from the sizes and the
+    part of the body that the script describes. They are those of the scene `like` if given, which
+    differs in sizes and steps only. Raises BadInput for a scene that cannot be run.
     """
     file = where / scene.mesh_name
     if scene.bodies:
@@ -134,9 +141,10 @@ def prepare(
 
 
 def assemble(scene: Scene, rule: Rule | None = None, met: list[Meeting] | None = None) -> Assembly:
-    """Meshes the bodies of a scene and writes down the rest. What the scene leaves open is
-    settled by `rule` (left out: describe), which is asked for a disc, or a ball, of the pair's
-    radius that hits a plane. `met`: the scene's meetings, where they are known already.
+    """Meshes the bodies of a scene and collects the data of a run.
+
+    `rule` gives automatic values for a disc (ball) of the pair's radius that hits a plane; describe
+    by default. `met` holds the onsets of contact if they are known already.
     """
     ask = Asker(
         scene,
@@ -185,8 +193,9 @@ def assemble(scene: Scene, rule: Rule | None = None, met: list[Meeting] | None =
 def _sections(
     scene: Scene, sizes: list[Sizes | None]
 ) -> tuple[list[mesh.Mesh], np.ndarray, list[tuple]]:
-    """The meshes of bodies in the plane, their centres in the mesh of all, the lines of circles
-    in scene.dat (of sections those that are not another's mirror image).
+    """Returns the meshes of bodies in the plane, their centres in the common mesh (bodies, axes)
+    [m], and the lines of circles in scene.dat. For bodies of revolution circles that are the mirror
+    image of another one are left out.
     """
     meshes = [
         body.mesh or mesh_body(_boundary(scene, k), sizes[k], body.outline.half_thickness)
@@ -207,8 +216,8 @@ def _sections(
 def _solids(
     scene: Scene, sizes: list[Sizes | None]
 ) -> tuple[list[solid_mesh.SolidMesh], np.ndarray, list[tuple]]:
-    """The same in three dimensions: bodies turned as they are at the start, one above the
-    other; half or a quarter where that is enough.
+    """Returns the same in three dimensions: bodies turned as at the start, one above the other,
+    reduced by symmetry; lines of spheres and cylinders.
     """
     folded = FOLDED[copies(scene)]
     accuracy = float(scene.values["accuracy"])
@@ -234,13 +243,13 @@ def _solids(
     )
 
 
-# ---- what the scene leaves open
+# ---- automatic values
 
 
 @dataclass(frozen=True)
 class Asker:
-    """Asks the rule for discs (balls) that hit a plane as the scene's bodies hit each other:
-    with its largest speeds and forces, along and across the normal.
+    """Asks `rule` for automatic values of a disc (ball) that hits a plane as the scene's bodies hit
+    each other, with their largest speeds and accelerations along and across the normal.
     """
 
     scene: Scene
@@ -249,14 +258,16 @@ class Asker:
 
     @cached_property
     def fronts(self) -> dict[tuple[int, int], Front]:
-        """The flat strikes, by the pair that meets; of several of a pair the one with the
-        smallest elements.
+        """The flat strikes by contact pair. If a pair has several, the one with the smallest
+        elements.
         """
         found = sorted(fronts(self.scene, self.met), key=lambda front: -front.tau)
         return {(front.meeting.first, front.meeting.second): front for front in found}
 
     def open_front(self, pair: Pair) -> Front | None:
-        """The front of a pair that strikes flat and whose penalty is open."""
+        """Returns the front of a pair that strikes flat and whose penalty is automatic, else
+        None.
+        """
         is_open = pair.values.get("penalty", self.scene.contact["penalty"]) == "auto"
         return self.fronts.get((pair.first, pair.second)) if is_open else None
 
@@ -268,12 +279,14 @@ class Asker:
         presses: bool = True,
         **more: Value,
     ) -> dict:
-        """Of the rule, for such a disc."""
+        """Returns the answer of `rule` for the disc of these arguments (disc()), with the entries
+        `more`.
+        """
         return self.rule(self.disc(bodies, radius, slides, presses) | more)
 
     def small(self, first: int, second: int) -> float:
-        """The radius [m] of an obstacle where a body meets it, if less than half of the
-        body's own, 0 at a sharp corner; else infinite.
+        """Returns the radius [m] of an obstacle at the first contact with a body, 0 at a sharp
+        corner. It is infinite if the radius is not below half the radius of the pair.
         """
         one = self.first_met.get((first, second))
         if second >= 0 or one is None:
@@ -286,13 +299,13 @@ class Asker:
 
     @cached_property
     def first_met(self) -> dict[tuple[int, int], Meeting]:
-        """The first meeting of each pair that may meet."""
+        """The first onset of contact of each pair that may come into contact."""
         return {(one.first, one.second): one for one in reversed(self.met) if not one.never}
 
     @cached_property
     def largest(self) -> tuple[float, ...]:
-        """The largest closing and sliding speed [m/s], and acceleration along and across
-        the normal [m/s2]. No round-off: a mesh follows every digit.
+        """The largest closing and sliding speed [m/s], and the largest acceleration along and
+        across the normal [m/s2]. Round-off is removed, because a mesh changes with every digit.
         """
         return tuple(
             float(f"{max((getattr(one, name) for one in self.met), default=0.0):.6g}")
@@ -301,14 +314,17 @@ class Asker:
 
     @cached_property
     def pressed(self) -> float:
-        """The closing speed [m/s] of impacts that press as much as moving supports do."""
+        """The closing speed [m/s] of impacts with as wide a contact as moving supports make."""
         return float(f"{max((one.pressed for one in self.met), default=0.0):.6g}")
 
     def disc(
         self, bodies: list[Body], radius: float, slides: bool, presses: bool = True
     ) -> dict[str, Value]:
-        """A disc of this radius [m] and the softer body's material; straight on unless it
-        `slides`; where it `presses` as wide a contact as moving supports make.
+        """Returns the parameters of a disc of this radius [m] with the material of the softest
+        body.
+
+        It moves along the normal, or also across it if it `slides`. If it `presses`, it makes as
+        wide a contact as moving supports do.
         """
         along, across, pressing, pulling = self.largest
         along = max(along, self.pressed) if presses else along
@@ -344,8 +360,8 @@ class Asker:
 def contact_values(
     bodies: list[Body], contact: dict[str, Value], ask: Asker, path: str, least: float = math.inf
 ) -> dict[str, Value]:
-    """`contact` with penalty, friction_dynamic and slip_velocity as numbers: for the softest of
-    the bodies and the smallest radius, `least` [m] that of an obstacle.
+    """Returns `contact` with numbers for penalty, friction_dynamic and slip_velocity, for the
+    softest of the bodies and the smallest radius. `least` [m] is the radius of an obstacle.
     """
     radius = min([least, *(body.outline.half_thickness for body in bodies)])
     given = [body.contact_mesh_size for body in bodies]
@@ -354,9 +370,8 @@ def contact_values(
     if left := [name for name in ("penalty", "slip_velocity") if contact[name] == "auto"]:
         used = ask.answer(bodies, radius, slides=True, exponent=contact["exponent"], **more)["used"]
         found |= {name: used[name] for name in left}
-        if (
-            "slip_velocity" in left and ask.pressed > 0
-        ):  # a slow motion slips slowly, however far it goes
+        # The slow motion of a support slips slowly, even if it makes a wide contact.
+        if "slip_velocity" in left and ask.pressed > 0:
             used = ask.answer(
                 bodies, radius, slides=True, presses=False, exponent=contact["exponent"], **more
             )["used"]
@@ -372,11 +387,11 @@ def contact_values(
 
 
 def pair_values(pair: Pair, ask: Asker, values: dict[str, Value]) -> dict[str, Value]:
-    """All that a pair may have of its own: what it does not say is as settled for the scene,
-    and open again where it depends on what the pair says.
+    """Returns all contact parameters of a pair. A parameter that the pair does not set has the
+    value of the scene; it is automatic again if it depends on one that the pair sets.
     """
     bodies = [ask.scene.bodies[k] for k in (pair.first, pair.second) if k >= 0]
-    alone = "friction_static" in pair.values  # sets both
+    alone = "friction_static" in pair.values  # then it sets both coefficients
     inherited = {name: values[name] for name in ask.scene.contact}
     inherited["friction_dynamic"] = "auto" if alone else ask.scene.contact["friction_dynamic"]
     small = ask.small(pair.first, pair.second)
@@ -390,8 +405,8 @@ def pair_values(pair: Pair, ask: Asker, values: dict[str, Value]) -> dict[str, V
 
 
 def with_open_penalties(scene: Scene, ask: "Asker") -> list[Pair]:
-    """The scene's pairs, and those that an open penalty makes differ: flat strikes, and a body
-    and an obstacle smaller than its contact on a plane.
+    """Returns the pairs of the scene, and those whose automatic penalty differs: flat strikes, and
+    a body with an obstacle that is smaller than the contact of the body on a plane.
     """
     said = {(pair.first, pair.second) for pair in scene.pairs}
     small = [
@@ -411,8 +426,8 @@ def with_open_penalties(scene: Scene, ask: "Asker") -> list[Pair]:
 def used_tables(
     scene: Scene, sizes: list[Sizes | None], values: dict[str, Value], pairs: list[dict[str, Value]]
 ) -> dict:
-    """The tables of a scene with everything as used; what obstacles say of contact stands in
-    [[contact.pair]].
+    """Returns the tables of a scene with all values as used. Contact parameters of obstacles become
+    tables [[contact.pair]].
     """
 
     def names(pair: Pair) -> list[str]:
@@ -450,7 +465,7 @@ def used_tables(
 
 
 def _of_body(k: int, ask: Asker, **given: Value) -> dict:
-    """What the rule makes of a disc or ball as thick as body k."""
+    """Returns the values of the rule for a disc or ball as thick as body k."""
     body = ask.scene.bodies[k]
     try:
         return ask.answer([body], body.outline.half_thickness, **given)["used"]
@@ -462,8 +477,8 @@ def _of_body(k: int, ask: Asker, **given: Value) -> dict:
 
 
 def element_sizes(k: int, ask: Asker) -> Sizes:
-    """The element sizes of body k: in the bulk for its own thickness, in the contacts as each
-    pair asks for.
+    """Returns the element sizes of body k: in the bulk for its own thickness, near contacts for
+    each contact pair.
     """
     body = ask.scene.bodies[k]
     given = {
@@ -478,9 +493,8 @@ def element_sizes(k: int, ask: Asker) -> Sizes:
     hits = [_hit(body, k, one, ask) for one in ask.met if k in (one.first, one.second)]
     mine = [front for front in ask.fronts.values() if k in front.sizes]
     if body.rigid and not body.mesh_size:
-        bulk = (
-            float(body.outline.half_thickness) / 3
-        )  # nothing goes on inside; the outline is to look round
+        # A rigid body does not deform. This size only keeps its outline round.
+        bulk = float(body.outline.half_thickness) / 3
     if not body.mesh_size:
         bulk = min((front.sizes[k] for front in mine if k in front.crossed), default=bulk)
     contact = body.contact_mesh_size or min(
@@ -491,8 +505,8 @@ def element_sizes(k: int, ask: Asker) -> Sizes:
 
 
 def _hit(body: Body, k: int, one: Meeting, ask: Asker) -> tuple[float, np.ndarray, float]:
-    """Where body k touches at a meeting: the element size there, points (n, 2) of its outline,
-    and half their distance [m].
+    """Returns, for an onset of contact of body k, the element size [m] at the contact, points (n,
+    axes) of its outline there, and half their distance [m].
     """
     bodies = [ask.scene.bodies[j] for j in (one.first, one.second) if j >= 0]
     straight = ask.answer(bodies, one.radius)
@@ -503,9 +517,9 @@ def _hit(body: Body, k: int, one: Meeting, ask: Asker) -> tuple[float, np.ndarra
     )
     points, spacing = body.outline.samples(size)
     near = _near(body, k, one, depth, points)
-    # than the contact of a disc: flat faces; or less wide: corners, pegs
+    # Width near contact over that of a disc: above 1 for flat faces, below 1 for corners and pegs.
     wider = body.outline.width(near, spacing) / (2 * arc * one.radius)
-    if small > 0:  # a sharp corner no elements resolve
+    if small > 0:  # a sharp corner has radius 0, and no element size resolves it
         wider = min(
             max(1.0, wider), wider / NARROW, POINTED * small / (2 / math.pi * arc * one.radius)
         )
@@ -520,17 +534,17 @@ def _hit(body: Body, k: int, one: Meeting, ask: Asker) -> tuple[float, np.ndarra
 
 
 def _near(body: Body, k: int, one: Meeting, depth: float, points: np.ndarray) -> np.ndarray:
-    """Those of the points of body k where the gap at the meeting is larger than the least by
-    `depth` [m] at most, which of a disc on a plane is that at touch_arc from its lowest
-    point.
+    """Returns those of the `points` of body k whose gap at the onset of contact exceeds the
+    smallest gap by `depth` [m] at most. For a disc on a plane `depth` is the gap at touch_arc from
+    its lowest point.
     """
     gaps = one.gaps(k, body.outline.carried(one.outlines[0 if k == one.first else 1], points))
     return points[gaps <= gaps.min() + depth]
 
 
 def _boundary(scene: Scene, k: int) -> list[list[tuple[Curve, float, int]]]:
-    """The closed curves that bound the mesh of body k, the outer first, counter-clockwise: each
-    piece with the largest element size on it and its label.
+    """Returns the closed curves that bound the mesh of body k, the outer one first,
+    counter-clockwise. Each is a list of pieces with the largest element size [m] and the label.
     """
     loops = scene.bodies[k].outline.loops
     if scene.dimension is AXISYMMETRIC:
@@ -558,16 +572,18 @@ def _largest(loop: Loop) -> float:
 
 
 def _reached(scene: Scene, k: int, made):
-    """The Mesh or SolidMesh of body k. Its inner outlines may touch like the outer one where the
-    body touches itself or something is inside. Nothing reaches the others: no contact points."""
+    """Returns the Mesh or SolidMesh of body k. Its inner outlines have contact points only if the
+    body may come into contact with itself or something is inside: nothing reaches the others.
+    """
     if any(pair.first == pair.second == k for pair in scene.pairs):
         return made
     return mesh.without_inner(made, partial(_holds, scene, k))
 
 
 def _holds(scene: Scene, k: int, inner: np.ndarray, rest: np.ndarray) -> bool:
-    """Whether another body or an obstacle is inside an inner outline of body k, vertices (n, axes)
-    of its mesh: it is then nearer to that outline than to the rest of the boundary."""
+    """Whether another body or an obstacle is inside an inner outline of body k. It is then nearer
+    to the vertices `inner` (n, axes) of that outline than to those of the `rest` of the boundary.
+    """
     body = scene.bodies[k]
     turn = np.eye(3) if scene.dimension is SOLID else rotation(body.angle).T
     own, outer = (points @ turn + body.position for points in (inner, rest))
@@ -579,8 +595,8 @@ def _holds(scene: Scene, k: int, inner: np.ndarray, rest: np.ndarray) -> bool:
 
 
 def side_by_side(meshes: list[mesh.Mesh | solid_mesh.SolidMesh], along: int) -> np.ndarray:
-    """Centres (bodies, axes) on an axis (0: x, 1: y), from 0 on, that keep meshes about them
-    apart by a part of the largest.
+    """Returns centres (bodies, axes) [m] on an axis (0: x, 1: y), from 0 on, for meshes about their
+    centres. Their distance from each other is BETWEEN times the largest extent.
     """
     boxes = [np.array([one.points.min(axis=0), one.points.max(axis=0)]) for one in meshes]
     between = BETWEEN * max(np.ptp(box, axis=0).max() for box in boxes)
@@ -593,7 +609,9 @@ def side_by_side(meshes: list[mesh.Mesh | solid_mesh.SolidMesh], along: int) -> 
 
 
 def stack(meshes: list[mesh.Mesh] | list[solid_mesh.SolidMesh], centres: np.ndarray) -> tuple:
-    """All bodies as one mesh, and the body (t,) of each triangle or tetrahedron."""
+    """Returns all bodies as one mesh, and the number (t,) of the body of each triangle or
+    tetrahedron.
+    """
     first = np.cumsum([0, *(len(one.points) for one in meshes)])
     points, cells, sides, labels = zip(
         *([getattr(one, part.name) for part in fields(one)[:4]] for one in meshes)
@@ -618,10 +636,12 @@ def data_file(
     front: Sequence[tuple[float, float]] = (),
     conditions: Sequence[tuple] = (),
 ) -> str:
-    """The text of scene.dat, words and numbers (SI, radians), as edp/core/input/scene-file.idp
-    says; the disc, or ball, is what the rules stand for, `rounds` are the lines of circles, or
-    of spheres and cylinders, `front` the transit through an element and the rise [s] of the
-    front of a flat strike, where there is one, `conditions` the lines of supports and loads.
+    """Returns the text of scene.dat, words and numbers (SI, radians), in the format of
+    edp/core/input/scene-file.idp.
+
+    `disc` holds the parameters of the disc, or ball, for the rules of sizes. `rounds` are the lines
+    of circles, or of spheres and cylinders, `conditions` those of supports and loads. If there is a
+    flat strike, `front` holds the transit of its front through an element and its rise time [s].
     """
     if scene.dimension is SOLID:
         head = [("ffimpact-bodies-3d", 1), ("copies", copies(scene))]

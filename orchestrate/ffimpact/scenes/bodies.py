@@ -1,6 +1,8 @@
-"""The bodies of a scene: [[body]] tables (docs: scenes says what they hold) as outlines (or
-meshes) with material, place and motion, SI units. Shapes and motions: flat.py in plane strain,
-revolution.py of revolution, solids.py in three dimensions.
+"""Reads the bodies of a scene from [[body]] tables (docs/how-to/scenes.md): outlines or meshes with
+material, position and motion, in SI units.
+
+Shapes and motions come from mesh/flat.py in plane strain, mesh/revolution.py for bodies of
+revolution and mesh/solids.py in three dimensions.
 """
 
 from dataclasses import dataclass, replace
@@ -26,19 +28,24 @@ from .conditions import Load, Support, read_loads, read_supports
 
 __all__ = ["Body", "DAMPED", "DAMPING", "SIZES", "STIFF", "read", "stiffened"]
 
-GEOMETRY = {PLANE_STRAIN: flat, AXISYMMETRIC: revolution, SOLID: solids}  # shape(), motion()
+# Modules with the functions shape() and motion().
+GEOMETRY = {PLANE_STRAIN: flat, AXISYMMETRIC: revolution, SOLID: solids}
 DAMPING = ("viscosity", "bulk_viscosity", "relaxation_modulus", "relaxation_time")
-DAMPED = ("viscosity", "bulk_viscosity", "relaxation_modulus", "loss")  # one of which is above 0
-STIFF = 1e5  # young of a rigid body over that of the others: its strain is as much smaller
+# A body is damped if one of these is above 0.
+DAMPED = ("viscosity", "bulk_viscosity", "relaxation_modulus", "loss")
+# `young` of a rigid body over the largest of the others. Its strain is smaller by this factor.
+STIFF = 1e5
 OPTIONAL = ("law_parameters", *DAMPING, "loss")
 SIZES = ("mesh_size", "contact_mesh_size")
 
 
 @dataclass(frozen=True)
 class Body:
-    """`outline` and `mesh` (of a mesh file, else None) are about the centre of area (or
-    volume), not turned; angle [rad], in three dimensions a vector as spin is; a mesh size of 0
-    is open, or that of the file.
+    """One body of a scene.
+
+    `outline` and `mesh` (of a mesh file, else None) are about the centre of area (or volume) and
+    not turned. `angle` [rad] is a vector in three dimensions, as is `spin` [rad/s]. A mesh size of
+    0 is automatic, or that of the mesh file.
     """
 
     name: str
@@ -63,8 +70,10 @@ class Body:
     supports: tuple[Support, ...] = ()
     loads: tuple[Load, ...] = ()
     rigid: bool = False
-    mass: float = 0.0  # given, of a rigid body [kg/m; kg]; 0: by density
-    moments: tuple[float, ...] = (0.0,) * 6  # likewise, as edp/core/input/conditions.idp has them
+    mass: float = 0.0  # entry of a rigid body [kg/m; kg]; 0: by density
+    # Moments of a rigid body's entry `inertia`, ordered as in edp/core/input/conditions.idp; 0: by
+    # density.
+    moments: tuple[float, ...] = (0.0,) * 6
 
     @property
     def damped(self) -> bool:
@@ -72,14 +81,18 @@ class Body:
 
     @property
     def driven(self) -> bool:
-        """Whether a support moves it, or a stress that is given loads it (a gas does not)."""
+        """Whether a support moves the body, or a prescribed stress loads it (a gas does not
+        count).
+        """
         return any(one.moves for one in self.supports) or any(
             one.kind != "gas" for one in self.loads
         )
 
     @property
     def carried_along(self) -> "Body":
-        """The same, as fast as its support on the way to where that is farthest from the start."""
+        """The body with the mean velocity of its support on the way to the displacement farthest
+        from the start. A body without supports is unchanged.
+        """
         ways = [one.path() for one in self.supports]
         if not ways:
             return self
@@ -89,8 +102,8 @@ class Body:
 
     @property
     def sides(self) -> tuple[np.ndarray, np.ndarray] | None:
-        """The boundary edges or faces of a body from a file: corners (f, axes, axes), about
-        its centre and not turned, and whether each may touch (f,).
+        """The boundary edges or faces of a body from a file, None without a file: corners (f, axes,
+        axes), about its centre and not turned, and whether each is contact boundary (f,).
         """
         geometry = isinstance(self.outline, Solid) and self.outline.geometry
         found = geometry.coarse if geometry else self.mesh
@@ -102,19 +115,21 @@ class Body:
 
     @property
     def placed(self) -> Outline | Solid:
-        """The outline where it is at the start."""
+        """The outline at its position at the start."""
         return self.at(0.0, self.position)
 
     def at(self, t: float, centre: np.ndarray) -> Outline | Solid:
-        """The outline about `centre`, turned as it is at time t [s] if nothing hinders it."""
+        """Returns the outline with its centre at `centre`, turned as the body is at time t [s] in
+        free motion.
+        """
         return self.outline.placed(centre, self.outline.turned(self.angle, self.spin, t))
 
 
 def read(
     tables: list[models.Body], top: models.Top, folder: Path, dimension: Dimension
 ) -> list[Body]:
-    """The bodies of the [[body]] tables; `top` holds the entries at the top of the file, mesh
-    files are sought from `folder` on.
+    """Returns the bodies of the [[body]] tables. `top` holds the entries at the top of the file;
+    paths of mesh files are relative to `folder`.
     """
     return gathered([partial(_body, table, top, folder, dimension) for table in tables])
 
@@ -153,9 +168,7 @@ def _body(table: models.Body, top: models.Top, folder: Path, of: Dimension) -> B
 
 
 def _rigid(table: models.Body, top: models.Top, of: Dimension, outline: Outline | Solid) -> dict:
-    """What a rigid body has instead of a material; its young is settled by the scene
-    (stiffened()).
-    """
+    """Returns the material entries of a rigid body. Its `young` is set later, by stiffened()."""
     for key in ("law", "young", "nu", *OPTIONAL, "support"):
         if key in table:
             raise BadInput(
@@ -164,9 +177,9 @@ def _rigid(table: models.Body, top: models.Top, of: Dimension, outline: Outline 
     if "mass" in table and "density" in table:
         raise BadInput(f"{table.at('mass')}: stands beside density (accepted: one of them)")
     mass = table.mass or 0.0
-    content = (
-        outline.volume if isinstance(outline, Solid) else outline.area
-    )  # of revolution a scale alone
+    # Volume [m3] or area [m2]. For a body of revolution with a mass the density below is only a
+    # scale.
+    content = outline.volume if isinstance(outline, Solid) else outline.area
     if not mass and "density" not in table and "density" not in top:
         raise BadInput(
             f"{table.at('density')}: is missing, here and at the top of the file (accepted: "
@@ -186,9 +199,11 @@ def _rigid(table: models.Body, top: models.Top, of: Dimension, outline: Outline 
 
 
 def _moments(table: models.Body, of: Dimension) -> tuple[float, ...]:
-    """Of the entry inertia: in the plane the polar moment of inertia; in space, from those
-    about the body's own axes, the integrals of rho X_i X_j about the centre, in the scene's
-    axes: 11, 22, 33, 12, 23, 13. 0 where there is no such entry.
+    """Returns the moments of the entry `inertia`, 0 where there is no such entry.
+
+    In the plane this is the polar moment of inertia. In space the entry holds moments about the
+    body's own axes, and the result holds the integrals of rho X_i X_j about the centre, in the
+    scene's axes: 11, 22, 33, 12, 23, 13.
     """
     if "inertia" not in table:
         return (0.0,) * 6
@@ -218,9 +233,11 @@ def _moments(table: models.Body, of: Dimension) -> tuple[float, ...]:
 
 
 def stiffened(found: list[Body], penalty: Value, path: str) -> list[Body]:
-    """The bodies of a scene with the young of its rigid ones: STIFF times the largest of the
-    others, or, where all are rigid, times the stiffness of the penalty over the largest of
-    them. BadInput where that is open then.
+    """Returns the bodies of a scene with `young` of the rigid ones.
+
+    It is STIFF times the largest `young` of the other bodies. If all bodies are rigid it is STIFF
+    times the penalty times the largest half thickness. Raises BadInput if the penalty is automatic
+    then.
     """
     if not any(body.rigid for body in found):
         return found
@@ -234,9 +251,11 @@ def stiffened(found: list[Body], penalty: Value, path: str) -> list[Body]:
 
 
 def _material(table: models.Body, top: models.Top) -> dict[str, Value]:
-    """What MATERIAL names: the body's own, else those at the top of the file; BadInput where
-    one is in neither. A viscosity of its own takes the place of a loss at the top, and the
-    other way.
+    """Returns the entries MATERIAL of a body: its own, else those at the top of the file. Raises
+    BadInput if one is in neither.
+
+    A viscosity of the body replaces a loss at the top of the file, and a loss of the body a
+    viscosity there.
     """
     found = {}
     missing = [
@@ -268,8 +287,8 @@ def _material(table: models.Body, top: models.Top) -> dict[str, Value]:
 
 
 def _sizes(table: models.Body, top: models.Top | None) -> tuple[float, float]:
-    """Element sizes [m] in the bulk and where it may touch: its own, else those at the `top`; 0
-    is open.
+    """Returns the element sizes [m] in the bulk and where contact may occur: those of the body,
+    else those at the `top`. 0 is automatic.
     """
     own = [getattr(table, key) for key in SIZES]
     common = [getattr(top, key) if top else None for key in SIZES]

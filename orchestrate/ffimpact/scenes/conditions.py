@@ -1,9 +1,9 @@
-"""Supports and loads: what a scene prescribes on the boundary beside contact.
+"""Supports and loads: what a scene prescribes on the boundary of bodies beside contact.
 
-[[body.support]] tables hold or move a part of a body's boundary (Gamma_D of the paper, section
-2.2.1), [[body.load]] tables give a part a stress (Gamma_F). docs: supports and loads says what
-they hold. A part is a side of the body, a region of space where the body is at the start, or a
-named group of its file. Units are SI.
+[[body.support]] tables fix or move a part of a body's boundary (Gamma_D of the paper, section
+2.2.1). [[body.load]] tables apply a stress to a part (Gamma_F). Their entries are described in
+docs/how-to/supports-and-loads.md. A part is a side of the body, a region of space at the start, or
+a named group of its file. Units are SI.
 """
 
 from dataclasses import dataclass, replace
@@ -22,9 +22,9 @@ from ..input.rules import ALIAS, number
 
 __all__ = ["Load", "Part", "Support", "inlined", "read_loads", "read_supports"]
 
-NEVER = 1e300  # s: the release of a support that holds throughout
-AMBIENT = 101325.0  # Pa: outside of a gas, the standard atmosphere
-# sides of a body by its own axes: the axis, and the end of the body along it
+NEVER = 1e300  # release [s] of a support that holds until the end
+AMBIENT = 101325.0  # default pressure [Pa] outside of a cavity with gas: standard atmosphere
+# Sides of a body: one of its own axes, and the end of the body along it (0: low, 1: high).
 SIDES = {
     "left": (0, 0),
     "right": (0, 1),
@@ -34,14 +34,15 @@ SIDES = {
     "front": (2, 1),
 }
 WHOLE = ("all", "outer", "inner")
-ON_SIDE = 1e-6  # of the body's extent: as near to its end is on a side
-KINDS = {"traction": 0, "pressure": 1, "gas": 2}  # as edp/core/input/conditions.idp
+ON_SIDE = 1e-6  # largest distance from a side that counts as on it, over the body's extent
+KINDS = {"traction": 0, "pressure": 1, "gas": 2}  # numbers as in edp/core/input/conditions.idp
 
 
 @dataclass(frozen=True)
 class Part:
-    """A part of a body's boundary: `name` of a side or a group, or a region of `kind` with its
-    `numbers`; `entry` says so in the scene."""
+    """A part of a body's boundary: the `name` of a side or a group, or a region of the given `kind`
+    with its `numbers`. `entry` is the entry of the scene that defines it, for messages.
+    """
 
     entry: str
     name: str = ""
@@ -58,7 +59,9 @@ class Part:
         return np.linalg.norm(points - first, axis=1) <= second
 
     def is_mirrored(self, axis: int, rotation: np.ndarray) -> bool:
-        """Whether it is its own mirror image across an axis; of a side of a body that is turned."""
+        """Whether the part is its own mirror image in the plane normal to an axis. `rotation` is
+        that of the body, which turns its sides.
+        """
         if self.kind == "":
             side = SIDES.get(self.name)
             return self.name in WHOLE or side is not None and abs(rotation[axis, side[0]]) < 1e-9
@@ -70,8 +73,9 @@ class Part:
 
 @dataclass(frozen=True)
 class Support:
-    """A part that is held in the components `fixed`, or across itself where `normal`; these follow
-    `motion` [m] from the start on, until `release` [s]."""
+    """A part of the boundary with prescribed displacement in the components `fixed`, or along its
+    own normal if `normal`. The components follow `motion` [m] from the start until `release` [s].
+    """
 
     part: Part
     fixed: tuple[bool, ...]
@@ -81,20 +85,23 @@ class Support:
 
     @property
     def moves(self) -> bool:
-        """Whether something of it is moved."""
+        """Whether any component is moved."""
         return not all(
             one.is_constant for one, fixed in zip(self.motion, self.fixed) if fixed or self.normal
         )
 
     def path(self) -> tuple[np.ndarray, float]:
-        """How far it has moved when it is farthest from the start [m], and when [s]."""
+        """Returns the displacement (axes,) [m] farthest from the start, and its time [s]."""
         return farthest(self.motion, self.release)
 
 
 @dataclass(frozen=True)
 class Load:
-    """A part with a stress: `kind` of KINDS; functions of the components of a traction, or of the
-    pressure [Pa]; of a gas gauge and ambient pressure [Pa] and its exponent."""
+    """A part of the boundary with a stress; `kind` is one of KINDS.
+
+    `functions` of time are the components of a traction, or the pressure [Pa]. `gas` holds gauge
+    and ambient pressure [Pa] and the exponent of a gas.
+    """
 
     part: Part
     kind: str
@@ -103,14 +110,16 @@ class Load:
 
     @property
     def largest(self) -> float:
-        """The largest stress of it [Pa]."""
+        """The largest stress of the load [Pa]."""
         return max(
             [abs(self.gas[0]), *(float(abs(one.knots[:, 1]).max()) for one in self.functions)]
         )
 
 
 def inlined(given: dict, folder: Path, of: Dimension) -> dict:
-    """The tables of a scene with the CSV files of its supports and loads as tables in them."""
+    """Returns the tables of a scene in which CSV files of supports, loads and driven obstacles are
+    replaced by their content.
+    """
     bodies = []
     for b, body in enumerate(listed(given, "body"), 1):
         changed = dict(body)
@@ -149,12 +158,16 @@ def _with_tables(
 def read_supports(
     tables: list[models.Support], of: Dimension, end_time: float
 ) -> tuple[Support, ...]:
-    """The [[body.support]] tables of a body. BadInput for whatever is wrong in them."""
+    """Returns the supports in the [[body.support]] tables of a body. Raises BadInput for whatever
+    is wrong in them.
+    """
     return tuple(gathered([partial(_support, one, of, end_time) for one in tables]))
 
 
 def read_loads(tables: list[models.Load], of: Dimension, end_time: float) -> tuple[Load, ...]:
-    """The [[body.load]] tables of a body. BadInput for whatever is wrong in them."""
+    """Returns the loads in the [[body.load]] tables of a body. Raises BadInput for whatever is
+    wrong in them.
+    """
     return tuple(gathered([partial(_load, one, of, end_time) for one in tables]))
 
 

@@ -1,5 +1,5 @@
-"""Entries of a scene's tables by dotted names: set, and open again where what they were fixed for
-is set.
+"""Sets entries of a scene's tables by dotted names, and resets the entries that depend on them to
+automatic.
 """
 
 import copy
@@ -15,6 +15,7 @@ from ..input.parameters import Value
 
 __all__ = ["release", "set_entry", "toml_value"]
 
+# Entries that set the size of a body, beside `radius`.
 SHAPE = (
     "shape",
     "semi_axes",
@@ -26,15 +27,16 @@ SHAPE = (
     "vertices",
     "file",
     "scale",
-)  # sizes of a body, beside radius
-EVERYWHERE = ("penalty", "dt")
+)
+EVERYWHERE = ("penalty", "dt")  # entries that depend on every body
 
 
 def set_entry(given: dict, name: str, value: Value | list) -> dict:
-    """The tables of a file with one entry set: "body.2.young", "contact.pair.1.penalty",
-    "body.1.velocity.2"; tables and components of a list are counted from 1. None removes the
-    entry of a table: the program then chooses its value. BadInput if the scene has no such
-    table or component.
+    """Returns the tables of a file with one entry set.
+
+    Names are dotted: "body.2.young", "contact.pair.1.penalty", "body.1.velocity.2". Tables and
+    components of a list are counted from 1. The value None removes the entry of a table: the
+    program then chooses its value. Raises BadInput if the scene has no such table or component.
     """
     changed = copy.deepcopy(given)
     place, path = changed, ""
@@ -62,9 +64,11 @@ def set_entry(given: dict, name: str, value: Value | list) -> dict:
 
 
 def release(given: dict, names: list[str]) -> tuple[str, ...]:
-    """Takes out of the tables of a file what FOLLOWS says that the entries `names`, which were
-    set, leave open; the sentences about it. What is of one table (coefficients of friction,
-    sizes of a body) follows what is set there, penalty and step whatever body it is of.
+    """Resets entries that depend on the changed entries `names` (FOLLOWS) to automatic: removes
+    them from the tables `given`. Returns one message for each.
+
+    Coefficients of friction and sizes of a body depend on entries of the same table, penalty and
+    step on those of every body.
     """
     places = [_table_of(name) for name in names]
     said = []
@@ -94,7 +98,7 @@ def release(given: dict, names: list[str]) -> tuple[str, ...]:
 
 
 def _tables(value, path: str = "") -> Iterator[tuple[str, dict]]:
-    """All tables in a table or a list, with their dotted names."""
+    """Yields all tables in a table or a list, with their dotted names."""
     if isinstance(value, dict):
         yield path, value
     for key, one in (
@@ -108,7 +112,7 @@ def _tables(value, path: str = "") -> Iterator[tuple[str, dict]]:
 
 
 def _table_of(name: str) -> tuple[str, str]:
-    """Of a dotted name that of its table, and the entry in it."""
+    """Returns the dotted name of the table that holds an entry, and the entry in it."""
     parts = name.split(".")
     depth = (
         3
@@ -119,7 +123,7 @@ def _table_of(name: str) -> tuple[str, str]:
 
 
 def _key(place: dict | list, step: str, path: str, name: str) -> str | int:
-    """The key of one step, from 0 in lists."""
+    """Returns the key of one part of a dotted name; in a list it is the index from 0."""
     if not step:
         raise BadInput(
             f"{brief(name)}: has an empty part (accepted: names and numbers with single dots between them)"
@@ -136,7 +140,9 @@ def _key(place: dict | list, step: str, path: str, name: str) -> str | int:
 
 
 def toml_value(value):
-    """Text as TOML reads it, where it does; numbers and arrays of numpy as plain ones."""
+    """Returns the value of a text by TOML's rules, or the text itself if it has none. Numbers and
+    arrays of numpy become plain numbers and lists.
+    """
     if not isinstance(value, str):
         return value.tolist() if isinstance(value, np.generic | np.ndarray) else value
     try:

@@ -1,4 +1,4 @@
-"""The same scene with other sizes of elements and steps, for the runs that estimate an error."""
+"""Changes the sizes of elements and steps of a scene, for the runs that estimate an error."""
 
 from collections.abc import Mapping
 
@@ -14,9 +14,12 @@ __all__ = ["scaled"]
 def scaled(
     scene: Scene, values: Mapping, used: Mapping, factor: float, own_mesh: bool = True
 ) -> dict[str, Value | list]:
-    """What a scene, run as the tables `used`, is overridden by for `factor` times the elements and
-    steps. Penalty, slip velocity and dynamic friction stay as they were, except the penalty of flat
-    strikes. Meshes of files stay, too."""
+    """Returns the entries to override in a scene, run before as the tables `used`, for `factor`
+    times its elements and steps.
+
+    Penalty, slip velocity and dynamic friction keep their values, except the penalty of flat
+    strikes. Meshes of files stay, too.
+    """
     if not scene.bodies:
         return estimate.other(values, used, factor, own_mesh)
     kept = ("penalty", "slip_velocity", "friction_dynamic")
@@ -35,13 +38,16 @@ def scaled(
 
 
 def _pairs(scene: Scene, used: list[dict], factor: float) -> list[dict]:
-    """The tables [[contact.pair]] as used. The open penalty of a flat strike lets the front rise in
-    `factor` times the time: the error is that of elements and penalty together (front.py)."""
+    """Returns the tables [[contact.pair]] for `factor` times the elements. If the penalty of a flat
+    strike is automatic, it changes so that the front rises in `factor` times the time. The
+    estimated error is then that of elements and penalty together (front.py).
+    """
     given = {(pair.first, pair.second) for pair in scene.pairs if "penalty" in pair.values}
     if scene.contact["penalty"] != "auto" or len(used) == len(given):
         return used
     found = [front.meeting for front in fronts(scene, meetings(scene))]
-    others = [one.name for one in [*scene.bodies, *reversed(scene.obstacles)]]  # -1 is obstacle 0
+    # The index -1 is obstacle 0.
+    others = [one.name for one in [*scene.bodies, *reversed(scene.obstacles)]]
     flat = [
         [others[one.first], others[one.second]]
         for one in found

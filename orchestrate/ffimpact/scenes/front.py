@@ -2,11 +2,12 @@
 its body.
 
 The contact patch of a disc shrinks with the speed. A front does not, so elements, steps and penalty
-follow the front. A bar of length L (wave speed c, modulus M = rho c^2) on a penalty k has a front
-with the rise time M/(k c). It loses 0.051 M/(k L) of its rebound and leaves 1.68 M/(k c) late
-(exact solution: docs: method). Let tau be the time in which the front passes one element. The
-penalty lets the front rise in tau / STEEPNESS, and in LONGEST of its transit across the body at
-most. Then all errors are of first order in the element size.
+are chosen to resolve the front. A bar of length L (wave speed c, modulus M = rho c^2) on a penalty
+k has a front with the rise time M/(k c). The bar loses 0.051 M/(k L) of its rebound velocity and
+leaves 1.68 M/(k c) late (exact solution in docs/explanation/method.md). Let tau be the time in
+which the front passes one element. The penalty lets the front rise in tau / STEEPNESS, or in
+LONGEST of its transit across the body if that is shorter. Then all errors are of first order in the
+element size.
 """
 
 import math
@@ -22,23 +23,28 @@ from .scene import Scene
 
 __all__ = ["Front", "fronts", "wave_speed"]
 
-FLAT = 0.3  # share of a body's width that lands while the front passes an element
-PER_ACCURACY = 5.0  # element size over the length along the normal, over the accuracy
-STEEPNESS = 1.5  # elements over the rise length of the front
-LONGEST = 0.02  # rise of the front over its transit across the body
-BRIEF = 30.0  # transits: a run that is asked to go on for longer is not about the front
-# By the number of axes: unknowns of a body that no front asks to exceed; unknowns of a body of the
-# area (volume) V with quadratic elements of the size h, over V/h^2 (V/h^3); area (volume) of an
-# element over h^2 (h^3).
+FLAT = 0.3  # smallest share of a body's width that lands while the front passes an element
+PER_ACCURACY = 5.0  # element size / (length along the normal * accuracy)
+STEEPNESS = 1.5  # transit of the front through an element over its rise time
+LONGEST = 0.02  # largest rise time of the front over its transit across the body
+BRIEF = 30.0  # transits after a strike: in longer runs the front does not matter
+# By the number of axes: the largest number of unknowns of a body that a front may require; the
+# unknowns of a body of area (volume) V with quadratic elements of size h, over V/h^2 (V/h^3); the
+# area (volume) of an element over h^2 (h^3).
 MOST_UNKNOWNS, UNKNOWNS, ELEMENT = {2: 40000, 3: 60000}, {2: 9.5, 3: 36.0}, {2: 0.43, 3: 0.12}
-STIFFEST = 0.45  # nu: the rest up to 0.5 acts on the volume of elements (docs: method)
+# Largest nu in the wave speed. The stiffness by a larger nu acts on the volume of elements
+# (docs/explanation/materials.md).
+STIFFEST = 0.45
 
 
 @dataclass(frozen=True)
 class Front:
-    """The front of one flat strike: the meeting, the time `tau` [s] in which it passes an
-    element, the shortest `transit` [s] across a body, the element sizes [m] of the bodies (by
-    number), and the bodies that are `crossed` as a whole by a plane front.
+    """The wave front of one flat strike.
+
+    `meeting` is the onset of contact, `tau` [s] the time in which the front passes an element,
+    `transit` [s] the shortest time in which it crosses a body. `sizes` are the element sizes [m] by
+    the number of the body, `crossed` the numbers of the bodies that a plane front crosses as a
+    whole.
     """
 
     meeting: Meeting
@@ -49,28 +55,29 @@ class Front:
 
     @property
     def rise(self) -> float:
-        """The time [s] in which the front is to rise."""
+        """The required rise time [s] of the front."""
         return min(self.tau / STEEPNESS, LONGEST * self.transit)
 
     def penalty(self, bodies: list[Body], exponent: float) -> float:
-        """The penalty k [Pa/m^m] that lets the front rise so: t_N = k p^m is the pressure
-        rho c v at the penetration v rise.
+        """Returns the penalty k [Pa/m^m] for which the front has the time `rise`: t_N = k p^m is
+        the pressure rho c v at the penetration p = v rise.
         """
         return self._pressure(bodies) / (self.meeting.closing * self.rise) ** exponent
 
     def rise_on(self, penalty: float, bodies: list[Body], exponent: float) -> float:
-        """The time [s] in which the front rises on a penalty [Pa/m^m]."""
+        """Returns the rise time [s] of the front on a penalty [Pa/m^m]."""
         return (self._pressure(bodies) / penalty) ** (1 / exponent) / self.meeting.closing
 
     def _pressure(self, bodies: list[Body]) -> float:
-        """rho c v [Pa], with the impedances rho c of two bodies in series."""
+        """Returns rho c v [Pa], with the impedances rho c of two bodies in series."""
         impedances = [bodies[k].density * wave_speed(bodies[k]) for k in self.sizes]
         return self.meeting.closing / sum(1 / one for one in impedances)
 
 
 def fronts(scene: Scene, met: list[Meeting]) -> list[Front]:
-    """The flat strikes among the meetings of a scene. A run that is asked to go on for long after a
-    strike has none."""
+    """Returns the flat strikes among the onsets of contact `met`. A strike is left out if the run
+    continues for more than BRIEF transits after it.
+    """
     if scene.values["until"] == "rest":
         return []
     strikes = [one for one in met if math.isfinite(one.time) and one.closing > 0]
@@ -80,13 +87,13 @@ def fronts(scene: Scene, met: list[Meeting]) -> list[Front]:
 
 
 def wave_speed(body: Body) -> float:
-    """c [m/s] of a plane pressure wave, sqrt((lambda + 2 mu)/rho)."""
+    """Returns the speed c [m/s] of a plane pressure wave, sqrt((lambda + 2 mu)/rho)."""
     nu = min(body.nu, STIFFEST)
     return math.sqrt(body.young * (1 - nu) / ((1 + nu) * (1 - 2 * nu) * body.density))
 
 
 def _front(scene: Scene, one: Meeting) -> Front | None:
-    """The front of a meeting, None where no body lands flat."""
+    """Returns the front at an onset of contact, None if no body lands flat."""
     bodies = {k: scene.bodies[k] for k in (one.first, one.second) if k >= 0}
     sizes = {k: body.mesh_size or _size(scene, one, k) for k, body in bodies.items()}  # [m]
     crossed = tuple(
@@ -101,8 +108,10 @@ def _front(scene: Scene, one: Meeting) -> Front | None:
 
 
 def _size(scene: Scene, one: Meeting, k: int) -> float:
-    """The element size [m] of body k: that of its file, or what the accuracy asks for. The
-    latter is no smaller than MOST_UNKNOWNS allow, and gives at least four elements across the
+    """Returns the element size [m] of body k: that of the mesh file, or the size that the accuracy
+    requires.
+
+    The latter keeps the body below MOST_UNKNOWNS, and gives at least four elements across the
     thickness.
     """
     body, axes = scene.bodies[k], scene.dimension.axes
@@ -117,17 +126,19 @@ def _size(scene: Scene, one: Meeting, k: int) -> float:
 
 
 def _shape(one: Meeting, k: int) -> Shape:
-    """Body k as it is at the meeting."""
+    """Returns the shape of body k at the onset of contact."""
     return one.outlines[0 if k == one.first else 1]
 
 
 def _length(one: Meeting, k: int) -> float:
-    """The length [m] of body k along the normal."""
+    """Returns the length [m] of body k along the contact normal."""
     return float(np.ptp(_shape(one, k).points @ one.normal))
 
 
 def _lands_flat(one: Meeting, k: int, body: Body, size: float) -> bool:
-    """Whether a good part of the width of body k lands while the front passes an element [m]."""
+    """Whether at least the share FLAT of the width of body k lands while the front passes an
+    element of the given size [m].
+    """
     points, spacing = body.outline.samples(min(size, body.outline.half_thickness / 2))
     moved = body.outline.carried(_shape(one, k), points)
     gaps = one.gaps(k, moved)
@@ -138,7 +149,7 @@ def _lands_flat(one: Meeting, k: int, body: Body, size: float) -> bool:
 
 
 def _tangents(normal: np.ndarray) -> list[np.ndarray]:
-    """Unit vectors across a normal: one in the plane, two in space."""
+    """Returns unit vectors orthogonal to a normal: one in the plane, two in space."""
     if len(normal) == 2:
         return [np.array([-normal[1], normal[0]])]
     return list(np.linalg.svd(normal[None])[2][1:])

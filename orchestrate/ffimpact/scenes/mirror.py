@@ -1,5 +1,5 @@
-"""How much of a scene in three dimensions has to be computed: all of it, its half z >= 0, or of
-that the half x >= 0 (`symmetry`).
+"""Symmetry of a scene in three dimensions (`symmetry`): whether all of it is computed, its half z
+>= 0, or the quarter x >= 0, z >= 0.
 """
 
 import numpy as np
@@ -13,13 +13,13 @@ from .obstacles import Obstacle
 __all__ = ["COPIES", "FOLDED", "copies"]
 
 COPIES = {"full": 1, "half": 2, "quarter": 4}
-FOLDED = {1: (), 2: (2,), 4: (0, 2)}  # the axes across which what is computed is one side
+FOLDED = {1: (), 2: (2,), 4: (0, 2)}  # normals of the planes of symmetry, by symmetry factor
 AXES = "xyz"
 
 
 def copies(scene) -> int:
-    """What the computed part stands for: 1, 2 or 4 times itself; 1 in the plane. BadInput where
-    more symmetry is asked for.
+    """Returns the symmetry factor 1, 2 or 4: whole scene over computed part. It is 1 in the plane.
+    Raises BadInput if the scene has less symmetry than its entry demands.
     """
     if scene.dimension is not SOLID:
         return 1
@@ -37,7 +37,9 @@ def copies(scene) -> int:
 
 
 def _broken(scene, axis: int) -> str:
-    """What has no mirror image in the plane through the origin across an axis, "" where all has."""
+    """Returns what has no mirror image in the plane through the origin normal to an axis, "" if the
+    scene is symmetric.
+    """
     plane = f"the plane {AXES[axis]} = 0"
     if axis == 0 and scene.values["body_force_x"]:
         return "body_force_x pushes along x"
@@ -56,7 +58,7 @@ def _of_body(one: Body, axis: int, plane: str) -> str:
         return f"has its centre off {plane}"
     if one.velocity[axis] != 0:
         return f"moves along {AXES[axis]}"
-    if np.delete(one.spin, axis).any():  # an axial vector keeps its part along the normal
+    if np.delete(one.spin, axis).any():  # a reflection keeps an axial vector along the normal
         return f"spins out of {plane}"
     if any(one.moments):
         return "has moments of inertia of its own"
@@ -68,7 +70,9 @@ def _of_body(one: Body, axis: int, plane: str) -> str:
 
 
 def _of_conditions(one: Body, axis: int, plane: str) -> str:
-    """Which support or load of a body has no mirror image, or acts along the axis."""
+    """Returns which support or load of a body has no mirror image or acts along the axis, "" if
+    none.
+    """
     for kind, listed in (("support", one.supports), ("load", one.loads)):
         if not all(each.part.is_mirrored(axis, one.placed.rotation) for each in listed):
             return f"has a {kind} that is not its own mirror image in {plane}"

@@ -1,5 +1,5 @@
-"""The boundary elements of supports and loads on the bodies' meshes, and their sections of
-scene.dat (edp/core/input/scene-file.idp).
+"""Finds the boundary elements of supports and loads on the meshes of the bodies, and writes their
+sections of scene.dat (edp/core/input/scene-file.idp).
 """
 
 from collections.abc import Sequence
@@ -19,7 +19,7 @@ from .mirror import FOLDED
 
 __all__ = ["sections"]
 
-ALONG = 1e-6  # of a unit vector: a normal as near to an axis is along it
+ALONG = 1e-6  # deviation of the components of a unit normal that counts as along an axis
 Lines = list[tuple]
 
 
@@ -30,9 +30,11 @@ def sections(
     of: Dimension,
     copies: int,
 ) -> Lines:
-    """The lines of functions, driven obstacles, supports and loads; none where there are none.
-    BadInput where a part is not there, touches something at the start, or cannot take what it
-    is to.
+    """Returns the lines of functions, driven obstacles, supports and loads; empty if the scene has
+    none.
+
+    Raises BadInput if a part of a boundary does not exist, is in contact at the start, or cannot
+    have its support or load.
     """
     functions: list[TimeFunction] = []
     supports, loads, first = [], [], 0
@@ -57,7 +59,7 @@ def sections(
                 )
             )
         _refuse_all_held(body, surface)
-        filled: set[int] = set()  # elements of cavities with a gas
+        filled: set[int] = set()  # elements of the cavities that have a gas already
         for load in body.loads:
             found = surface.elements(load.part)
             if load.kind == "gas":
@@ -101,7 +103,9 @@ def sections(
 
 
 def _numbered(functions: list[TimeFunction], given: list[TimeFunction | None]) -> list[int]:
-    """Their numbers among the functions of scene.dat, which they join; -1: 0 at all times."""
+    """Appends time functions to `functions`, which are those of scene.dat, and returns their
+    numbers in it. The number -1 stands for 0 at all times.
+    """
     numbers = []
     for one in given:
         needed = one is not None and not one.is_zero
@@ -115,19 +119,21 @@ class _Surface:
 
     def __init__(self, body: Body, made: Mesh | SolidMesh, of: Dimension, copies: int):
         self.body, self.made, self.of, self.copies = body, made, of, copies
-        # to the body's own axes, and to its place at the start
+        # `axes` transforms the mesh to the body's own axes, `turn` to its orientation at the start.
         turn = rotation(body.angle) if of is PLANE_STRAIN else np.eye(of.axes)
         self.axes = body.at(0.0, np.zeros(3)).rotation if of is SOLID else np.eye(2)
         self.turn = turn
         self.own = made.points @ self.axes
 
     def placed(self, found: np.ndarray) -> np.ndarray:
-        """Corners (f, axes, axes) of boundary elements where they are at the start."""
+        """Returns the corners (f, axes, axes) [m] of boundary elements at the start."""
         return (self.made.points @ self.turn.T + self.body.position)[self.made.sides[found]]
 
     @property
     def own_labels(self) -> np.ndarray:
-        """Whether an element is on the body's boundary, not on a plane or axis of symmetry."""
+        """Whether each element (f,) is on the boundary of the body, and not on a plane or axis of
+        symmetry.
+        """
         if self.of is AXISYMMETRIC:
             return self.made.labels != mesh.AXIS
         if self.of is SOLID and self.copies > 1:
@@ -140,8 +146,8 @@ class _Surface:
         return np.ones(len(self.made.sides), dtype=bool)
 
     def elements(self, part: Part) -> np.ndarray:
-        """The numbers of a part's elements among those of the body. BadInput where there is
-        none.
+        """Returns the numbers of the elements of a part among those of the body. Raises BadInput if
+        the part has none.
         """
         on = self.own_labels
         if part.kind:
@@ -161,7 +167,7 @@ class _Surface:
         return sides[part.name]
 
     def sides(self) -> dict[str, np.ndarray]:
-        """The elements of every side and group that the body has, by name."""
+        """Returns the elements of every side and group of the body by name."""
         on, corners = self.own_labels, self.own[self.made.sides]
         extent = np.ptp(self.own, axis=0).max()
         found = {}
@@ -183,8 +189,10 @@ class _Surface:
         return {name: np.flatnonzero(one) for name, one in found.items() if one.any()}
 
     def _cavities(self) -> np.ndarray:
-        """Of half a section which elements bound cavities: what the axis cuts off from the
-        outline is closed without it.
+        """Returns which elements (f,) of half a section bound cavities.
+
+        Elements on the axis do not count. The connected piece that extends farthest from the axis
+        is the outer outline, all others bound cavities.
         """
         surface = np.flatnonzero(self.made.labels != mesh.AXIS)
         piece = mesh.pieces(len(self.made.points), self.made.sides[surface])[
@@ -200,8 +208,8 @@ class _Surface:
         return inner
 
     def fixed(self, support: Support, found: np.ndarray) -> tuple[bool, ...]:
-        """The components that a support holds; across the part where it says so. BadInput
-        where that is along no axis.
+        """Returns which components a support fixes. For fix = "normal" this is the component normal
+        to the part. Raises BadInput if the part is not normal to x, y or z.
         """
         if not support.normal:
             return support.fixed
@@ -221,8 +229,8 @@ class _Surface:
         return tuple(axis == k for k in range(self.of.axes))
 
     def refuse_open(self, part: Part, found: np.ndarray) -> None:
-        """BadInput where elements do not enclose a cavity, together with planes or the axis
-        of symmetry.
+        """Raises BadInput if elements, together with planes or the axis of symmetry, do not enclose
+        a cavity.
         """
         sides = self.made.sides[found]
         ends = (
@@ -252,7 +260,9 @@ class _Surface:
 def _refuse_touching(
     part: Part, corners: np.ndarray, k: int, bodies: Sequence[Body], obstacles: Sequence
 ) -> None:
-    """BadInput where a part that is held touches an obstacle or another body at the start."""
+    """Raises BadInput if a part with a support is in contact with an obstacle or another body at
+    the start.
+    """
     points = corners.reshape(-1, corners.shape[2])
     near = ON_SIDE * bodies[k].outline.half_thickness
     for other in [*(one for j, one in enumerate(bodies) if j != k), *obstacles]:
@@ -264,7 +274,7 @@ def _refuse_touching(
 
 
 def _refuse_all_held(body: Body, surface: _Surface) -> None:
-    """BadInput where supports hold all of a body's boundary throughout."""
+    """Raises BadInput if supports fix all components on the whole boundary of a body."""
     held = np.zeros(len(surface.made.sides), dtype=bool)
     for support in body.supports:
         if all(support.fixed) and not support.normal:

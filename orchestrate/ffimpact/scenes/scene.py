@@ -1,6 +1,8 @@
-"""A scene: bodies and obstacles in the tables of one TOML file (docs: scenes says which), read,
-checked, and its entries set by dotted names; or one of the paper's, whose script makes the bodies
-of its parameters, all at the top of the file.
+"""Scenes: reads and checks them, and sets their entries by dotted names.
+
+A scene is a TOML file with tables of bodies and obstacles (docs/how-to/scenes.md), or one of the
+paper's cases. The script of such a case makes the bodies from parameters, which are all at the top
+of the file.
 """
 
 import hashlib
@@ -51,17 +53,19 @@ RUN = (
     "checkpoint_every",
     "without",
 )
-# of Outline.folding: that of a ring as thick as its inner radius; what closes only at more does not
-# touch itself
+# Bending strain (Outline.folding) up to which a body may come into contact with itself: that of a
+# ring as thick as its inner radius.
 FOLDING = 0.2
-WIDE = 100.0  # m: a body of a file that is wider may be in other units
-TOUCHING = 1e-9  # of a body's thickness: an overlap up to it is round-off
+WIDE = 100.0  # width [m] of a body from a file above which its units are doubtful
+TOUCHING = 1e-9  # overlap at the start that is round-off, over half the thickness of the body
 
 
 @dataclass(frozen=True)
 class Pair:
-    """What differs between two partners: a body is its index from 0, obstacle k is -1 - k.
-    `path` is the table that says so.
+    """The contact parameters `values` of one contact pair that differ from [contact].
+
+    `first` and `second` are indices: of a body from 0, of obstacle k it is -1 - k. `path` is the
+    table of the scene that sets the values.
     """
 
     first: int
@@ -72,10 +76,12 @@ class Pair:
 
 @dataclass(frozen=True)
 class Scene:
-    """`given` are the tables of the file, `values` every parameter of a run, `contact` those of
-    [contact], both with what is left open (auto, 0) as it is. Without `bodies` it is one of the
-    paper's: `values`, and `given` with them, hold EVERY parameter that edp/<script>.edp takes,
-    in SI units.
+    """A scene as it was read.
+
+    `given` holds the tables of the file, `values` every parameter of a run and `contact` those of
+    [contact]. Values that are left to the program (auto, 0) stay as they are. If `bodies` is empty
+    the scene is one of the paper's cases: then `values`, and with them `given`, hold EVERY
+    parameter that edp/<script>.edp takes, in SI units.
     """
 
     name: str
@@ -89,11 +95,12 @@ class Scene:
     obstacles: list[Obstacle] = field(default_factory=list)
     contact: dict[str, Value] = field(default_factory=dict)
     pairs: list[Pair] = field(default_factory=list)
-    released: tuple[str, ...] = ()  # sentences: what was fixed for others that are set now
+    released: tuple[str, ...] = ()  # messages about entries that override() reset to automatic
 
     def override(self, given: dict[str, Value]) -> "Scene":
-        """The same scene with some entries set by their dotted names (text or values), open
-        again what it had fixed for them (release), and read again.
+        """Returns the scene with the entries `given` by dotted names (text or values). Entries that
+        depend on them are reset to automatic (release()). Raises BadInput for whatever is wrong
+        then.
         """
         if not given:
             return self
@@ -104,15 +111,16 @@ class Scene:
         return replace(read(changed, self.folder, self.name), released=self.released + said)
 
     def check(self, given: dict[str, Value]) -> dict[str, Value]:
-        """The given entries of such a scene, by dotted names, converted; BadInput where
-        there is no such place.
+        """Returns the entries `given` by dotted names with converted values. Raises BadInput if the
+        scene has no such entry, or if the entry would change nothing.
         """
         if not self.bodies:
             return parameters.check(given, self.script)
         found, changed = {name: toml_value(value) for name, value in given.items()}, self.given
         for name, value in found.items():
             changed = set_entry(changed, name, value)
-        for name in found:  # at the top it is for bodies without their own
+        # A value at the top of the file applies only to bodies without a value of their own.
+        for name in found:
             if name in (*MATERIAL, *SIZES) and all(
                 name in body for body in listed(changed, "body")
             ):
@@ -123,7 +131,9 @@ class Scene:
 
     @property
     def asked(self) -> dict:
-        """What decides the answer beside the script: two scenes that agree in it are one run."""
+        """The entries that decide the results, apart from the script, and the sha256 of files. Two
+        scenes for which they are equal are the same run.
+        """
         files = [
             str(given["file"])
             for key in ("body", "obstacle")
@@ -139,10 +149,11 @@ class Scene:
         }
 
     def with_files_in(self, where: Path, tables: dict) -> dict:
-        """The tables of the scene with copies of the files of bodies and obstacles, made in
-        `where`/body-files: a scene.toml there finds them wherever the folder is moved. A
-        .geo that takes in other files stays beside them: its path is relative to
-        `where`.
+        """Copies the files of bodies and obstacles to `where`/body-files and returns `tables` with
+        the paths of the copies.
+
+        A scene.toml in `where` then finds the files wherever the folder is moved. A .geo file that
+        includes other files is not copied: its path becomes relative to `where`.
         """
         changed = dict(tables)
         for key, named in (("body", self.bodies), ("obstacle", self.obstacles)):
@@ -154,7 +165,7 @@ class Scene:
         return changed
 
     def _with_copy(self, where: Path, name: str, table: dict) -> dict:
-        """A table with the copy of its file."""
+        """Copies the file of a table into `where` and returns the table with the new path."""
         path = self.folder / table["file"]
         copy = Path("body-files", f"{name}{path.suffix}")
         if takes_in_others(path):
@@ -166,16 +177,18 @@ class Scene:
 
     @property
     def numbers(self) -> list[str]:
-        """The numbers of summary.json."""
+        """The names of the numbers of summary.json."""
         return self._named("summary")
 
     @property
     def columns(self) -> list[str]:
-        """The columns of history.csv."""
+        """The names of the columns of history.csv."""
         return self._named("columns")
 
     def _named(self, what: str) -> list[str]:
-        """Columns or numbers; those of each of several bodies have the suffixes _1, _2 ..."""
+        """The names of columns or of numbers (`what`). If there are several bodies, the names of
+        quantities of one body have the suffixes _1, _2 ...
+        """
         said = describe_results(script=self.script)
         bodies = len(self.bodies) or said["bodies"]
         more = said["damped"] * self.damped + said["projected"] * (
@@ -194,14 +207,14 @@ class Scene:
 
     @property
     def damped(self) -> bool:
-        """Whether a body is."""
+        """Whether any body is damped."""
         return any(body.damped for body in self.bodies) or any(
             self.values.get(name) for name in bodies.DAMPED
         )
 
     def _projected(self, plain_nu: float) -> bool:
-        """Whether nu of a body is above what is as stiff at points: the volume of its
-        elements is projected then.
+        """Whether the volume of the elements is projected. This needs quadratic elements, a
+        `volume` that is not "plain" and a body with nu above `plain_nu`.
         """
         stiffest = max([body.nu for body in self.bodies] or [self.values["nu"]])
         return (
@@ -212,22 +225,24 @@ class Scene:
 
     @property
     def of_files(self) -> bool:
-        """Whether a body has the mesh of a file, which no other run refines."""
+        """Whether a body has the mesh of a file. Other runs cannot refine this mesh."""
         return any(bool(body.mesh) for body in self.bodies)
 
     @property
     def meshed(self) -> bool:
-        """Whether Python makes the mesh, with gmsh; else the script does."""
+        """Whether Python makes the mesh, with gmsh. Otherwise the script does."""
         return self.script in MESHED
 
     @property
     def mesh_name(self) -> str:
-        """The file of the mesh in a run's folder."""
+        """The name of the mesh file in the folder of a run."""
         return "mesh.mesh" if self.dimension is SOLID else "mesh.msh"
 
     @property
     def sizes(self) -> dict[str, float]:
-        """The largest mesh sizes that bodies give, 0 where none does, beside `values`."""
+        """The largest element sizes [m] that bodies set, 0 where none does. Empty for the paper's
+        cases.
+        """
         return (
             {name: max(getattr(body, name) for body in self.bodies) for name in SIZES}
             if self.bodies
@@ -235,9 +250,9 @@ class Scene:
         )
 
     def description(self, foreign: bytes | None = None, path: Path | None = None) -> dict:
-        """What the script says of one of the paper's scenes, on the mesh `foreign`
-        (FreeFEM's .msh, of the file `path`) where there is one; BadInput where it refuses
-        it. Of others nothing more than was read.
+        """Returns what the script reports about one of the paper's cases, on the mesh `foreign` if
+        there is one (FreeFEM's .msh, the content of the file `path`). Empty for a scene of tables.
+        Raises BadInput if the script refuses the scene or the mesh.
         """
         if self.bodies:
             if foreign is not None:
@@ -261,10 +276,10 @@ class Scene:
 
 
 def read(given: dict, folder: Path, name: str) -> Scene:
-    """The scene in a file's tables; mesh files are sought from `folder` on. BadInput for
-    whatever is wrong in it.
+    """Returns the scene in the tables of a file. Paths of other files are relative to `folder`.
+    Raises BadInput for whatever is wrong in the tables.
     """
-    folder = folder.absolute()  # so that files are found from any working folder
+    folder = folder.absolute()  # finds files from any working folder
     if {"body", "obstacle", "contact", "dimension"} & set(given):
         return _of_tables(given, folder, name)
     if not given:
@@ -288,7 +303,7 @@ def read(given: dict, folder: Path, name: str) -> Scene:
 
 
 def _of_tables(given: dict, folder: Path, name: str) -> Scene:
-    """That of bodies in tables."""
+    """Returns the scene of tables with bodies."""
     of = dimension.of(given)
     given = conditions.inlined(given, folder, of)
     tables = models.read(given, of)
@@ -355,7 +370,11 @@ def _of_tables(given: dict, folder: Path, name: str) -> Scene:
 
 
 def _refuse_nu(entry: str, nu: float, law: str, values: Mapping[str, Value]) -> None:
-    """BadInput where a body can be neither compressible nor incompressible, J = 1."""
+    """Raises BadInput if the settings do not allow the nu of a body.
+
+    nu = 0.5 (J = 1) needs quadratic elements with projected volume, integrator = energy-momentum
+    and any law but svk. Otherwise nu is at most 0.4999.
+    """
     if nu == 0.5 or law == "incompressible":
         volume = values.get("volume", "auto")
         keeps_volume = values["degree"] == 2 and volume != "plain"
@@ -371,7 +390,7 @@ def _refuse_nu(entry: str, nu: float, law: str, values: Mapping[str, Value]) -> 
 
 
 def _refuse_integrator(found: Scene) -> None:
-    """BadInput where supports and loads would not do exact work."""
+    """Raises BadInput if the work of supports and loads would not be exact with the integrator."""
     accepted, asked = ("auto", "energy-momentum", "midpoint"), found.values["integrator"]
     if asked not in accepted and any(body.supports or body.loads for body in found.bodies):
         raise BadInput(
@@ -380,7 +399,9 @@ def _refuse_integrator(found: Scene) -> None:
 
 
 def _parameters(table: models.Entries, keys: tuple[str, ...], of: Dimension) -> dict[str, Value]:
-    """Those of the parameters that the script takes; BadInput for one that it does not."""
+    """Returns the values of the parameters `keys` that the script takes; defaults where the table
+    has no entry. Raises BadInput for an entry that the script does not take.
+    """
     gathered([partial(parameters.taken, key, of.script) for key in keys if key in table])
     rules = {
         key: parameters.PARAMETERS[key]
@@ -393,7 +414,9 @@ def _parameters(table: models.Entries, keys: tuple[str, ...], of: Dimension) -> 
 
 
 def _names(all_bodies: list[Body], all_obstacles: list[Obstacle]) -> dict[str, int]:
-    """Names of bodies and obstacles, each once, and what stands for them in a Pair."""
+    """Returns the index of each body and obstacle by name, as in a Pair. Raises BadInput if a name
+    occurs twice.
+    """
     index, where = {}, {}
     for path, number, one in [
         *((f"body.{k + 1}", k, one) for k, one in enumerate(all_bodies)),
@@ -413,7 +436,7 @@ def _names(all_bodies: list[Body], all_obstacles: list[Obstacle]) -> dict[str, i
 def _own_of_obstacles(
     tables: list[models.Obstacle], bodies_count: int
 ) -> dict[tuple[int, int], Pair]:
-    """What [[obstacle]] tables say of contact, as exceptions against every body."""
+    """Returns the contact parameters in [[obstacle]] tables, as exceptions for every body."""
     pairs = {}
     for k, table in enumerate(tables):
         own = {key: getattr(table, key) for key in OWN if key in table}
@@ -426,7 +449,7 @@ def _own_of_obstacles(
 
 
 def _exceptions(tables: list[models.Pair], index: dict[str, int]) -> dict[tuple[int, int], Pair]:
-    """The tables [[contact.pair]]."""
+    """Returns the exceptions in the tables [[contact.pair]] by the two indices."""
     pairs = {}
     for table in tables:
         both = _partners(table.entry, table.bodies, index)
@@ -443,14 +466,18 @@ def _exceptions(tables: list[models.Pair], index: dict[str, int]) -> dict[tuple[
 def _touching_themselves(
     contact: models.Contact, pairing: str, all_bodies: list[Body], of: Dimension, alone: bool
 ) -> list[int]:
-    """The bodies that self_contact makes their own partners."""
+    """Returns the bodies that may come into contact with themselves, by `self_contact`.
+
+    "auto" takes bodies in the plane or of revolution that close at a bending strain below FOLDING.
+    A body that is `alone`, without obstacles or other bodies, always may.
+    """
     asked = contact.self_contact or "auto"
     if asked == "on" and pairing != "closest-point":
         raise BadInput(
             f"{contact.at('self_contact')}: on, but pairing = '{pairing}' is between bodies "
             f"(accepted: auto|off, or pairing = 'closest-point')"
         )
-    if alone:  # what nothing else can touch
+    if alone:
         return [0]
     if asked == "off" or pairing != "closest-point":
         return []
@@ -463,7 +490,9 @@ def _touching_themselves(
 
 
 def _partners(path: str, given, index: dict[str, int]) -> tuple[int, int]:
-    """The two of a pair, the body or the first body first."""
+    """Returns the indices of the two surfaces of a contact pair, the body or the first body
+    first.
+    """
     accepted = f"accepted: two names, one at least of a body, of {', '.join(index)}"
     if (
         not isinstance(given, list)
@@ -484,11 +513,11 @@ def _partners(path: str, given, index: dict[str, int]) -> tuple[int, int]:
     return first, second
 
 
-# ---- places
+# ---- positions at the start
 
 
 def _apart(found: Scene) -> None:
-    """BadInput where a body overlaps another one or an obstacle at the start."""
+    """Raises BadInput if a body overlaps another one or an obstacle at the start."""
     placed = [body.placed for body in found.bodies]
     centres, reaches = (
         np.array([one.area_centre for one in placed]),
@@ -519,7 +548,7 @@ def _apart(found: Scene) -> None:
 
 
 def _units(found: Scene, i: int, body: Body) -> str:
-    """A hint where body i comes from a file and is very large in m."""
+    """Returns a hint for a message if body i comes from a file and is wider than WIDE."""
     width = 2 * body.outline.reach
     return (
         f"; its file is {width:.3g} m wide: other units? body.{i}.scale = 0.001 takes them as mm"
@@ -540,19 +569,17 @@ def _refuse_overlap(
 
 
 def gap_between(first: Shape, second: Shape) -> float:
-    """The distance of two bodies, negative where they overlap: by how far a point of one is
-    inside the other.
+    """Returns the distance [m] of two bodies. It is negative where they overlap: minus the depth of
+    the deepest point of one inside the other.
     """
     return min(second.least(first.gap), first.least(second.gap))
 
 
 def gap_to_obstacle(outline: Shape, obstacle: Obstacle) -> float:
-    """The distance of a body from an obstacle, negative where they overlap."""
+    """Returns the distance [m] of a body from an obstacle, negative where they overlap."""
     centre, least = outline.area_centre, obstacle.gap_from(outline)
     nearest = centre - obstacle.gap(centre[None]) * normal_of(obstacle, centre)
-    is_of_it = (
-        obstacle.gap(nearest[None])[0] < 1e-4 * outline.half_thickness
-    )  # not where the distance has no gradient
-    return float(
-        min(least, outline.gap(nearest[None])[0]) if is_of_it else least
-    )  # the former: an obstacle inside the body
+    # The projection `nearest` is not on the obstacle where its distance has no gradient. The gap of
+    # the body at `nearest` finds an obstacle inside the body.
+    is_of_it = obstacle.gap(nearest[None])[0] < 1e-4 * outline.half_thickness
+    return float(min(least, outline.gap(nearest[None])[0]) if is_of_it else least)

@@ -1,1 +1,3 @@
-"""One scene over a range of parameters: sweep files, beside them in *.toml, and their figures."""
+"""Sweeps: runs of one scene over ranges of parameters, and their figures. The built-in sweeps are
+the *.toml files in this folder.
+"""

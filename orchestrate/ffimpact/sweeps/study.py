@@ -1,5 +1,5 @@
-"""Studies: many runs of one scene, one FreeFem++ a core at most; whatever a run comes to becomes a
-row of a table.
+"""Studies: many runs of one scene, at most one FreeFem++ per core. The outcome of each run becomes
+a row of a table.
 """
 
 import hashlib
@@ -44,10 +44,10 @@ __all__ = [
 ]
 
 CORES = freefem.CORES
-POLL = 0.2  # s between two looks at the progress of the runs
-LONGEST = 200  # characters of a folder's name
+POLL = 0.2  # time [s] between two updates of the progress of the runs
+LONGEST = 200  # largest number of characters of a folder's name
 Key = TypeVar("Key", bound=Hashable)
-Point = dict[str, Value]  # the parameters that tell this run from the others of the study
+Point = dict[str, Value]  # the parameters in which this run differs from others
 
 
 def study(
@@ -58,15 +58,15 @@ def study(
     name: str = "disc-normal",
     cores: int = CORES,
 ) -> pd.DataFrame:
-    """A row for each of `points`, in their order: its parameters, exit, message, warnings
-    (joined by "; "), reused, and the numbers of its summary.
+    """Runs all `points` and returns a row for each, in their order: its parameters, exit, message,
+    warnings (joined by "; "), reused, and the numbers of its summary.
 
-    Every run is the scene `name` with `base` and the point's parameters on top, in
-    folder/runs/, and may take `limit` seconds; `cores` of them run at a time, none estimates
-    its error. What is there already is not run again: finished runs, and failures of the same
-    scene and code. A run that fails is a row like any other, with its exit code and message;
-    NotInstalled, without FreeFem++, is raised. Several studies may share a folder: what one is
-    running, the others leave to it.
+    Every run is the scene `name` with `base` and the parameters of the point, in folder/runs/, and
+    may take `limit` seconds. `cores` runs are computed at a time; none estimates its error.
+    Finished runs in the folder, and failures of the same scene and code, are not repeated. A run
+    that fails is a row like any other, with its exit code and message. NotInstalled is raised if
+    FreeFem++ is missing. Several studies may share a folder: each leaves out the runs that another
+    one is computing.
     """
     places = [place(folder, point) for point in points]
     given = scene.load(name)
@@ -78,9 +78,8 @@ def study(
     }
     if tasks:
         freefem.find()
-        (folder / "runs").mkdir(
-            parents=True, exist_ok=True
-        )  # here: a run takes away what it had to make if it is interrupted
+        # The folder is made here, because an interrupted run removes the folders that it made.
+        (folder / "runs").mkdir(parents=True, exist_ok=True)
     acts = {where: partial(outcome_of, where, wanted, limit) for where, wanted in tasks.items()}
     for where, outcome in side_by_side(acts, cores, "/".join(folder.parts[-2:]), len(found)):
         found[where] = _row(1, str(outcome), False, {}) if isinstance(outcome, Failure) else outcome
@@ -90,8 +89,8 @@ def study(
 def outcomes(
     points: list[Point], folder: Path, base: Point, given: scene.Scene
 ) -> dict[Path, dict]:
-    """By folder what is known of the points without a run: what is there already, and those
-    that the scene `given` refuses.
+    """Returns, by folder, the outcomes of points that need no run: those that are in the folder
+    already, and those that the scene `given` refuses.
     """
     found = {}
     for point in points:
@@ -105,8 +104,8 @@ def outcomes(
 
 
 def place(folder: Path, point: Point) -> Path:
-    """The result folder of a point of the study in `folder`, named after its parameters; where
-    that is too long for a name by its hash.
+    """Returns the result folder of a point of the study in `folder`. It is named after the
+    parameters of the point; if the name is too long it is cut and ends with a hash.
     """
     name = ",".join(f"{name}={value}" for name, value in point.items()).replace("/", "_") or "run"
     if len(name) > LONGEST:
@@ -117,17 +116,17 @@ def place(folder: Path, point: Point) -> Path:
 def side_by_side(
     acts: Mapping[Key, Callable], cores: int, name: str, before: int = 0
 ) -> Iterator[tuple[Key, Any]]:
-    """Calls the `acts`, `cores` of them at a time, each in a thread, which mostly waits for its
+    """Calls the functions `acts`, `cores` at a time, each in a thread, which mostly waits for its
     FreeFem++.
 
-    Yields (key, what its act returns) as they end; a Failure where an act raises an error that
-    it does not expect. An act that returns None is called again later. Leaving this in any way
-    ends the acts and their FreeFem++. A line of progress with this `name` says how many of the
-    acts are done, counting `before` that were done already.
+    Yields (key, result) as they end. The result is a Failure if a function raises an error that it
+    does not expect. A function that returns None is called again later. Leaving the generator in
+    any way ends the functions and their FreeFem++. A line of progress with this `name` shows how
+    many are done, including `before` that were done already.
     """
     stop, done = threading.Event(), before
-    shares: dict[Key, float] = {}  # of the acts that are running
-    mesh.start_gmsh()  # resets signal handlers, which only the main thread can restore
+    shares: dict[Key, float] = {}  # progress of the functions that are running
+    mesh.start_gmsh()  # it resets signal handlers, which only the main thread restores
 
     def words() -> str:
         return f"{done} of {before + len(acts)} done"
@@ -140,7 +139,7 @@ def side_by_side(
                 for future in wait(running, POLL, FIRST_COMPLETED).done:
                     key, outcome = running.pop(future), _outcome_of(future)
                     shares.pop(key, None)
-                    if outcome is None:  # another study is running it
+                    if outcome is None:  # another study computes this run
                         time.sleep(POLL)
                         running[pool.submit(_work, key, acts[key], stop, shares)] = key
                         continue
@@ -155,16 +154,16 @@ def side_by_side(
 
 
 def _work(key: Key, act: Callable, stop: threading.Event, shares: dict[Key, float]) -> Any:
-    """One act in its thread: its progress goes into `shares`, and its FreeFem++ ends once
-    `stop` is set.
+    """Calls one function in its thread. Its progress goes into `shares`, and its FreeFem++ ends
+    once `stop` is set.
     """
     with forward(lambda share, _: shares.update({key: share})), freefem.limited(stop=stop):
         return act()
 
 
 def _outcome_of(future: Future) -> Any:
-    """What an act has returned; a Failure where it raised an error that it does not expect,
-    which is printed.
+    """Returns the result of a function. If it raised an error that it does not expect, this prints
+    the error and returns a Failure.
     """
     error = future.exception()
     if error is None:
@@ -176,8 +175,8 @@ def _outcome_of(future: Future) -> Any:
 
 
 def there(folder: Path, wanted: scene.Scene) -> dict | None:
-    """The outcome that is in `folder` already: a finished run, or a failure of the same scene
-    and code, which would be repeated.
+    """Returns the outcome that is in `folder` already, None if there is none: a finished run, or a
+    failure of the same scene and code, which would be repeated.
     """
     for place in (folder, failed_beside(folder)):
         failed = read_json(place / "failure.json")
@@ -190,14 +189,15 @@ def there(folder: Path, wanted: scene.Scene) -> dict | None:
             return _row(failed["exit_code"], str(failed.get("message")), True, failed)
     try:
         result = run.reusable(wanted, folder)
-    except Failure:  # will be said by the run
+    except Failure:  # the run reports it
         return None
     return result and _row(0, result.summary["message"], True, result.summary)
 
 
 def outcome_of(folder: Path, wanted: scene.Scene, limit: float) -> dict | None:
-    """Exit code, message, whether it was there already, and the numbers of the summary, as far
-    as the run came in `limit` seconds; None where another run is at it.
+    """Runs a scene, unless its outcome is there already, and returns the row of the table: exit
+    code, message, warnings, reused, and the numbers of the summary, as far as the run came in
+    `limit` seconds. None if another process is computing this run.
     """
     if found := there(folder, wanted):
         return found
@@ -229,8 +229,8 @@ def _row(code: int, message: str, reused: bool, summary: dict) -> dict:
 
 
 def warned(warnings: Iterable[str]) -> str:
-    """How many runs have which warning, from the warnings of each, joined by "; "; empty where
-    none has any.
+    """Returns how many runs have which warning, "" if none has any. `warnings` holds those of each
+    run, joined by "; ".
     """
     every = list(warnings)
     counts = Counter(
@@ -244,8 +244,8 @@ def warned(warnings: Iterable[str]) -> str:
 
 
 def table(frame: pd.DataFrame, formats: dict[str, str]) -> str:
-    """The columns named in `formats` (column: format, such as ".3f"; "" as it is) as a table of
-    text in markdown.
+    """Returns columns as a table of text in markdown. `formats` maps the names of columns to
+    formats such as ".3f" ("": as it is).
     """
     cells = [[cell(value, form) for value in frame[name]] for name, form in formats.items()]
     widths = [max(map(len, [name, *column])) for name, column in zip(formats, cells)]
@@ -257,20 +257,20 @@ def table(frame: pd.DataFrame, formats: dict[str, str]) -> str:
 
 
 def cell(value, form: str) -> str:
-    """A value as text in a format; nothing where there is no value."""
+    """Returns a value as text in a format, "" for a missing value."""
     return "" if pd.isna(value) else format(value, form)
 
 
 def save(frame: pd.DataFrame, path: Path) -> None:
-    """Writes a tidy CSV, a row a run."""
+    """Writes a tidy CSV, one row per run."""
     with complete(path) as part:
         frame.to_csv(part, index=False)
 
 
 @contextmanager
 def complete(path: Path) -> Iterator[Path]:
-    """A name to write to, which takes the name `path` in the end: a reader or a second writer
-    never sees half a file.
+    """Yields a temporary path to write to, which is renamed to `path` at the end. A reader or a
+    second writer never sees an incomplete file.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(f"part-{os.getpid()}-{path.name}")

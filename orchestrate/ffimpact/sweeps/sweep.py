@@ -1,19 +1,19 @@
-"""Sweeps as data: a TOML file names a scene, the values of its parameters, what to collect and how
-to draw it.
+"""Sweeps: a TOML file names a scene, the values of its parameters, the numbers to collect and the
+figure to draw.
 
     scene = "disc-normal"                       # a built-in scene, or a scene file beside this one
-    collect = ["contact_time", "rebound_vy"]    # numbers of summary.json; left out: all of them
-    limit = 600                                 # seconds a run may take
+    collect = ["contact_time", "rebound_vy"]    # numbers of summary.json; default: all of them
+    limit = 600                                 # largest run time of each run [s]
     [set]                                       # for every run; in a scene of bodies any entry:
     law = "svk"                                 # body.2.young, contact.penalty ...
-    [product]                                   # every combination: lists, or ranges
+    [product]                                   # all combinations of lists or ranges
     nu = [0.30, 0.45]
-    speed = { from = 0.5, to = 11, points = 43 }             # spacing = "log" where it is wanted
-    [[zip]]                                     # one more axis of the product, which varies
-    mesh_size = [0.01, 0.005]                   # these entries together; any number of them
+    speed = { from = 0.5, to = 11, points = 43 }             # or with spacing = "log"
+    [[zip]]                                     # one more axis of the product: these entries
+    mesh_size = [0.01, 0.005]                   # vary together; there may be several [[zip]]
     dt = [4e-5, 2e-5]
-    [refine]                                    # every run again with these: the result; its
-    accuracy = 2.5e-3                           # difference is the error bar
+    [refine]                                    # repeats every run with these entries. The refined
+    accuracy = 2.5e-3                           # run is the result, the difference its error bar
     [figure]                                    # see sweep_figures.py
     x = "speed"
     y = "contact_time"
@@ -44,21 +44,25 @@ from . import study, sweep_figures
 
 __all__ = ["Sweep", "built_in", "collect", "load", "main", "report", "table"]
 
-SWEEPS = Path(__file__).resolve().parent  # the built-in sweeps are beside us
-LIMIT = 600.0  # seconds a run may take
-MOST_RUNS = 20_000  # more than that is a slip of the pen
+SWEEPS = Path(__file__).resolve().parent  # the folder of the built-in sweeps
+LIMIT = 600.0  # default of the largest run time of a run [s]
+MOST_RUNS = 20_000  # runs of a sweep; more are taken for a mistake in the file
 RANGE = ("from", "to", "points", "spacing")
 KEYS = ("title", "scene", "collect", "limit", "set", "product", "zip", "refine", "figure")
-SHOWN = 8  # collected columns in the printed table; all are in sweep.csv
-RECORDED = (0, 11, 12)  # exit codes that are answers: finished, no step, the material broke down
-LASTING = (*RECORDED, 10)  # and bad input: the same run would end with them again
-FINER = ("accuracy", "mesh_size", "contact_mesh_size", "dt")  # a refinement makes these smaller
+SHOWN = 8  # number of collected columns in the printed table; sweep.csv has all
+# Exit codes that are results: finished, no further step, breakdown of the material.
+RECORDED = (0, 11, 12)
+LASTING = (*RECORDED, 10)  # exit codes (10: bad input) with which the same run would end again
+FINER = ("accuracy", "mesh_size", "contact_mesh_size", "dt")  # entries that [refine] decreases
 
 
 @dataclass(frozen=True)
 class Sweep:
-    """`points` are the parameters that tell the rows apart; `base` holds for all; `refine` is
-    empty without error bars.
+    """A sweep as read from its file.
+
+    `points` are the parameters in which the rows differ, `base` those of every run. `refine` holds
+    the entries of the refined runs, and is empty without error bars. `limit` is the largest run
+    time of a run [s]. `sample` is the scene of one point, `text` the text of the file.
     """
 
     name: str
@@ -70,23 +74,23 @@ class Sweep:
     collect: list[str]
     limit: float
     figure: dict
-    sample: scene.Scene  # a point's scene
-    text: str  # the file
+    sample: scene.Scene
+    text: str
 
     @property
     def axes(self) -> list[str]:
-        """The parameters that vary."""
+        """The names of the parameters that vary."""
         return list(self.points[0])
 
     @property
     def runs(self) -> list[study.Point]:
-        """Every run of the sweep: the points, then each of them refined."""
+        """Every run of the sweep: the points, then the refined points."""
         return self.points + [point | self.refine for point in self.points if self.refine]
 
 
 def main(argv: list[str]) -> int:
-    """Runs what is not there yet, writes DIR/sweep.csv and DIR/sweep.png; Failure where a run
-    has no answer (10, 14, killed...).
+    """Computes the runs that are missing, and writes DIR/sweep.csv and DIR/sweep.png. Raises
+    Failure if a run has no result (10, 14, killed...).
     """
     parser = argparse.ArgumentParser(
         prog="ffimpact sweep",
@@ -152,25 +156,24 @@ def main(argv: list[str]) -> int:
 
 @contextmanager
 def _ours(wanted: Sweep, out: Path) -> Iterator[None]:
-    """Keeps drivers of another sweep out of the folder while this one runs; drivers of the same
-    sweep share it.
-    """
+    """Locks the folder against processes of other sweeps. Processes of the same sweep share it."""
     try:
         out.mkdir(parents=True, exist_ok=True)
         lock = os.open(out, os.O_RDONLY)
     except OSError as error:
         raise Unreadable(f"{out} cannot be made: {error.strerror}; choose another --out") from None
     try:
-        for _ in range(2):  # again where one died before it had written the file
+        for _ in range(2):  # twice, as another process may have died before it wrote the file
             try:
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)  # nobody here: the folder is ours
+                # The exclusive lock succeeds if no other process uses the folder.
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
                 with study.complete(out / "sweep.toml") as part:
                     part.write_text(wanted.text)
             except BlockingIOError:
                 pass
-            fcntl.flock(
-                lock, fcntl.LOCK_SH
-            )  # waits for one who is just writing the file; from here on nobody changes it
+            # The shared lock waits for a process that is writing the file. After that nobody
+            # changes it.
+            fcntl.flock(lock, fcntl.LOCK_SH)
             if (out / "sweep.toml").exists() and (
                 out / "sweep.toml"
             ).read_bytes() == wanted.text.encode():
@@ -186,13 +189,13 @@ def _ours(wanted: Sweep, out: Path) -> Iterator[None]:
 
 
 def built_in() -> list[str]:
-    """Names of the sweeps that come with the program."""
+    """Returns the names of the built-in sweeps."""
     return sorted(path.stem for path in SWEEPS.glob("*.toml"))
 
 
 def load(name: str) -> Sweep:
-    """A built-in sweep, or that of a TOML file; BadInput names the file, the field, the value
-    and what is accepted.
+    """Returns a built-in sweep, or that of a TOML file. BadInput names the file, the field, the
+    value and what is accepted.
     """
     path = SWEEPS / f"{name}.toml" if name in built_in() else Path(name)
     text, given = scene.read_toml(path, scene.absent(name, "sweep", built_in()))
@@ -284,8 +287,8 @@ def _sweep(path: Path, given: dict, text: str) -> Sweep:
 
 
 def _sample(of: scene.Scene, base: study.Point, points: list[study.Point]) -> scene.Scene:
-    """The scene of the first point that is accepted; BadInput, as of the first point, where
-    none is. One that is refused keeps no other from its run.
+    """Returns the scene of the first point that is accepted. A point that is refused does not stop
+    the runs of others. If all are refused, the BadInput of the first point is raised.
     """
     refused = None
     for point in points:
@@ -297,7 +300,9 @@ def _sample(of: scene.Scene, base: study.Point, points: list[study.Point]) -> sc
 
 
 def _finer(refine: study.Point, values: study.Point, points: list[study.Point]) -> None:
-    """BadInput where `refine` changes nothing, or makes coarser what it should make finer."""
+    """Raises BadInput if `refine` changes nothing, or makes a size larger that it should make
+    smaller.
+    """
     if refine and all(
         all((values | point).get(name) == value for name, value in refine.items())
         for point in points
@@ -306,9 +311,8 @@ def _finer(refine: study.Point, values: study.Point, points: list[study.Point]) 
             f"refine: {', '.join(refine)} as in the runs themselves (accepted: other values, or no [refine])"
         )
     for name in set(refine) & set(FINER):
-        coarse = min(
-            (values | point)[name] for point in points
-        )  # of bodies the largest that one gives
+        # In a scene of bodies `values` holds the largest size of its bodies.
+        coarse = min((values | point)[name] for point in points)
         if coarse > 0 and not 0 < refine[name] < coarse:
             raise BadInput(
                 f"refine: {brief(name)} = {refine[name]:g} is not finer (accepted: above 0, below {coarse:g})"
@@ -322,8 +326,8 @@ def _is(value, kind: type, name: str, words: str):
 
 
 def _flat(table: dict, path: str = "") -> dict:
-    """The entries of a table by dotted names: body.2.young stands in nested tables where its
-    name is not in quotes.
+    """Returns the entries of a table by dotted names. TOML reads body.2.young as nested tables
+    unless the name is in quotes.
     """
     found = {}
     for name, value in table.items():
@@ -333,7 +337,9 @@ def _flat(table: dict, path: str = "") -> dict:
 
 
 def _values(name: str, given: list | dict, of: scene.Scene) -> list[Value]:
-    """The checked values of an axis of a sweep of the scene `of`, from a list or a range."""
+    """Returns the checked values of an axis of a sweep over the scene `of`, from a list or a
+    range.
+    """
     if isinstance(given, dict):
         if not set(RANGE[:3]) <= set(given) <= set(RANGE):
             raise BadInput(
@@ -370,7 +376,7 @@ def _values(name: str, given: list | dict, of: scene.Scene) -> list[Value]:
 
 
 def _single(name: str, value, of: scene.Scene) -> Value:
-    """A checked value of an axis: a number or a word."""
+    """Returns a checked value of an axis: a number or a word."""
     if isinstance(value, list | dict):
         raise BadInput(
             f"{brief(name)}: {brief(value)} (accepted: single numbers and words, as body.1.velocity.2 for one of two)"
@@ -379,7 +385,7 @@ def _single(name: str, value, of: scene.Scene) -> Value:
 
 
 def _together(group: dict, of: scene.Scene) -> list[study.Point]:
-    """A [[zip]]: its parameters go through their values together."""
+    """Returns the points of a [[zip]], whose parameters vary together."""
     columns = {
         name: [_single(name, value, of) for value in _is(values, list, name, "a list of values")]
         for name, values in group.items()
@@ -400,7 +406,9 @@ def _together(group: dict, of: scene.Scene) -> list[study.Point]:
 
 
 def collect(wanted: Sweep, out: Path) -> pd.DataFrame:
-    """Runs what is not there yet; the table, saved as sweep.csv, with its figure."""
+    """Computes the runs that are missing. Returns the table and saves it as sweep.csv, with its
+    figure.
+    """
     rows = table(wanted, out)
     study.save(rows, out / "sweep.csv")
     sweep_figures.draw(wanted, rows, out)
@@ -408,14 +416,15 @@ def collect(wanted: Sweep, out: Path) -> pd.DataFrame:
 
 
 def table(wanted: Sweep, out: Path) -> pd.DataFrame:
-    """Runs what is not there yet; a row a point, tidy: what varies, exit, message, warnings,
-    what is collected, with `refine` of the refined run and beside it <name>_error [same unit],
-    |refined - plain|; seconds.
+    """Computes the runs that are missing and returns a tidy table with one row per point.
 
-    A point of which a run failed keeps that run's exit code and message, and has no numbers.
+    Columns: the parameters that vary, exit, message, warnings, the collected numbers, and seconds.
+    With `refine` the numbers are those of the refined run, and <name>_error [same unit] is |refined
+    - plain|. If a run of a point failed, the row has the exit code and message of that run, and no
+    numbers.
     """
     runs = study.study(wanted.runs, out, wanted.base, wanted.limit, wanted.scene)
-    for name in wanted.collect:  # where no run came so far
+    for name in wanted.collect:  # a number that no run has becomes an empty column
         if name not in runs:
             runs[name] = np.nan
     n = len(wanted.points)
@@ -436,8 +445,8 @@ def table(wanted: Sweep, out: Path) -> pd.DataFrame:
 
 
 def _units(wanted: Sweep, names: list[str]) -> str:
-    """The units of columns of sweep.csv: parameters' and those of the summary, as they stand
-    there.
+    """Returns the units of columns of sweep.csv in words, from the parameters and the meanings of
+    the summary.
     """
     said = describe_results(script=wanted.sample.script)["meanings"]["summary"]
     units = {
@@ -453,8 +462,8 @@ def _units(wanted: Sweep, names: list[str]) -> str:
 
 
 def report(wanted: Sweep, rows: pd.DataFrame, out: Path) -> str:
-    """What was found, point by point where the table is short, failures with their reasons,
-    where the files are.
+    """Returns the results in words: a table of all points if it is short, failures with their
+    reasons, the findings of the figure, and where the files are.
     """
     lines = [wanted.title]
     if len(rows) <= 60:

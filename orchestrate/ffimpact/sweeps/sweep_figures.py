@@ -1,13 +1,16 @@
-"""The figure of a sweep, and what it shows in words. [figure] of a sweep file is one of
+"""Draws the figure of a sweep and describes it in words. [figure] of a sweep file has one of the
+kinds
 
-    kind = "lines"      x, y (one name or several), by: y over x, a line for each value of `by`, with error bars (default)
-    kind = "map"        x, y, colour, by, panel: a column of maps for each value of `by`, a row for each of `panel`;
-                        level, band: where colour = level +- band
-    kind = "histories"  y (a column of history.csv), panel, by: y over time, a panel a value of `panel`, a line a value of `by`
+    kind = "lines"      x, y (one name or several), by: y over x, one line for each value of `by`,
+                        with error bars (default)
+    kind = "map"        x, y, colour, by, panel: a column of maps for each value of `by`, a row for
+                        each value of `panel`; level, band: lines where colour = level +- band
+    kind = "histories"  y (a column of history.csv), panel, by: y over time, one panel for each
+                        value of `panel`, one line for each value of `by`
 
-x, y of a map, by and panel are parameters that vary and together tell all points apart; the y of
-lines and colour are numbers that are collected. The x of lines is logarithmic where its values span
-a decade and are spaced so.
+x, y of a map, by and panel are parameters that vary. Together they must distinguish all points. The
+y of lines and colour are numbers that are collected. The x of lines is logarithmic if its values
+span a decade and are spaced logarithmically.
 """
 
 import itertools
@@ -77,13 +80,13 @@ KINDS = {
     "histories": ("y", "panel", "by"),
 }
 WORDS = {"nu": "ν", "penalty": "k"}
-SPAN = 1e3  # of the values over an axis from which it is logarithmic
+SPAN = 1e3  # ratio of the largest to the smallest value above which the axis y is logarithmic
 COLOURS, MARKERS = (BLUE, ORANGE, GREEN, PURPLE, GREY), "osd^v"
 
 
 def check(given: dict, points: list[dict], collected: list[str], columns: list[str]) -> dict:
-    """The [figure] of a sweep, completed; empty if none was given; `columns` are those of its
-    histories. BadInput where it cannot be drawn or would mix points up.
+    """Returns the [figure] of a sweep with defaults, empty if there is none. `columns` are those of
+    its histories. Raises BadInput if it cannot be drawn or does not distinguish all points.
     """
     if not given:
         return {}
@@ -138,7 +141,9 @@ def _name(key: str, name, accepted: list[str]) -> None:
 
 
 def _check_map(figure: dict, points: list[dict]) -> None:
-    """A map has two axes of numbers, at least two on each, and a sound level."""
+    """Raises BadInput if an axis of a map has fewer than two numbers, or if level or band is out of
+    range.
+    """
     for key in ("x", "y"):
         values = {point[figure[key]] for point in points}
         if len(values) < 2 or any(isinstance(value, str) for value in values):
@@ -169,8 +174,8 @@ def draw(sweep, rows: pd.DataFrame, out: Path) -> None:
 
 
 def constants(sweep) -> str:
-    """What is the same in all runs of a body: law, nu, speed, contact stiffness and, with
-    friction, the slip velocity.
+    """Returns the parameters that are the same in all runs, in words: law, nu, speed, contact
+    stiffness and, with friction, the slip velocity.
     """
     used = sweep.sample.given
     names = ("law", "nu", "speed", "penalty") + ("slip_velocity",) * (
@@ -183,8 +188,8 @@ def constants(sweep) -> str:
 
 
 def findings(sweep, rows: pd.DataFrame, out: Path) -> list[str]:
-    """What the figure shows, in words: trends over x, the set that meets a level, the distances
-    of histories.
+    """Returns what the figure shows, in words: trends over x, the set for which a number has its
+    level, or the distances of time histories.
     """
     if not sweep.figure:
         return []
@@ -212,8 +217,8 @@ def findings(sweep, rows: pd.DataFrame, out: Path) -> list[str]:
 
 
 def label(name: str, per: str = "/m") -> str:
-    """The words and the unit of a parameter or a number of the summary, for an axis; per: "/m"
-    in plane strain, "" of a ball.
+    """Returns the words and the unit of a parameter or a number of the summary, for an axis. `per`
+    is "/m" in plane strain, "" for a ball.
     """
     unit = _quantity(name, per).unit or unit_of(name)
     return _words(name) if unit in ("-", "", "of the start") else f"{_words(name)} [{unit}]"
@@ -224,8 +229,8 @@ def _words(name: str) -> str:
 
 
 def _quantity(name: str, per: str = "/m") -> report.Quantity:
-    """The row of the report, also of one of several bodies; of what is in none one without a
-    unit.
+    """Returns the row of the report for a number, also for one of several bodies. A name that the
+    report does not have becomes a row without a unit.
     """
     key = re.sub("_[0-9]+$", "", name)
     return next(
@@ -235,12 +240,12 @@ def _quantity(name: str, per: str = "/m") -> report.Quantity:
 
 
 def _unit(name: str, per: str) -> str:
-    """The unit of a number of the summary, with a space in front."""
+    """Returns the unit of a number of the summary, with a space in front."""
     return f" {_quantity(name, per).unit}".rstrip()
 
 
 def _value(name: str, value) -> str:
-    """A value of a parameter in words, with its unit."""
+    """Returns a value of a parameter in words, with its unit."""
     if value == "auto":
         return f"{_words(name)} auto"
     if isinstance(value, str):
@@ -250,14 +255,14 @@ def _value(name: str, value) -> str:
 
 
 def unit_of(name: str) -> str:
-    """The unit of a parameter, of body.2.young that of young; "-" of what has none."""
+    """Returns the unit of a parameter (of body.2.young that of young), "-" if it has none."""
     parameter = parameters.PARAMETERS.get(name.rpartition(".")[2])
     return parameter.unit if parameter else "-"
 
 
 def _groups(sweep, rows: pd.DataFrame, key: str) -> Iterator[tuple[str, pd.DataFrame]]:
-    """(words, rows) for each value of the parameter that [figure] names as `key`; all rows
-    where it names none.
+    """Yields (words, rows) for each value of the parameter that [figure] names as `key`, or all
+    rows at once if there is no such key.
     """
     name = sweep.figure.get(key)
     if name is None:
@@ -314,9 +319,8 @@ def draw_lines(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
                     clip_on=False,
                     label=f"{words}: {why}".removeprefix(": "),
                 )
-                axes.tick_params(
-                    axis="x", pad=3.5 + 9 * (k + 1)
-                )  # its row of marks is below the axis, where no value can be
+                # The marks of failed runs are in a row below the axis, where no value can be.
+                axes.tick_params(axis="x", pad=3.5 + 9 * (k + 1))
         _published(axes, sweep, x, y)
         axes.set_ylabel(label(y, sweep.figure["per"]))
         axes.grid(alpha=0.3)
@@ -328,19 +332,22 @@ def draw_lines(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
             axes.xaxis.set_major_formatter("{x:g}")
             axes.xaxis.set_minor_locator(NullLocator())
     grid[-1, 0].set_xlabel(label(x))
+    # Curves come before other marks in the legend.
     handles = sorted(
         zip(*grid[0, 0].get_legend_handles_labels()),
         key=lambda each: isinstance(each[0], plt.Line2D),
-    )  # the curves first
+    )
     if handles:
         grid[0, 0].legend(*zip(*handles))
     return figure
 
 
 def _published(axes: plt.Axes, sweep, x: str, y: str) -> None:
-    """The numbers of the paper for y, whose contact time is that while the force is not zero: a
-    star at its x, or a line over all x where it states none. Only numbers of a scene that the
-    sweep has, law included, for some value of x.
+    """Draws the numbers of the paper for y: a star at their x, or a line over all x if the paper
+    does not state x.
+
+    Only numbers of scenes of the sweep, law included, are drawn. The contact time of the paper, in
+    which the force is not zero, is drawn for both contact times.
     """
     name, (factor, unit) = (
         y.removeprefix("thresholded_"),
@@ -360,8 +367,8 @@ def _published(axes: plt.Axes, sweep, x: str, y: str) -> None:
 
 
 def _is_logarithmic(values: pd.Series) -> bool:
-    """Whether five values or more span a decade and are spaced evenly in their logarithm rather
-    than linearly.
+    """Whether there are five values or more that span a decade, and whose logarithms are more
+    evenly spaced than the values.
     """
     if (
         not pd.api.types.is_numeric_dtype(values)
@@ -377,11 +384,16 @@ def _is_logarithmic(values: pd.Series) -> bool:
 
 @dataclass(frozen=True)
 class Trend:
-    """How y goes with x: its course (see course()), the first, last, smallest and largest value
-    with the x of the latter two, and the typical error of a point (nan without). Of the steps
-    between neighbours: how many there are, how many go against the way from the first to the
-    last value, how many of those by more than one and than two error bars of the step, the
-    largest of them, the typical error bar of a step, and the typical step.
+    """How y changes with x.
+
+    `course` is its shape (course()); `first`, `last` are the values at the ends; `low`, `high` are
+    x and y of the extreme values; `typical` is the typical error of a point (nan without error
+    bars).
+
+    The other fields are about steps between neighbouring points: the number of `steps`, how many go
+    `against` the direction from the first to the last value, how many of those by more than one
+    (`beyond`) and two (`established`) error bars of the step, the `largest` of them, the typical
+    error `bar` of a step, and the typical `step`.
     """
 
     course: str
@@ -404,14 +416,17 @@ class Trend:
 
     @property
     def ends_lower(self) -> bool:
-        """Whether the last value is below the first, whatever is between."""
+        """Whether the last value is below the first by more than two error bars, whatever is
+        between.
+        """
         return self.first - self.last > 2 * np.nan_to_num(self.bar)
 
 
 def bars(group: pd.DataFrame, y: str) -> np.ndarray:
-    """Error bars of the points of a curve (n,): the larger of a point's own and the root mean
-    square of all, as one difference of two runs can be small by chance; nan without
-    [refine].
+    """Returns the error bars of the points of a curve (n,), nan without [refine].
+
+    Each is the larger of the point's own error and the root mean square of all, because one
+    difference of two runs can be small by chance.
     """
     if f"{y}_error" not in group:
         return np.full(len(group), np.nan)
@@ -421,8 +436,8 @@ def bars(group: pd.DataFrame, y: str) -> np.ndarray:
 
 
 def bars_of_all(sweep, rows: pd.DataFrame, y: str) -> pd.Series:
-    """The same of every row of the table, each in its own curve or map of the figure; nan where
-    a run failed. Without a figure all points are one curve.
+    """Returns the error bars (bars()) of every row of the table, each in its own curve or map of
+    the figure; nan where a run failed. Without a figure all points are one curve.
     """
     found = pd.Series(np.nan, rows.index)
     for _, panel in _groups(sweep, rows, "panel"):
@@ -437,14 +452,16 @@ MINIMUM, MAXIMUM, UNEVEN = "has a minimum", "has a maximum", "goes up and down"
 
 
 def course(values: np.ndarray, errors: np.ndarray) -> str:
-    """What a curve does from its first to its last point. A value is above another one where it
-    is by more than twice their error bars, added in squares; nan counts as 0.
+    """Returns the shape of a curve from its first to its last point. A value counts as above
+    another one if it is above by more than twice the root of the sum of squares of their error
+    bars; nan counts as 0.
 
-    The curve does not change where its largest value is not above its smallest. It falls where
-    no value is above the first or below the last, and the first is above the last, whatever
-    rises are between; it rises likewise. It has a minimum where both ends are above the
-    smallest value and nothing is above both ends; a maximum likewise. Else it goes up and
-    down.
+    - The curve does not change if its largest value is not above its smallest.
+    - It falls if no value is above the first or below the last, and the first is above the last,
+      whatever rises are between. It rises likewise.
+    - It has a minimum if both ends are above the smallest value and nothing is above both ends. A
+      maximum likewise.
+    - Else it goes up and down.
     """
     errors, ends = np.nan_to_num(errors), (0, len(values) - 1)
     low, high = int(np.argmin(values)), int(np.argmax(values))
@@ -463,8 +480,8 @@ def course(values: np.ndarray, errors: np.ndarray) -> str:
 
 
 def steps_against(group: pd.DataFrame, x: str, y: str) -> Trend | None:
-    """The trend of the finished points of `group`, SI units; None for fewer than three. The
-    error bar of a step is the sum of its ends' in squares.
+    """Returns the trend of the finished points of `group`, in SI units; None for fewer than three
+    points. The error bar of a step is the root of the sum of squares of those of its ends.
     """
     there = group[(group.exit == 0) & group[y].notna()].sort_values(x)
     if len(there) < 3:
@@ -491,7 +508,7 @@ def steps_against(group: pd.DataFrame, x: str, y: str) -> Trend | None:
 
 
 def trend(group: pd.DataFrame, x: str, y: str, words: str, per: str = "/m") -> str:
-    """The same in words."""
+    """Returns the trend (steps_against()) in words."""
     name = f"{words}: " * bool(words) + f"{y.replace('_', ' ')} over {x.replace('_', ' ')}"
     found, factor, unit = steps_against(group, x, y), _quantity(y).factor, _unit(y, per)
     if not found:
@@ -513,8 +530,8 @@ def trend(group: pd.DataFrame, x: str, y: str, words: str, per: str = "/m") -> s
 
 
 def _extremes(found: Trend, x: str, factor: float) -> str:
-    """The extreme values of a curve that neither falls nor rises throughout, with their x, in
-    words.
+    """Returns the extreme values of a curve that neither falls nor rises throughout, with their x,
+    in words.
     """
     low, high = (
         f"{factor * value:.5g} at {_value(x, at)}" for at, value in (found.low, found.high)
@@ -528,7 +545,7 @@ def _extremes(found: Trend, x: str, factor: float) -> str:
 
 
 def _maps(sweep, rows: pd.DataFrame) -> Iterator[tuple[str, pd.DataFrame]]:
-    """(words, rows) of each map, column by column of a row of them."""
+    """Yields (words, rows) of each map, row by row."""
     for panel, part in _groups(sweep, rows, "panel"):
         for words, group in _groups(sweep, part, "by"):
             yield ", ".join(filter(None, (panel, words))), group
@@ -538,9 +555,8 @@ def _map(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
     wanted = sweep.figure
     x, y, colour = (wanted[key] for key in ("x", "y", "colour"))
     maps, height = list(_maps(sweep, rows)), len(list(_groups(sweep, rows, "panel")))
-    widths = [
-        max(2.5, group[x].nunique()) for _, group in maps[: len(maps) // height]
-    ]  # a panel has the x of its runs
+    # The width of a map follows from the number of its values of x.
+    widths = [max(2.5, group[x].nunique()) for _, group in maps[: len(maps) // height]]
     figure, grid = plt.subplots(
         height,
         len(widths),
@@ -555,9 +571,8 @@ def _map(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
     low, high = values.min(), values.max()
     for axes, (words, group) in zip(grid.flat, maps):
         table = group.pivot(index=y, columns=x, values=colour) * _quantity(colour).factor
-        cells = np.where(
-            group.pivot(index=y, columns=x, values="exit") == 0, table, np.nan
-        )  # evenly spaced, whatever the values
+        # The cells of the picture are evenly spaced, whatever the values of x and y.
+        cells = np.where(group.pivot(index=y, columns=x, values="exit") == 0, table, np.nan)
         picture = axes.imshow(
             cells, origin="lower", aspect="auto", cmap="viridis", vmin=low, vmax=high
         )
@@ -571,7 +586,7 @@ def _map(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
                 va="center",
                 fontsize=SMALL,
                 color="black" if np.isnan(value) or share > 0.5 else "white",
-                zorder=5,  # above the lines of the level
+                zorder=5,  # in front of the lines of the level
                 bbox=dict(
                     facecolor="white" if np.isnan(value) else plt.get_cmap("viridis")(share),
                     edgecolor="none",
@@ -580,7 +595,7 @@ def _map(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
             )
         if wanted["level"] is not None:
             level, band = (_quantity(colour).factor * wanted[key] for key in ("level", "band"))
-            alone = cells.shape[1] == 1  # its level runs across all of the column
+            alone = cells.shape[1] == 1  # then the lines of the level cross the whole column
             across = [-0.5, 0.5] if alone else np.arange(cells.shape[1])
             drawn = across, np.arange(len(cells)), cells.repeat(2, axis=1) if alone else cells
             axes.contour(*drawn, levels=[level], colors=[ORANGE], linewidths=2)
@@ -605,7 +620,7 @@ def _map(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
 
 
 def _tick(value: float) -> str:
-    """A number beside an axis, large and small ones as powers of ten."""
+    """Returns a number beside an axis as text, large and small ones as powers of ten."""
     if value == 0 or 1e-3 <= abs(value) < 1e5:
         return f"{value:.2g}"
     factor, _, power = f"{value:.1e}".partition("e")
@@ -613,8 +628,8 @@ def _tick(value: float) -> str:
 
 
 def level_set(figure: dict, group: pd.DataFrame) -> dict[float, list[tuple[float, float]]]:
-    """For each value of x the ranges of y in which colour meets its level within the band and
-    the error bar; between the points interpolated in the logarithm of y.
+    """Returns for each value of x the ranges of y in which colour has its level, within the sum of
+    band and error bar. Between points colour is interpolated linearly in the logarithm of y.
     """
     x, y, colour = (figure[key] for key in ("x", "y", "colour"))
     found, band = {}, figure["band"] + _typical(group, colour)
@@ -630,19 +645,19 @@ def level_set(figure: dict, group: pd.DataFrame) -> dict[float, list[tuple[float
 
 
 def ranges(values: np.ndarray, holds: np.ndarray) -> list[tuple[float, float]]:
-    """First and last of the values between which something holds."""
+    """Returns the first and last values of each range of `values` in which `holds` is true."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], holds.astype(int), [0]]))).reshape(-1, 2)
     return [(float(values[first]), float(values[last - 1])) for first, last in edges]
 
 
 def _typical(group: pd.DataFrame, name: str) -> float:
-    """The typical error bar of a column, 0 without [refine]."""
+    """Returns the typical error bar of a column, 0 without [refine]."""
     errors = bars(group[group.exit == 0], name)
     return float(np.nanmin(errors)) if np.isfinite(errors).any() else 0.0
 
 
 def level_set_words(figure: dict, words: str, group: pd.DataFrame) -> list[str]:
-    """The level set in words, a line for each value of x."""
+    """Returns the level set in words, a line for each value of x."""
     if figure["level"] is None:
         return []
     x, y, colour = (figure[key] for key in ("x", "y", "colour"))
@@ -661,7 +676,7 @@ def level_set_words(figure: dict, words: str, group: pd.DataFrame) -> list[str]:
 
 
 def spans(ranges: list[tuple[float, float]]) -> str:
-    """Ranges of numbers in words."""
+    """Returns ranges of numbers in words."""
     return ", ".join(f"{first:.2g} to {last:.2g}" for first, last in ranges)
 
 
@@ -704,8 +719,8 @@ def _histories(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
 def _history(
     sweep, row: pd.Series, out: Path, y: str, refined: bool
 ) -> tuple[np.ndarray, np.ndarray]:
-    """(t, values) of a point's run; forces, which are means of a step, at the middle of the
-    step.
+    """Returns (t, values) of the run of a point. Forces are means over a step, so their t is the
+    middle of the step.
     """
     point = row[sweep.axes].to_dict() | (sweep.refine if refined else {})
     history = read_history(study.place(out, point))
@@ -717,16 +732,16 @@ def _history(
 def force(
     history: dict[str, np.ndarray], name: str = "normal_force"
 ) -> tuple[np.ndarray, np.ndarray]:
-    """(t, force); the force is the mean of a step, at its middle."""
+    """Returns (t, force). The force is the mean over a step, t the middle of the step."""
     return history["t"] - history["dt"] / 2, history[name]
 
 
 def distances(
     sweep, rows: pd.DataFrame, out: Path
 ) -> Iterator[tuple[str, str, str, str, float, float]]:
-    """(panel, y, a, b, distance, error): ||y_b - y_a|| / ||y_a|| over time, of each line b and
-    the first one a; error: the largest such distance of a run and its refined run, nan without
-    [refine].
+    """Yields (panel, y, a, b, distance, error) for each line b of a panel and its first line a. The
+    distance is ||y_b - y_a|| / ||y_a|| over time. The error is the larger such distance between a
+    run of a or b and its refined run, nan without [refine].
     """
     refined = bool(sweep.refine)
     for panel, part in _groups(sweep, rows, "panel"):
@@ -753,8 +768,8 @@ def distances(
 
 
 def distance(first: tuple[np.ndarray, np.ndarray], second: tuple[np.ndarray, np.ndarray]) -> float:
-    """||second - first|| / ||first|| in L2 over time; both are zero outside their times; nan
-    where the first is zero.
+    """Returns ||second - first|| / ||first|| in L2 over time. Both are zero outside their times.
+    The result is nan if the first is zero.
     """
     t = np.union1d(first[0], second[0])
     if not first[1].any():
