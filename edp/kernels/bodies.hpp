@@ -23,11 +23,11 @@ using laws::Symmetric;
 
 // The components of F and C that are stored: (i, J), with which component u_i and which N_a,J make it; (J, L) as in laws.hpp.
 template<int dimensions, int revolves> struct Stored {
-  static const int D = dimensions, H = revolves, F = D * D + H, C = D == 3 ? 6 : 4, slots = D + H;
+  static const int D = dimensions, H = revolves, F = D * D + H, C = D == 3 ? 6 : 4, candidates = D + H;
   static int row(int k) { return k < D * D ? k / D : 2; }
   static int column(int k) { return k < D * D ? k % D : 2; }
   static int component(int k) { return k < D * D ? k / D : 0; }
-  static int slot(int k) { return k < D * D ? k % D : D; }
+  static int candidate(int k) { return k < D * D ? k % D : D; }
   static int symmetric(int k) { static const int plane[4] = {0, 1, 3, 2}; return D == 3 ? k : plane[k]; }
 };
 
@@ -122,12 +122,12 @@ public:
     block.assign(pairA.size() * D * D, 0.);
   }
 
-  // Of elements with a volume of their own: cellOfPoint (nq).
-  void cells(const std::vector<int> &cellOfPoint) {
+  // Of elements with a volume of their own: elementOfPoint (nq).
+  void facets(const std::vector<int> &elementOfPoint) {
     cell.clear();
     cellWeight.assign(firstPoint.size() - 1, 0.);
     for (size_t g = 0; g + 1 < firstPoint.size(); g++) {
-      cell.push_back(cellOfPoint[firstPoint[g]]);
+      cell.push_back(elementOfPoint[firstPoint[g]]);
       for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++) cellWeight[g] += weight[q];
       if (cellWeight[g] == 0) cellWeight[g] = 1;   // of a rigid body, which has no strain
     }
@@ -206,14 +206,14 @@ public:
   }
 
 private:
-  std::map<std::pair<int, int>, int> knownPairs;
+  std::map<std::pair<int, int>, int> knownHistory;
   int pair(int a, int b) {
-    auto found = knownPairs.insert({{a, b}, int(pairA.size())});
+    auto found = knownHistory.insert({{a, b}, int(pairA.size())});
     if (found.second) { pairA.push_back(a);  pairB.push_back(b);  massOf.push_back(0); }
     return found.first->second;
   }
 
-  std::vector<double> nodal, pull, way, lagging;   // by node and component; way: d - dBase
+  std::vector<double> nodal, pull, increment, lagging;   // by node and component; way: d - dBase
   std::vector<double> own, ownLagging;     // pull and lagging, of every element its own
 
   // f(Stored<...>()) of these bodies; f(that, q) of every point.
@@ -244,8 +244,8 @@ private:
   template<class T> int innerForces(const Step &step, const Deformation &at) {
     const int elements = int(firstNode.size()) - 1;
     if (step.carries) {
-      way.resize(nodes * D);
-      for (int i = 0; i < nodes * D; i++) way[i] = nodal[i] - volume.dBase[unknown[i]];
+      increment.resize(nodes * D);
+      for (int i = 0; i < nodes * D; i++) increment[i] = nodal[i] - volume.dBase[unknown[i]];
     }
     own.assign(node.size() * D, 0.);
     if (step.carries) ownLagging.assign(node.size() * D, 0.);
@@ -292,7 +292,7 @@ private:
     for (int a = 0; a < n; a++) for (int i = 0; i < D; i++) its[a * D + i] = nodal[node[firstNode[g] + a] * D + i];
     for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++) {
       double dF[T::F] = {};
-      for (int a = 0; a < n; a++, N += T::slots) {
+      for (int a = 0; a < n; a++, N += T::candidates) {
         for (int i = 0; i < D; i++) for (int J = 0; J < D; J++) dF[i * D + J] += N[J] * its[a * D + i];
         if (T::H) dF[D * D] += N[D] * its[a * D];
       }
@@ -308,7 +308,7 @@ private:
   // nodal forces += G' (w F S) at point q with shapes N of n nodes.
   template<class T> void pulled(int q, int n, const double *N, const Matrix &F, const Symmetric &S, double *its) const {
     const Matrix P = weight[q] * laws::product(F, S);
-    for (int a = 0; a < n; a++, N += T::slots) {
+    for (int a = 0; a < n; a++, N += T::candidates) {
       for (int i = 0; i < T::D; i++) for (int J = 0; J < T::D; J++) its[a * T::D + i] += N[J] * P[3 * i + J];
       if (T::H) its[a * T::D] += N[T::D] * P[8];
     }
@@ -321,7 +321,7 @@ private:
     double *its = &own[size_t(firstNode[g]) * D];
     Pressed pressed;
     if (!cell.empty()) press<T>(g, step, at, pressed);
-    for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++, N += n * T::slots) {
+    for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++, N += n * T::candidates) {
       const laws::Material &m = material(q);
       const Symmetric C0 = symmetric<T>(at.C0, q), C1 = laws::rightCauchyGreen(whole<T>(step.where == stepMiddle ? at.Fs : at.F1, q));
       Symmetric S = step.where == stepMean ? m.law->algorithmicStress(m, C0, C1) : m.law->stress(m, C1);
@@ -368,7 +368,7 @@ private:
   }
   double alongG0(size_t g) const {
     double sum = 0;
-    for (int a = firstNode[g]; a < firstNode[g + 1]; a++) for (int i = 0; i < D; i++) sum += g0[size_t(a) * D + i] * way[node[a] * D + i];
+    for (int a = firstNode[g]; a < firstNode[g + 1]; a++) for (int i = 0; i < D; i++) sum += g0[size_t(a) * D + i] * increment[node[a] * D + i];
     return sum;
   }
 
@@ -377,7 +377,7 @@ private:
     const int n = nodesOf(g);
     const double *N = &shape[firstShape[g]];
     double all[most * T::D] = {};
-    for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++, N += n * T::slots)
+    for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++, N += n * T::candidates)
       pulled<T>(q, n, N, whole<T>(at.Fs, q), pressed.left * pressed.T[q - firstPoint[g]], all);
     for (int i = 0; i < n * D; i++) {
       const double along = slopeKnown ? pressed.left * g0[size_t(firstNode[g]) * D + i] : all[i];
@@ -399,14 +399,14 @@ private:
         for (int a = 0; a < n; a++) {
           double Y[D][T::F] = {};          // sum over J of N_a,J dP_iJ/dF
           for (int k = 0; k < T::F; k++)
-            for (int l = 0; l < T::F; l++) Y[T::component(k)][l] += N[a * T::slots + T::slot(k)] * A[k][l];
+            for (int l = 0; l < T::F; l++) Y[T::component(k)][l] += N[a * T::candidates + T::candidate(k)] * A[k][l];
           for (int b = 0; b <= a; b++, to++) {
             double *into = &block[size_t(*to) * D * D];
             for (int i = 0; i < D; i++)
-              for (int l = 0; l < T::F; l++) into[i * D + T::component(l)] += Y[i][l] * N[b * T::slots + T::slot(l)];
+              for (int l = 0; l < T::F; l++) into[i * D + T::component(l)] += Y[i][l] * N[b * T::candidates + T::candidate(l)];
           }
         }
-        N += n * T::slots;
+        N += n * T::candidates;
       }
       if (!cell.empty()) rankOne<T>(g, F, scale);
     }
@@ -445,7 +445,7 @@ private:
       const double j = laws::volume(m, C);
       theta += weight[q] * j / cellWeight[g];
       pulled<T>(q, n, N, f, laws::volumeDirection(m, C, j), its);
-      N += n * T::slots;
+      N += n * T::candidates;
     }
     slope[g] = scale * laws::pressureSlope(m, theta) / cellWeight[g];
     const int *to = &pairOf[firstPair[g]];

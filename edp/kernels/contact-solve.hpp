@@ -70,7 +70,7 @@ inline void symmetric(const std::vector<float> &A, const Vector &x, Vector &y) {
 struct Rows {
   int n = 0, points = 0, kinds = 1;
   Indices first{0}, column, owner;                                 // of a point its entries; of an entry its column and point
-  Vector value, spring;                                            // kinds an entry; stiffness c of the springs
+  Vector value, geometric;                                            // kinds an entry; stiffness c of the springs
   // Of rows with entries at `first`, `column`: those of K and the diagonal by columns, where those of stiffness() are, what UMFPACK makes
   // of that.
   struct Pattern { Indices first, column, start, row, place;  std::shared_ptr<void> symbolic; };
@@ -91,16 +91,16 @@ struct Rows {
     value[kinds * e + kind] += v;
   }
   void endPoint() { first.push_back(column.size()); }
-  void end(const Vector &springs) { spring = springs;  points = blocks() - spring.size(); }
+  void end(const Vector &geometricTerms) { geometric = geometricTerms;  points = blocks() - geometric.size(); }
   void push(const Vector &t, Vector &force) const {                // B^T t
     force.assign(n, 0.);
     for (size_t e = 0; e < column.size(); e++)
       for (int c = 0; c < kinds; c++) force[column[e]] += value[kinds * e + c] * t[kinds * owner[e] + c];
   }
-  void pull(const Vector &way, Vector &move) const {               // B way
+  void pull(const Vector &increment, Vector &move) const {               // B way
     move.assign(kinds * blocks(), 0.);
     for (size_t e = 0; e < column.size(); e++)
-      for (int c = 0; c < kinds; c++) move[kinds * owner[e] + c] += value[kinds * e + c] * way[column[e]];
+      for (int c = 0; c < kinds; c++) move[kinds * owner[e] + c] += value[kinds * e + c] * increment[column[e]];
   }
   void slope(const Vector &D, const Vector &move, Vector &change) const {   // D move
     change.assign(move.size(), 0.);
@@ -113,11 +113,11 @@ struct Rows {
       const double *slopes = &D[kinds * kinds * b];
       if (std::all_of(slopes, slopes + kinds * kinds, [](double d) { return d == 0; })) { t += entries(b) * entries(b);  continue; }
       for (int e = first[b]; e < first[b + 1]; e++) {
-        double way[3] = {}, *to = way;                             // D B, of this column
+        double increment[3] = {}, *to = increment;                             // D B, of this column
         for (int i = 0; i < kinds; i++, to++) for (int c = 0; c < kinds; c++) *to += slopes[kinds * i + c] * value[kinds * e + c];
         for (int o = first[b]; o < first[b + 1]; o++, t++) {
           double sum = 0;
-          for (int i = 0; i < kinds; i++) sum += value[kinds * o + i] * way[i];
+          for (int i = 0; i < kinds; i++) sum += value[kinds * o + i] * increment[i];
           add(t, column[o], column[e], sum);
         }
       }
@@ -212,29 +212,29 @@ class Newton {
     umfpack_di_defaults(control);
     control[UMFPACK_IRSTEP] = 0;
     Vector left = f, move, change, more;
-    std::vector<Vector> ways, images;
+    std::vector<Vector> increments, images;
     y.assign(n, 0.);
     for (iterations = 0; iterations < 200 && norm(left) > goal; iterations++) {
-      Vector way(n), image;
-      const int status = umfpack_di_solve(UMFPACK_A, pattern->start.data(), pattern->row.data(), P.data(), way.data(), left.data(),
+      Vector increment(n), image;
+      const int status = umfpack_di_solve(UMFPACK_A, pattern->start.data(), pattern->row.data(), P.data(), increment.data(), left.data(),
                                           numeric.get(), control, nullptr);
       check(status == UMFPACK_OK || status == UMFPACK_WARNING_singular_matrix, "there is not enough of it to solve the contact");
-      if (isDiagonal(S, n)) symmetric(S, way, image); else symmetric(rounded, way, image);
-      B.pull(way, move);
+      if (isDiagonal(S, n)) symmetric(S, increment, image); else symmetric(rounded, increment, image);
+      B.pull(increment, move);
       B.slope(D, move, change);
       B.push(change, more);
       add(1, more, image);
-      for (size_t k = 0; k < ways.size(); k++) {
+      for (size_t k = 0; k < increments.size(); k++) {
         const double h = dot(image, images[k]);
         add(-h, images[k], image);
-        add(-h, ways[k], way);
+        add(-h, increments[k], increment);
       }
       const double scale = 1 / std::max(norm(image), 1e-300), along = scale * scale * dot(left, image);
-      add(along, way, y);
+      add(along, increment, y);
       add(-along, image, left);
-      for (double &v : way) v *= scale;
+      for (double &v : increment) v *= scale;
       for (double &v : image) v *= scale;
-      ways.push_back(way);
+      increments.push_back(increment);
       images.push_back(image);
     }
   }
@@ -250,7 +250,7 @@ class Problem {
   Indices turned;
   Vector start, tau, force;                                        // x_w; tau; B^T tau: what pushes the unknowns
   double enough = 0, sticksBelow = 0;
-  int inverses = 0, mostTurns = 4, agreeingFrom = 20;              // inverses, before plain Newton with a line search takes over
+  int inverses = 0, mostStatusChanges = 4, agreeingFrom = 20;              // inverses, before plain Newton with a line search takes over
 
   void compliance(int n, const double *given) { C.assign(given, given + (size_t)n * n);  stiff = false; }
   void looseness(int n, const double *given) { C.assign(given, given + n);  stiff = false; }   // diagonal
@@ -300,11 +300,11 @@ class Problem {
     if (isDiagonal(C, B.n)) { S = C;  for (double &s : S) s = 1 / s; }
     else newton.stiffen(C, S);
   }
-  void comply(const Vector &f, Vector &way) const {                // B C B^T f
+  void comply(const Vector &f, Vector &increment) const {                // B C B^T f
     Vector g, y;
     B.push(f, g);
     symmetric(C, g, y);
-    B.pull(y, way);
+    B.pull(y, increment);
   }
   void place() {
     comply(tau, x);
@@ -324,10 +324,10 @@ class Problem {
       for (int i = 0; i < k; i++)
         for (int j = 0; j < k; j++) slopes[k * k * b + k * i + j] = i == j ? std::max(f.slope[i][j], 0.) : f.slope[i][j];
     }
-    for (size_t s = 0; s < B.spring.size(); s++) {
+    for (size_t s = 0; s < B.geometric.size(); s++) {
       const int b = B.points + s;
-      t[k * b] = B.spring[s] * x[k * b];
-      slopes[k * k * b] = B.spring[s];
+      t[k * b] = B.geometric[s] * x[k * b];
+      slopes[k * k * b] = B.geometric[s];
     }
     unbalance = t;
     add(-1, tau, unbalance);
@@ -338,11 +338,11 @@ class Problem {
     // linear, sigma the change of velocity that full friction makes in the step.
     const int k = B.kinds, slips = law.slips, blocks = B.points;
     if (sigma.empty()) {
-      Vector full(x.size(), 0.), way;
+      Vector full(x.size(), 0.), increment;
       for (int b = 0; b < blocks; b++) full[k * b + 1] = t[k * b] * point[b].muStatic;
-      comply(full, way);
+      comply(full, increment);
       sigma.resize(blocks);
-      for (int b = 0; b < blocks; b++) sigma[b] = std::max(way[k * b + 1] / law.dt, law.slipVelocity);
+      for (int b = 0; b < blocks; b++) sigma[b] = std::max(increment[k * b + 1] / law.dt, law.slipVelocity);
     }
     Vector at(slips * blocks, NAN);
     for (int b = 0; b < blocks; b++) {
@@ -402,9 +402,9 @@ class Problem {
     for (int b = 0; b < B.points; b++) {
       Point &a = point[b];
       const double v = (law.slips == 1 ? std::abs(x[k * b + 1]) : std::hypot(x[k * b + 1], x[k * b + 2])) / law.dt;
-      if (!(t[k * b] > 0) || turned[b] > mostTurns || !(a.sticks ? v >= law.slipVelocity : v < sticksBelow)) continue;
+      if (!(t[k * b] > 0) || turned[b] > mostStatusChanges || !(a.sticks ? v >= law.slipVelocity : v < sticksBelow)) continue;
       turned[b]++;
-      if (a.sticks || turned[b] <= mostTurns) { a.sticks = !a.sticks;  changed++; }
+      if (a.sticks || turned[b] <= mostStatusChanges) { a.sticks = !a.sticks;  changed++; }
     }
     if (changed > 0) evaluate(nullptr);
     return changed;

@@ -38,7 +38,7 @@ static void tractions(Reals vN0, Reals place, Reals k, Ints of, Ints sticks, Rea
   }
 }
 
-static void sortRows(Ints row, Ints column, Reals value, Ints start, Ints unknowns, Reals values) {
+static void sortJacobian(Ints row, Ints column, Reals value, Ints start, Ints unknowns, Reals values) {
   // Triplets by rows, in their order.
   const long entries = row.n, rows = start.n - 1;
   start = 0L;
@@ -50,47 +50,47 @@ static void sortRows(Ints row, Ints column, Reals value, Ints start, Ints unknow
   for (long k = 0; k < entries; k++) { const long at = next[row[k]]++;  unknowns[at] = column[k];  values[at] = value[k]; }
 }
 
-static void take(Reals q, double reach, long kinds, Ints rowStart, Ints rowUnknown, Reals rowValue, Ints springUnknown, Reals springValue,
-                 Ints inWindow, Reals outWindow, Ints slots, Ints index, Ints unknowns) {
+static void take(Reals q, double searchDistance, long kinds, Ints jacobianStart, Ints jacobianUnknown, Reals jacobianValue, Ints geometricUnknown, Reals geometricValue,
+                 Ints inActiveSet, Reals outsideActiveSet, Ints candidates, Ints index, Ints unknowns) {
   // The slots with q > -reach join the window's, and the unknowns of all their rows and of the springs its unknowns.
   const long ns = q.n;
-  std::vector<long> slot = copied<long>(slots), unknown = copied<long>(unknowns);
+  std::vector<long> candidate = copied<long>(candidates), unknown = copied<long>(unknowns);
   const auto join = [&](long j, double value) { if (value != 0 && index[j] < 0) { index[j] = unknown.size();  unknown.push_back(j); } };
-  for (long s = 0; s < ns; s++) if (inWindow[s] == 0 && q[s] > -reach) { inWindow[s] = 1;  outWindow[s] = 0;  slot.push_back(s); }
-  for (long s : slot) for (long r = s; r < kinds * ns; r += ns)
-    for (long k = rowStart[r]; k < rowStart[r + 1]; k++) join(rowUnknown[k], rowValue[k]);
-  for (long k = 0; k < springUnknown.n; k++) join(springUnknown[k], springValue[k]);
-  slots.resize(slot.size());
+  for (long s = 0; s < ns; s++) if (inActiveSet[s] == 0 && q[s] > -searchDistance) { inActiveSet[s] = 1;  outsideActiveSet[s] = 0;  candidate.push_back(s); }
+  for (long s : candidate) for (long r = s; r < kinds * ns; r += ns)
+    for (long k = jacobianStart[r]; k < jacobianStart[r + 1]; k++) join(jacobianUnknown[k], jacobianValue[k]);
+  for (long k = 0; k < geometricUnknown.n; k++) join(geometricUnknown[k], geometricValue[k]);
+  candidates.resize(candidate.size());
   unknowns.resize(unknown.size());
-  std::copy(slot.begin(), slot.end(), (long *)slots);
+  std::copy(candidate.begin(), candidate.end(), (long *)candidates);
   std::copy(unknown.begin(), unknown.end(), (long *)unknowns);
 }
 
-static void setWindow(Ints slots, Ints index, long unknowns, long ns, Ints rowStart, Ints rowUnknown, Reals rowValue,
-                      Ints springOf, Ints springUnknown, Reals springValue, Reals springStiffness) {
+static void setActiveSet(Ints candidates, Ints index, long unknowns, long ns, Ints jacobianStart, Ints jacobianUnknown, Reals jacobianValue,
+                      Ints geometricOf, Ints geometricUnknown, Reals geometricValue, Reals geometricStiffness) {
   Rows &B = problem.B;
   const int kinds = 1 + law.slips;
   B.begin(unknowns, kinds);
-  for (int i = 0; i < slots.n; i++) {
-    for (int c = 0; c < kinds; c++) for (long r = slots[i] + c * ns, k = rowStart[r]; k < rowStart[r + 1]; k++)
-      if (rowValue[k] != 0) B.entry(index[rowUnknown[k]], c, rowValue[k]);
+  for (int i = 0; i < candidates.n; i++) {
+    for (int c = 0; c < kinds; c++) for (long r = candidates[i] + c * ns, k = jacobianStart[r]; k < jacobianStart[r + 1]; k++)
+      if (jacobianValue[k] != 0) B.entry(index[jacobianUnknown[k]], c, jacobianValue[k]);
     B.endPoint();
   }
-  for (int s = 0; s < springStiffness.n; s++) {
-    for (int k = 0; k < springOf.n; k++) if (springOf[k] == s && springValue[k] != 0) B.entry(index[springUnknown[k]], 0, springValue[k]);
+  for (int s = 0; s < geometricStiffness.n; s++) {
+    for (int k = 0; k < geometricOf.n; k++) if (geometricOf[k] == s && geometricValue[k] != 0) B.entry(index[geometricUnknown[k]], 0, geometricValue[k]);
     B.endPoint();
   }
-  B.end(copied<double>(springStiffness));
+  B.end(copied<double>(geometricStiffness));
 }
 
-static long solve(Ints slots, Reals q, Reals place, Reals ahead, double dt, long where, double enough, long known, Ints sticks, Ints turns,
+static long solve(Ints candidates, Reals q, Reals place, Reals ahead, double dt, long where, double enough, long known, Ints sticks, Ints turns,
                   Reals k, Reals muStatic, Reals muDynamic, long mostInverses, long &inversesOfStep, Reals tau, Reals force) {
   // Slots of the window; of all slots penetrations at the start, x_w, sides of the jump and how often they changed, stiffness,
   // coefficients. The springs are unstretched at -ahead. Of the last solve may serve the matrix (known = 2), what preconditions it (1), or
   // nothing.
   Problem &p = problem;
   const Rows &B = p.B;
-  const long points = slots.n, ns = q.n, kinds = B.kinds;
+  const long points = candidates.n, ns = q.n, kinds = B.kinds;
   law.dt = dt;
   law.where = where;
   p.enough = enough;
@@ -101,7 +101,7 @@ static long solve(Ints slots, Reals q, Reals place, Reals ahead, double dt, long
   B.pull(copied<double>(ahead), p.start);
   p.tau.assign(p.start.size(), 0.);
   for (int i = 0; i < points; i++) {
-    const long s = slots[i];
+    const long s = candidates[i];
     p.point[i] = {q[s], k[s], muStatic[s], muDynamic[s], sticks[s] == 1};
     p.turned[i] = turns[s];
     for (int c = 0; c < kinds; c++) { p.start[kinds * i + c] = place[s + c * ns];  p.tau[kinds * i + c] = tau[c * points + i]; }
@@ -110,7 +110,7 @@ static long solve(Ints slots, Reals q, Reals place, Reals ahead, double dt, long
   if (iterations < 0) return -1;
   for (int i = 0; i < points; i++) {
     for (int c = 0; c < kinds; c++) tau[c * points + i] = p.tau[kinds * i + c];
-    if (law.slips > 0) { sticks[slots[i]] = p.point[i].sticks;  turns[slots[i]] = p.turned[i]; }
+    if (law.slips > 0) { sticks[candidates[i]] = p.point[i].sticks;  turns[candidates[i]] = p.turned[i]; }
   }
   std::copy(p.force.begin(), p.force.end(), (double *)force);
   return iterations;
@@ -121,9 +121,9 @@ static void addContact() {
   ::add("kernelTractions", tractions);
   ::add("kernelSoft", +[](Table C) { problem.compliance(C.N(), &C(0, 0)); });
   ::add("kernelLoose", +[](Reals C) { problem.looseness(C.n, &C[0]); });
-  ::add("kernelSort", sortRows);
+  ::add("kernelSort", sortJacobian);
   ::add("kernelTake", take);
-  ::add("kernelWindow", setWindow);
+  ::add("kernelActiveSet", setActiveSet);
   ::add("kernelContact", solve);
 }
 

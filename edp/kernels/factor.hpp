@@ -242,7 +242,7 @@ public:
     for (size_t j = std::max(known, inside); j < k; j += lanes) {
       const size_t end = std::min(j + lanes, k);
       columns(u, j, end);
-      for (size_t b = j; b < end; b++) for (size_t i = 0; i <= b; i++) C[b * k + i] = C[i * k + b] = ways[i * lanes + b - j];
+      for (size_t b = j; b < end; b++) for (size_t i = 0; i <= b; i++) C[b * k + i] = C[i * k + b] = increments[i * lanes + b - j];
     }
   }
 
@@ -271,7 +271,7 @@ private:
   std::vector<int> ordered, last, place, blockOf;       // CHOLMOD's order; w; unknown -> where in L -> its block of columns
   std::vector<size_t> from;                // entry of A -> where in the blocks
   std::vector<double> value, tail, inverse;      // of A; L_ww (lower triangle by columns); S^-1 (likewise), empty until it is asked for
-  std::vector<double> doubles, y, z, right, ways;
+  std::vector<double> doubles, y, z, right, increments;
   std::vector<float> singles;              // L by blocks, in the one precision or the other
   std::vector<char> marked;                // blocks of L that lead from some unknowns to the last
   static const size_t lanes = 8;
@@ -362,20 +362,20 @@ private:
 
   // `ways`: A^-1 at the unknowns u, of the columns from u_from on, before u_to.
   void columns(const std::vector<int> &u, size_t from, size_t to) {
-    ways.assign(u.size() * lanes, 0.);
+    increments.assign(u.size() * lanes, 0.);
     if (!L->is_super) {
       for (size_t b = from; b < to; b++) {
         const double one = 1;
         z.resize(n);
         respond({u[b]}, &one, z.data());
-        for (size_t i = 0; i < u.size(); i++) ways[i * lanes + b - from] = z[u[i]];
+        for (size_t i = 0; i < u.size(); i++) increments[i * lanes + b - from] = z[u[i]];
       }
       return;
     }
     y.assign(n * lanes, 0.);
     for (size_t b = from; b < to; b++) y[place[u[b]] * lanes + b - from] = 1;
     if (single) substitute<float, Doubles>(y, &marked); else substitute<double, Doubles>(y, &marked);
-    for (size_t i = 0; i < u.size(); i++) std::copy_n(&y[place[u[i]] * lanes], lanes, &ways[i * lanes]);
+    for (size_t i = 0; i < u.size(); i++) std::copy_n(&y[place[u[i]] * lanes], lanes, &increments[i * lanes]);
   }
 
   // `marked`.

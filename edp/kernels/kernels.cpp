@@ -64,9 +64,9 @@ static void addBodies() {
     arrays.F0 = {&F0};  arrays.C0 = {&C0};  arrays.F1 = {&F1};  arrays.C1 = {&C1};  arrays.jacobian1 = {&jacobian1};
     arrays.Fs = {&Fs};  arrays.Ss = {&Ss};
   });
-  add("kernelVolume", +[](Ints cellOfPoint, Reals carried, Reals star, Reals now, Reals dBase, Reals lag) {
+  add("kernelVolume", +[](Ints elementOfPoint, Reals carried, Reals star, Reals now, Reals dBase, Reals lag) {
     arrays.carried = {&carried};  arrays.star = {&star};  arrays.now = {&now};  arrays.dBase = {&dBase};  arrays.lag = {&lag};
-    body.cells(copied<int>(cellOfPoint));
+    body.facets(copied<int>(elementOfPoint));
   });
   add("kernelForces", +[](Reals d, Reals inertiaKnown, Reals bodyForce, double massScale, double rate, long where, bool breaks,
                           bool carries, Reals residual) {

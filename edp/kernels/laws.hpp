@@ -100,7 +100,7 @@ struct Law {
   virtual ~Law() {}
   virtual Symmetric stress(const Material &m, const Symmetric &C) const = 0;
   virtual Symmetric algorithmicStress(const Material &m, const Symmetric &C0, const Symmetric &C1) const = 0;
-  virtual double workExcess(const Material &m, const Symmetric &M, const Symmetric &H) const = 0;
+  virtual double gradientCorrection(const Material &m, const Symmetric &M, const Symmetric &H) const = 0;
   virtual void addModuli(const Material &m, const Symmetric &C, Moduli &D) const = 0;
   virtual double ellipticity(const Material &m, const Symmetric &C, bool spatial) const = 0;
 };
@@ -110,7 +110,7 @@ template<class Own> struct Conserving : Law {
   Symmetric algorithmicStress(const Material &m, const Symmetric &C0, const Symmetric &C1) const {
     const Own &own = static_cast<const Own &>(*this);
     const Symmetric M = 0.5 * (C0 + C1), H = 0.5 * (C1 - C0), S = own.Own::stress(m, M);
-    return m.traced ? S : S + own.Own::workExcess(m, M, H) / (2 * contract(H, H) + 1e-300) * H;
+    return m.traced ? S : S + own.Own::gradientCorrection(m, M, H) / (2 * contract(H, H) + 1e-300) * H;
   }
 };
 
@@ -119,7 +119,7 @@ struct Svk : Conserving<Svk> {
     const Symmetric twiceE = C - identity;
     return m.lambda / 2 * trace(twiceE) * identity + m.mu * twiceE;
   }
-  double workExcess(const Material &, const Symmetric &, const Symmetric &) const { return 0; }
+  double gradientCorrection(const Material &, const Symmetric &, const Symmetric &) const { return 0; }
   void addModuli(const Material &m, const Symmetric &, Moduli &D) const { D.add(identity, identity, m.lambda, m.mu); }
   double ellipticity(const Material &m, const Symmetric &C, bool spatial) const {
     const double k = 1 + (m.lambda + m.bulk) / m.mu;
@@ -148,7 +148,7 @@ inline double atanhRest(double x) {
   return rest * y * x;
 }
 
-// The part -m ln J + l/2 (ln J)^2 of W: volumeStress(), volumeExcess(), volumeModuli() of neohookean.idp; not a number where det C <= 0.
+// The part -m ln J + l/2 (ln J)^2 of W: volumeStress(), volumeCorrection(), volumeModuli() of neohookean.idp; not a number where det C <= 0.
 // Both are asked of one C in every step: inlined, and with a logarithm that the compiler knows to have no effects, they share it.
 __attribute__((const, noinline)) inline double ln(double x) { return std::log(x); }
 #define SHARED __attribute__((always_inline)) inline
@@ -158,7 +158,7 @@ struct Logarithm {
     const double det = determinant(C);
     return (l / 2 * ln(det) - m) / det * cofactor(C);
   }
-  SHARED double workExcess(const Symmetric &M, const Symmetric &H) const {
+  SHARED double gradientCorrection(const Symmetric &M, const Symmetric &H) const {
     const double det = determinant(M), a = contract(cofactor(M), H) / det, b = contract(M, cofactor(H)) / det, c = determinant(H) / det;
     const double x = (a + c) / (1 + b), D = atanhRest(x) - x * b + c;
     if (l == 0) return -2 * m * D;
@@ -179,7 +179,7 @@ struct Logarithm {
 struct NeoHookean : Conserving<NeoHookean> {
   static Logarithm rest(const Material &m) { return {m.lambda, m.mu}; }
   Symmetric stress(const Material &m, const Symmetric &C) const { return rest(m).stress(C) + m.mu * identity; }   // (6)
-  double workExcess(const Material &m, const Symmetric &M, const Symmetric &H) const { return rest(m).workExcess(M, H); }
+  double gradientCorrection(const Material &m, const Symmetric &M, const Symmetric &H) const { return rest(m).gradientCorrection(M, H); }
   void addModuli(const Material &m, const Symmetric &C, Moduli &D) const { rest(m).addModuli(C, D); }
   double ellipticity(const Material &m, const Symmetric &C, bool spatial) const {
     return Logarithm{m.lambda + m.bulk, m.mu}.ellipticity(C, spatial, m.mu, m.mu);
@@ -192,7 +192,7 @@ struct MooneyRivlin : Conserving<MooneyRivlin> {
   Symmetric stress(const Material &m, const Symmetric &C) const {
     return rest(m).stress(C) + (m.mu - second(m) + second(m) * trace(C)) * identity - second(m) * C;
   }
-  double workExcess(const Material &m, const Symmetric &M, const Symmetric &H) const { return rest(m).workExcess(M, H); }
+  double gradientCorrection(const Material &m, const Symmetric &M, const Symmetric &H) const { return rest(m).gradientCorrection(M, H); }
   void addModuli(const Material &m, const Symmetric &C, Moduli &D) const {
     D.add(identity, identity, 2 * second(m), -second(m));
     rest(m).addModuli(C, D);
@@ -250,9 +250,9 @@ struct Ogden : Conserving<Ogden> {
     return std::pow(a * b, (p - 1) / 2) * std::sinh(p * y) / std::sinh(y);
   }
   Symmetric stress(const Material &m, const Symmetric &C) const { return rest(m).stress(C) + powers(m, C); }
-  double workExcess(const Material &m, const Symmetric &M, const Symmetric &H) const {
+  double gradientCorrection(const Material &m, const Symmetric &M, const Symmetric &H) const {
     const Symmetric S = powers(m, M), xH = std::sqrt(0.6) * H;
-    const double e = rest(m).workExcess(M, H);
+    const double e = rest(m).gradientCorrection(M, H);
     if (contract(H, H) > 1e-5) return e + 2 * (energy(m, M + H) - energy(m, M - H) - contract(S, H));
     return e + 5. / 9 * contract(powers(m, M + xH) + powers(m, M - xH) - 2 * S, H);
   }
@@ -302,7 +302,7 @@ inline const Law *known(const std::string &name) {
 // W(C) [J/m3], as accurate for small strains as for large ones: energyDensity() of law.idp.
 inline double energy(const Material &m, const Symmetric &C) {
   const Symmetric M = 0.5 * (C + identity), H = 0.5 * (C - identity);
-  return m.law->workExcess(m, M, H) / 2 + contract(m.law->stress(m, M), H);
+  return m.law->gradientCorrection(m, M, H) / 2 + contract(m.law->stress(m, M), H);
 }
 
 // G (1 - theta/2) of relaxation.idp [Pa] in a step of 1/rate.
@@ -323,7 +323,7 @@ inline Symmetric dampingStress(const Material &m, const Symmetric &C0, const Sym
   Symmetric S = {};
   if (m.eta > 0 || m.zeta > 0) S = viscousStress(m, C0, C1, rate);
   if (m.relaxing > 0) S += relaxedShare(m, rate) * (A - inverse(C))
-    + Logarithm{0, m.relaxing}.workExcess(C, H) / (2 * contract(H, H) + 1e-300) * H;
+    + Logarithm{0, m.relaxing}.gradientCorrection(C, H) / (2 * contract(H, H) + 1e-300) * H;
   return S;
 }
 

@@ -26,7 +26,7 @@ inline void monomials(const Vector<2> &r, Vector<6> &p, Vector<6> *slope) {
 }
 
 // The closest point of a cell: arm = y - x, and the tangents y' there.
-template<int A> struct Foot {
+template<int A> struct ClosestPoint {
   Vector<A - 1> r;
   Vector<A> arm, tangent[A - 1];
 };
@@ -34,14 +34,14 @@ template<int A> struct Foot {
 // y - x of a cell and a point, or how it changes in a step, by coefficients of the monomials.
 template<int A> using Patch = Vector<termsOf(A), Vector<A>>;
 
-template<int A> void evaluate(const Patch<A> &patch, Foot<A> &foot) {
+template<int A> void evaluate(const Patch<A> &patch, ClosestPoint<A> &closestPoint) {
   Vector<termsOf(A)> p, slope[A - 1];
-  monomials(foot.r, p, slope);
-  foot.arm = {};
-  for (int k = 0; k < termsOf(A); k++) foot.arm += p[k] * patch[k];
+  monomials(closestPoint.r, p, slope);
+  closestPoint.arm = {};
+  for (int k = 0; k < termsOf(A); k++) closestPoint.arm += p[k] * patch[k];
   for (int l = 0; l < A - 1; l++) {
-    foot.tangent[l] = {};
-    for (int k = 0; k < termsOf(A); k++) foot.tangent[l] += slope[l][k] * patch[k];
+    closestPoint.tangent[l] = {};
+    for (int k = 0; k < termsOf(A); k++) closestPoint.tangent[l] += slope[l][k] * patch[k];
   }
 }
 
@@ -57,7 +57,7 @@ struct Convergence {
   }
 };
 
-inline void closest(const Patch<2> &patch, Foot<2> &foot) {
+inline void closest(const Patch<2> &patch, ClosestPoint<2> &closestPoint) {
   const Vector<2> &a = patch[0], &b = patch[1], &c = patch[2], chord = b + c;
   const double c0 = dot(a, b), c1 = 2 * dot(a, c) + dot(b, b), c2 = 3 * dot(b, c), c3 = 2 * dot(c, c), square = dot(chord, chord);
   double r = clip(-dot(a, chord) / square);
@@ -68,8 +68,8 @@ inline void closest(const Patch<2> &patch, Foot<2> &foot) {
     steps.moved(std::abs(next - r));
     r = next;
   }
-  foot.r[0] = r;
-  evaluate<2>(patch, foot);
+  closestPoint.r[0] = r;
+  evaluate<2>(patch, closestPoint);
 }
 
 // r to the least of g.p + p.H p / 2, p from r on, on the triangle: inside it, or on one of its three edges.
@@ -87,22 +87,22 @@ inline Vector<2> stepOnFace(const Vector<2> &r, double gr, double gs, double hrr
   return model(slant) < model(one) ? slant : one;
 }
 
-inline void closest(const Patch<3> &patch, Foot<3> &foot) {
-  foot.r = {1. / 3, 1. / 3};
+inline void closest(const Patch<3> &patch, ClosestPoint<3> &closestPoint) {
+  closestPoint.r = {1. / 3, 1. / 3};
   Convergence steps;
   for (int it = 0; it < 20 && steps.going(); it++) {
-    evaluate<3>(patch, foot);
-    const Vector<3> &y = foot.arm, &yr = foot.tangent[0], &ys = foot.tangent[1];
+    evaluate<3>(patch, closestPoint);
+    const Vector<3> &y = closestPoint.arm, &yr = closestPoint.tangent[0], &ys = closestPoint.tangent[1];
     double hrr = dot(yr, yr), hrs = dot(yr, ys), hss = dot(ys, ys);
     const double krr = 2 * dot(y, patch[3]), krs = dot(y, patch[4]), kss = 2 * dot(y, patch[5]);
     // the curvature where the matrix stays definite with it; beyond the centre of curvature that of the tangents alone, so that it descends
     if ((hrr + krr) * (hss + kss) - (hrs + krs) * (hrs + krs) > 0.1 * (hrr * hss - hrs * hrs)
         && hrr + krr + hss + kss > 0) { hrr += krr;  hrs += krs;  hss += kss; }
-    const Vector<2> next = stepOnFace(foot.r, dot(y, yr), dot(y, ys), hrr, hrs, hss);
-    steps.moved(farthest(next, foot.r));
-    foot.r = next;
+    const Vector<2> next = stepOnFace(closestPoint.r, dot(y, yr), dot(y, ys), hrr, hrs, hss);
+    steps.moved(farthest(next, closestPoint.r));
+    closestPoint.r = next;
   }
-  evaluate<3>(patch, foot);
+  evaluate<3>(patch, closestPoint);
 }
 
 // Whether the foot is on a vertex of an edge, on an edge of a face: within round-off, then made so.
@@ -119,12 +119,12 @@ inline bool onBoundary(Vector<2> &r) {
 }
 
 // Outward normal of a cell; an edge has the body to its left.
-inline Vector<2> normalOf(const Foot<2> &foot, double) {
-  const Vector<2> &t = foot.tangent[0];
+inline Vector<2> normalOf(const ClosestPoint<2> &closestPoint, double) {
+  const Vector<2> &t = closestPoint.tangent[0];
   return 1 / std::max(1e-300, length(t)) * Vector<2>{t[1], -t[0]};
 }
-inline Vector<3> normalOf(const Foot<3> &foot, double side) {
-  const Vector<3> m = cross(foot.tangent[0], foot.tangent[1]);
+inline Vector<3> normalOf(const ClosestPoint<3> &closestPoint, double side) {
+  const Vector<3> m = cross(closestPoint.tangent[0], closestPoint.tangent[1]);
   return side / std::max(1e-300, length(m)) * m;
 }
 
@@ -136,11 +136,11 @@ inline void tangents(const Vector<3> &n, Vector<3> *t) {   // tangentFrames() of
 }
 
 // c of a row  f.rho + sum over l of c_l.(N_a,l delta y_a)  for the slip along t: the cell turns under the arm g n.
-inline void turning(const Foot<2> &foot, const Vector<2> &, const Vector<2> &m, const Vector<2> &, double g, Vector<2> *c) {
-  c[0] = -g / length(foot.tangent[0]) * m;
+inline void turning(const ClosestPoint<2> &closestPoint, const Vector<2> &, const Vector<2> &m, const Vector<2> &, double g, Vector<2> *c) {
+  c[0] = -g / length(closestPoint.tangent[0]) * m;
 }
-inline void turning(const Foot<3> &foot, const Vector<3> &n, const Vector<3> &m, const Vector<3> &t, double g, Vector<3> *c) {
-  const Vector<3> &yr = foot.tangent[0], &ys = foot.tangent[1], about = cross(n, t), tau = g * (about - 0.5 * dot(m, about) * m);
+inline void turning(const ClosestPoint<3> &closestPoint, const Vector<3> &n, const Vector<3> &m, const Vector<3> &t, double g, Vector<3> *c) {
+  const Vector<3> &yr = closestPoint.tangent[0], &ys = closestPoint.tangent[1], about = cross(n, t), tau = g * (about - 0.5 * dot(m, about) * m);
   const double rr = dot(yr, yr), rs = dot(yr, ys), ss = dot(ys, ys), det = rr * ss - rs * rs;
   c[0] = cross(ss / det * yr - rs / det * ys, tau);
   c[1] = cross(rr / det * ys - rs / det * yr, tau);
@@ -148,11 +148,11 @@ inline void turning(const Foot<3> &foot, const Vector<3> &n, const Vector<3> &m,
 
 // What the outline or surface is, once; its arrays as in pair.idp.
 struct Surface {
-  int cells, nodes, points, np, obstacles, bodies;   // nodes and points of a cell
+  int facets, nodes, points, np, obstacles, bodies;   // nodes and points of a cell
   std::vector<int> unknown, body;          // of component i of node a of a cell at (i nodes + a) cells + cell
   std::vector<double> side, pointShape;    // N_a of a point at a np + point
-  std::vector<int> touchesItself;          // (bodies)
-  std::vector<double> reference, middle, outward, room;   // nodal positions in the reference; of the cells there as in pair.idp
+  std::vector<int> selfContact;          // (bodies)
+  std::vector<double> reference, middle, outward, capacity;   // nodal positions in the reference; of the cells there as in pair.idp
   std::vector<double> shape;               // N_a = shape(a, :) . monomials, by rows
 };
 
@@ -160,15 +160,15 @@ struct Rows { Ints row, unknown;  Reals normal, slip; };
 
 struct AnyPairs {
   virtual ~AnyPairs() {}
-  virtual long search(const double *x, double reach) = 0;
+  virtual long search(const double *x, double searchDistance) = 0;
   virtual long start(const double *x, long unknowns) = 0;
   virtual void gaps(const double *d, double *q0, double *q1, const Rows &rows) = 0;
-  virtual long springs(const double *t, const double *free, const double *most, Ints of, Ints unknown, Reals value, Reals stiffness) = 0;
+  virtual long geometricTerms(const double *t, const double *free, const double *most, Ints of, Ints unknown, Reals value, Reals stiffness) = 0;
 };
 
 template<int A> class Pairs : public AnyPairs {
 public:
-  explicit Pairs(Surface given) : surface(std::move(given)), beside(A == 2 ? 2 * surface.cells : 0, -1) {
+  explicit Pairs(Surface given) : surface(std::move(given)), beside(A == 2 ? 2 * surface.facets : 0, -1) {
     std::map<int, size_t> first;             // of a vertex the first edge's end there
     for (size_t k = 0; k < beside.size(); k++) {
       const auto [at, is_new] = first.insert({node(int(k / 2), 0, int(k % 2)), k});
@@ -176,27 +176,27 @@ public:
     }
   }
 
-  long search(const double *x, double reach) {
+  long search(const double *x, double searchDistance) {
     const Surface &s = surface;
-    this->reach = reach;
-    low.assign(s.cells, {});
-    high.assign(s.cells, {});
+    this->searchDistance = searchDistance;
+    low.assign(s.facets, {});
+    high.assign(s.facets, {});
     std::vector<std::pair<long, int>> found;   // slot, cell
-    for (int c = 0; c < s.cells; c++) box(x, c);
-    for (int c = 0; c < s.cells; c++) for (int e = c + 1; e < s.cells; e++)
-      if (meet(c, e) && (s.body[c] != s.body[e] || (s.touchesItself[s.body[c]] && sightOf(c, e) > 0))) {
+    for (int c = 0; c < s.facets; c++) box(x, c);
+    for (int c = 0; c < s.facets; c++) for (int e = c + 1; e < s.facets; e++)
+      if (contactInSubstep(c, e) && (s.body[c] != s.body[e] || (s.selfContact[s.body[c]] && sightOf(c, e) > 0))) {
         join(x, c, e, found);
         join(x, e, c, found);
       }
     std::sort(found.begin(), found.end());
     found.erase(std::unique(found.begin(), found.end()), found.end());
-    slot.clear();  first.clear();  cell.clear();
+    candidate.clear();  first.clear();  cell.clear();
     for (const auto &one : found) {
-      if (slot.empty() || slot.back() != one.first) { slot.push_back(one.first);  first.push_back(int(cell.size())); }
+      if (candidate.empty() || candidate.back() != one.first) { candidate.push_back(one.first);  first.push_back(int(cell.size())); }
       cell.push_back(one.second);
     }
     first.push_back(int(cell.size()));
-    return long(slot.size());
+    return long(candidate.size());
   }
 
   long start(const double *x, long unknowns) {
@@ -205,29 +205,29 @@ public:
     roundOff = 1e-13 * size;
     patches(x, patchAtStart);
     startGap.clear();  startUnseen.clear();
-    std::vector<long> slots;
-    std::vector<int> firsts = {0}, cells;
+    std::vector<long> candidates;
+    std::vector<int> firsts = {0}, facets;
     std::vector<Patch<A>> kept;
-    for (size_t k = 0; k < slot.size(); k++) {
+    for (size_t k = 0; k < candidate.size(); k++) {
       const Place place = project(patchAtStart, int(k));
-      if (A == 3 && place.gap > reach) continue;   // the boxes were wider
+      if (A == 3 && place.gap > searchDistance) continue;   // the boxes were wider
       for (int e = first[k]; e < first[k + 1]; e++)
-        if (A == 2 || length(feet[e - first[k]].arm) <= std::abs(place.gap) + 2 * reach) {
-          cells.push_back(cell[e]);
+        if (A == 2 || length(closestPoints[e - first[k]].arm) <= std::abs(place.gap) + 2 * searchDistance) {
+          facets.push_back(cell[e]);
           kept.push_back(patchAtStart[e]);
         }
-      slots.push_back(slot[k]);
-      firsts.push_back(int(cells.size()));
+      candidates.push_back(candidate[k]);
+      firsts.push_back(int(facets.size()));
       startGap.push_back(gapOf(int(k), place));
       startUnseen.push_back(place.unseen);
     }
-    slot.swap(slots);  first.swap(firsts);  cell.swap(cells);  patchAtStart.swap(kept);
-    before.assign(slot.size(), {-1, 0, 0, {}});
-    return long(slot.size());
+    candidate.swap(candidates);  first.swap(firsts);  cell.swap(facets);  patchAtStart.swap(kept);
+    before.assign(candidate.size(), {-1, 0, 0, {}});
+    return long(candidate.size());
   }
 
   void gaps(const double *d, double *q0, double *q1, const Rows &rows) {
-    const long n = long(slot.size()), entries = 2 * A * surface.nodes * n;
+    const long n = long(candidate.size()), entries = 2 * A * surface.nodes * n;
     rows.row.resize(entries);  rows.unknown.resize(entries);  rows.normal.resize(entries);  rows.slip.resize((A - 1) * entries);
     patches(d, step);
     middle = end = patchAtStart;
@@ -238,21 +238,21 @@ public:
       const Place last = project(end, k);
       const double endGap = gapOf(k, last);
       const bool seen = !startUnseen[k] && !now[k].unseen && !last.unseen;
-      if (seen) { q0[slot[k]] = -startGap[k];  q1[slot[k]] = -endGap; }
+      if (seen) { q0[candidate[k]] = -startGap[k];  q1[candidate[k]] = -endGap; }
       row(k, n, seen, endGap - startGap[k], rows);
     }
   }
 
-  long springs(const double *t, const double *free, const double *most, Ints of, Ints unknown, Reals value, Reals stiffness) {
+  long geometricTerms(const double *t, const double *free, const double *most, Ints of, Ints unknown, Reals value, Reals stiffness) {
     const Surface &s = surface;
-    const int n = int(slot.size()), blocks = A * s.nodes;
+    const int n = int(candidate.size()), blocks = A * s.nodes;
     if (A == 3) return 0;
     std::vector<int> at;
     std::vector<double> c;
     for (int k = 0; k < n; k++) {
-      const double spring = std::min(turned(k, t[slot[k]]), most[slot[k]]);
-      if (spring > 0) { at.push_back(k);  c.push_back(spring); }
-      before[k] = {cell[now[k].pick], now[k].foot.r[0], length(now[k].foot.tangent[0]), now[k].n};
+      const double geometric = std::min(turned(k, t[candidate[k]]), most[candidate[k]]);
+      if (geometric > 0) { at.push_back(k);  c.push_back(geometric); }
+      before[k] = {cell[now[k].pick], now[k].closestPoint.r[0], length(now[k].closestPoint.tangent[0]), now[k].n};
     }
     const int found = int(at.size());
     stiffness.resize(found);  of.resize(2 * blocks * found);  unknown.resize(2 * blocks * found);  value.resize(2 * blocks * found);
@@ -273,24 +273,24 @@ public:
 private:
   // Of a slot in one configuration: the candidate that is closest and where, its own normal m, the gap and its normal n; whether there is
   // none.
-  struct Place { int pick;  Foot<A> foot;  Vector<A> m, n;  double gap;  bool unseen; };
+  struct Place { int pick;  ClosestPoint<A> closestPoint;  Vector<A> m, n;  double gap;  bool unseen; };
   struct Before { int cell;  double r, length;  Vector<A> n; };   // at the evaluation before; cell -1: there is none in this step
 
   Surface surface;
   std::vector<int> beside;                 // of an edge in the plane those at its two ends; -1: none
-  double reach = 0, roundOff = 0;          // [m]
+  double searchDistance = 0, roundOff = 0;          // [m]
   std::vector<Vector<A>> low, high;        // (cells) boxes, with half of the reach
-  std::vector<long> slot;                  // (n)
+  std::vector<long> candidate;                  // (n)
   std::vector<int> first, cell;            // (n + 1) of slot k the candidates first[k] .. first[k + 1] - 1; their cells
   std::vector<Patch<A>> patchAtStart, step, middle, end;
   std::vector<double> startGap;
   std::vector<bool> startUnseen;
   std::vector<Place> now;                  // in the middle configuration
   std::vector<Before> before;
-  std::vector<Foot<A>> feet;               // of the slot at hand
+  std::vector<ClosestPoint<A>> closestPoints;               // of the slot at hand
   std::vector<bool> tied;                  // which of them meet where the closest is
 
-  int node(int c, int i, int a) const { return surface.unknown[(i * surface.nodes + a) * surface.cells + c]; }
+  int node(int c, int i, int a) const { return surface.unknown[(i * surface.nodes + a) * surface.facets + c]; }
   Vector<A> nodePlace(const double *x, int c, int a) const {
     Vector<A> y;
     for (int i = 0; i < A; i++) y[i] = x[node(c, i, a)];
@@ -330,12 +330,12 @@ private:
         l = std::min(l, control);
         h = std::max(h, control);
       }
-      l -= bend + reach / 2;
-      h += bend + reach / 2;
+      l -= bend + searchDistance / 2;
+      h += bend + searchDistance / 2;
     }
   }
 
-  bool meet(int c, int e) const {
+  bool contactInSubstep(int c, int e) const {
     for (int i = 0; i < A; i++) if (low[c][i] > high[e][i] || high[c][i] < low[e][i]) return false;
     return true;
   }
@@ -346,7 +346,7 @@ private:
     double ahead = 0, behind = 0, turned = 0, square = 0;
     bool shared = false;
     for (int a = 0; a < A; a++) for (int b = 0; b < A; b++) shared = shared || node(c, 0, a) == node(e, 0, b);
-    for (size_t i = 0; i < s.middle.size(); i += s.cells) {
+    for (size_t i = 0; i < s.middle.size(); i += s.facets) {
       const double w = s.middle[i + e] - s.middle[i + c];
       ahead += s.outward[i + c] * w;
       behind += s.outward[i + e] * w;
@@ -355,40 +355,40 @@ private:
     }
     const bool turns = turned < std::cos(80 * M_PI / 180);
     if (turns && std::min(ahead, -behind) > 1e-9 * std::sqrt(square)) return 2;
-    return !shared && (turns || std::sqrt(square) > s.room[c] + s.room[e]) ? 1 : 0;
+    return !shared && (turns || std::sqrt(square) > s.capacity[c] + s.capacity[e]) ? 1 : 0;
   }
 
   // The gap of slot k; of a point of a body inside that body it is positive at a foot that it does not touch.
   double gapOf(int k, const Place &place) const {
     const Surface &s = surface;
-    const int p = int(slot[k] % s.np), c = cell[place.pick];
-    if (place.gap >= 0 || slot[k] / s.np < s.obstacles + s.bodies - 1) return place.gap;
-    if (-place.gap <= reach && sightOf(p / s.points, c) == 2) return place.gap;
+    const int p = int(candidate[k] % s.np), c = cell[place.pick];
+    if (place.gap >= 0 || candidate[k] / s.np < s.obstacles + s.bodies - 1) return place.gap;
+    if (-place.gap <= searchDistance && sightOf(p / s.points, c) == 2) return place.gap;
     Vector<A> apart = pointPlace(s.reference.data(), p);
-    shapes(place.foot.r, [&](int a, double N, const double *) { apart -= N * nodePlace(s.reference.data(), c, a); });
-    return -place.gap <= std::min(reach, 0.1 * length(apart)) ? place.gap : -place.gap;
+    shapes(place.closestPoint.r, [&](int a, double N, const double *) { apart -= N * nodePlace(s.reference.data(), c, a); });
+    return -place.gap <= std::min(searchDistance, 0.1 * length(apart)) ? place.gap : -place.gap;
   }
 
   // Points of a cell within reach of the box of another; in the plane they know the edges beside that, too: on a vertex both tell the side.
   void join(const double *x, int own, int other, std::vector<std::pair<long, int>> &found) const {
     const Surface &s = surface;
-    const int partner = s.obstacles + (s.body[other] == s.body[own] ? s.bodies - 1 : s.body[other] - (s.body[other] > s.body[own] ? 1 : 0));
+    const int counterBody = s.obstacles + (s.body[other] == s.body[own] ? s.bodies - 1 : s.body[other] - (s.body[other] > s.body[own] ? 1 : 0));
     for (int p = own * s.points; p < (own + 1) * s.points; p++) {
       const Vector<A> y = pointPlace(x, p);
       bool near = true;
-      for (int i = 0; i < A; i++) near = near && y[i] >= low[other][i] - reach / 2 && y[i] <= high[other][i] + reach / 2;
+      for (int i = 0; i < A; i++) near = near && y[i] >= low[other][i] - searchDistance / 2 && y[i] <= high[other][i] + searchDistance / 2;
       if (!near) continue;
-      found.push_back({long(partner) * s.np + p, other});
+      found.push_back({long(counterBody) * s.np + p, other});
       for (size_t k = 2 * other; A == 2 && k < size_t(2 * other + 2); k++)
         if (beside[k] >= 0 && (s.body[other] != s.body[own] || sightOf(own, beside[k]) > 0))
-          found.push_back({long(partner) * s.np + p, beside[k]});
+          found.push_back({long(counterBody) * s.np + p, beside[k]});
     }
   }
 
   void patches(const double *w, std::vector<Patch<A>> &all) const {
     all.assign(cell.size(), Patch<A>{});
-    for (size_t k = 0; k < slot.size(); k++) {
-      const Vector<A> point = pointPlace(w, int(slot[k] % surface.np));
+    for (size_t k = 0; k < candidate.size(); k++) {
+      const Vector<A> point = pointPlace(w, int(candidate[k] % surface.np));
       for (int e = first[k]; e < first[k + 1]; e++) {
         for (int a = 0; a < surface.nodes; a++) {
           const Vector<A> y = nodePlace(w, cell[e], a);
@@ -404,40 +404,40 @@ private:
     const int m = first[k + 1] - first[k];
     const double nearer = A == 3 ? 1 - 2e-13 : 1;   // of faces that are as near to round-off the first
     int pick = 0;
-    feet.resize(m);
+    closestPoints.resize(m);
     for (int e = 0; e < m; e++) {
-      closest(patch[first[k] + e], feet[e]);
-      const double off = dot(feet[e].arm, feet[e].arm) - nearer * dot(feet[pick].arm, feet[pick].arm);
+      closest(patch[first[k] + e], closestPoints[e]);
+      const double off = dot(closestPoints[e].arm, closestPoints[e].arm) - nearer * dot(closestPoints[pick].arm, closestPoints[pick].arm);
       if (off < 0 || (A == 2 && off == 0)) pick = e;
     }
-    Vector<A - 1> r = feet[pick].r;
+    Vector<A - 1> r = closestPoints[pick].r;
     // of several cells that meet there the edge that ends in the vertex, the first face: which of them turns with the rows is not left to
     // round-off
     if (onBoundary(r)) {
-      meetAt(patch, k, cell[first[k] + pick], r);
-      for (int e = m - 1; e >= 0; e--) if (tied[e] && (A == 3 ? e < pick : feet[e].r[0] == 1)) pick = e;
-      r = feet[pick].r;
+      pairAt(patch, k, cell[first[k] + pick], r);
+      for (int e = m - 1; e >= 0; e--) if (tied[e] && (A == 3 ? e < pick : closestPoints[e].r[0] == 1)) pick = e;
+      r = closestPoints[pick].r;
     }
     Place place;
     const bool edge = onBoundary(r);
     place.pick = first[k] + pick;
-    place.foot.r = r;
-    evaluate<A>(patch[place.pick], place.foot);
-    place.m = place.n = normalOf(place.foot, surface.side[cell[place.pick]]);
-    place.gap = -dot(place.foot.arm, place.n);
+    place.closestPoint.r = r;
+    evaluate<A>(patch[place.pick], place.closestPoint);
+    place.m = place.n = normalOf(place.closestPoint, surface.side[cell[place.pick]]);
+    place.gap = -dot(place.closestPoint.arm, place.n);
     place.unseen = false;
-    if (edge) onEdge(place, k, feet[pick].arm);
+    if (edge) onEdge(place, k, closestPoints[pick].arm);
     // no touch; farther than the search looked the side is not known
-    if (A == 3 && std::abs(place.gap) > reach) place.gap = std::abs(place.gap);
+    if (A == 3 && std::abs(place.gap) > searchDistance) place.gap = std::abs(place.gap);
     return place;
   }
 
   // The candidates of slot k that have the vertex or the edge of a cell in common on which r is: tied, with their feet there (Newton leaves
   // each its own).
-  void meetAt(const std::vector<Patch<A>> &patch, int k, int c, const Vector<A - 1> &r) {
+  void pairAt(const std::vector<Patch<A>> &patch, int k, int c, const Vector<A - 1> &r) {
     Vector<A> weight = {1};                // of the corners
     for (int l = 1; l < A; l++) { weight[l] = r[l - 1];  weight[0] -= r[l - 1]; }
-    tied.assign(feet.size(), false);
+    tied.assign(closestPoints.size(), false);
     for (int e = first[k]; e < first[k + 1]; e++) {
       Vector<A> there = {};
       int missing = 0;
@@ -446,10 +446,10 @@ private:
         for (int b = 0; b < A; b++) if (node(c, 0, a) == node(cell[e], 0, b)) { missing--;  there[b] = weight[a]; }
       }
       if (missing > 0) continue;
-      Foot<A> &foot = feet[e - first[k]];
+      ClosestPoint<A> &closestPoint = closestPoints[e - first[k]];
       tied[e - first[k]] = true;
-      for (int l = 1; l < A; l++) foot.r[l - 1] = there[l];
-      evaluate<A>(patch[e], foot);
+      for (int l = 1; l < A; l++) closestPoint.r[l - 1] = there[l];
+      evaluate<A>(patch[e], closestPoint);
     }
   }
 
@@ -459,7 +459,7 @@ private:
     Vector<A> mean = {};
     int count = 0;
     for (int e = first[k]; e < first[k + 1]; e++) {
-      if (tied[e - first[k]]) { mean += normalOf(feet[e - first[k]], surface.side[cell[e]]);  count++; }
+      if (tied[e - first[k]]) { mean += normalOf(closestPoints[e - first[k]], surface.side[cell[e]]);  count++; }
     }
     mean *= 1 / std::max(1e-300, length(mean));
     const double distance = length(arm), side = -dot(arm, mean);
@@ -471,9 +471,9 @@ private:
   // Every entry of a row of slot k: its block, unknown, component; of rho N_a, at the cell -N_a, and there N_a,l.
   template<class Function> void each(int k, const Place &place, Function entry) const {
     const Surface &s = surface;
-    const int p = int(slot[k] % s.np), c = cell[place.pick], blocks = A * s.nodes;
+    const int p = int(candidate[k] % s.np), c = cell[place.pick], blocks = A * s.nodes;
     const double none[A - 1] = {};
-    shapes(place.foot.r, [&](int a, double N, const double *turn) {
+    shapes(place.closestPoint.r, [&](int a, double N, const double *turn) {
       for (int i = 0; i < A; i++) {
         entry(i * s.nodes + a, node(p / s.points, i, a), i, s.pointShape[a * s.np + p], none);
         entry(blocks + i * s.nodes + a, node(c, i, a), i, -N, turn);
@@ -487,15 +487,15 @@ private:
     const long entries = 2 * A * surface.nodes * n;
     Vector<A> t[A - 1], f[A], c[A][A - 1];   // f and c_l: of B, then of each S
     Vector<A - 1> s;
-    Foot<A> motion;
-    motion.r = p.foot.r;
+    ClosestPoint<A> motion;
+    motion.r = p.closestPoint.r;
     evaluate<A>(step[p.pick], motion);               // -rho, N_a,l delta y_a
     tangents(p.n, t);
     const double a = -dot(p.n, motion.arm);
     double most = std::abs(a), square = a * a;
     for (int j = 0; j < A - 1; j++) {
       f[j + 1] = t[j];
-      turning(p.foot, p.n, p.m, t[j], p.gap, c[j + 1]);
+      turning(p.closestPoint, p.n, p.m, t[j], p.gap, c[j + 1]);
       s[j] = -dot(t[j], motion.arm);
       for (int l = 0; l < A - 1; l++) s[j] += dot(c[j + 1][l], motion.tangent[l]);
       most = std::max(most, std::abs(s[j]));
@@ -510,7 +510,7 @@ private:
     }
     each(k, p, [&](int block, int unknown, int i, double N, const double *turn) {
       const long at = k * 2L * A * surface.nodes + block;
-      rows.row[at] = slot[k];
+      rows.row[at] = candidate[k];
       rows.unknown[at] = unknown;
       for (int j = 0; j < A; j++) {
         double value = f[j][i] * N;
@@ -525,15 +525,15 @@ private:
     const Place &p = now[k];
     const Before &was = before[k];
     const int own = cell[p.pick];
-    const double r = p.foot.r[0];
+    const double r = p.closestPoint.r[0];
     if (p.gap >= 0 || t <= 0) return 0;
     if (r == 0 || r == 1) return t / (-2 * p.gap);
     if (was.cell < 0) return 0;
     const bool same = was.cell == own, onwards = node(was.cell, 0, 1) == node(own, 0, 0) || (same && was.r == 0);
     const bool back = node(was.cell, 0, 0) == node(own, 0, 1) || (same && was.r == 1);
-    const int ways = int(onwards) - int(back);   // 1 along the edges, -1 against, 0 not over a vertex
-    const double way = same ? 0 : (ways > 0 ? 1 - was.r : was.r) * was.length, theta = ways * (was.n[1] * p.n[0] - was.n[0] * p.n[1]);
-    return theta > 1e-8 ? t * theta / (2 * (way + (ways > 0 ? r : 1 - r) * length(p.foot.tangent[0]) - p.gap * theta)) : 0;
+    const int increments = int(onwards) - int(back);   // 1 along the edges, -1 against, 0 not over a vertex
+    const double increment = same ? 0 : (increments > 0 ? 1 - was.r : was.r) * was.length, theta = increments * (was.n[1] * p.n[0] - was.n[0] * p.n[1]);
+    return theta > 1e-8 ? t * theta / (2 * (increment + (increments > 0 ? r : 1 - r) * length(p.closestPoint.tangent[0]) - p.gap * theta)) : 0;
   }
 };
 
@@ -541,22 +541,22 @@ static std::unique_ptr<AnyPairs> known;
 
 static void addPairs() {
   ::add("kernelSurface", +[](Table shape, long points, long obstacles, long bodies, Ints unknown, Ints body, Reals side, Reals pointShape,
-                           Ints touchesItself, Reals reference, Reals middle, Reals outward, Reals room) {
-    const int cells = int(body.N()), nodes = int(shape.N());
-    Surface s = {cells, nodes, int(points), cells * int(points), int(obstacles), int(bodies),
+                           Ints selfContact, Reals reference, Reals middle, Reals outward, Reals capacity) {
+    const int facets = int(body.N()), nodes = int(shape.N());
+    Surface s = {facets, nodes, int(points), facets * int(points), int(obstacles), int(bodies),
                  copied<int>(unknown), copied<int>(body), copied<double>(side), copied<double>(pointShape),
-                 copied<int>(touchesItself), copied<double>(reference), copied<double>(middle), copied<double>(outward),
-                 copied<double>(room), {}};
+                 copied<int>(selfContact), copied<double>(reference), copied<double>(middle), copied<double>(outward),
+                 copied<double>(capacity), {}};
     for (int a = 0; a < nodes; a++) for (int j = 0; j < shape.M(); j++) s.shape.push_back(shape(a, j));
     if (shape.M() == termsOf(2)) known.reset(new Pairs<2>(s)); else known.reset(new Pairs<3>(s));
   });
-  ::add("kernelSearchPairs", +[](Reals x, double reach) { return known->search(x, reach); });
+  ::add("kernelSearchPairs", +[](Reals x, double searchDistance) { return known->search(x, searchDistance); });
   ::add("kernelPairStart", +[](Reals x) { return known->start(x, x.N()); });
   ::add("kernelPairGaps", +[](Reals d, Reals q0, Reals q1, Ints row, Ints unknown, Reals normal, Reals slip) {
     known->gaps(d, q0, q1, {row, unknown, normal, slip});
   });
-  ::add("kernelPairSprings", +[](Reals t, Reals free, Reals most, Ints of, Ints unknown, Reals value, Reals stiffness) {
-    return known->springs(t, free, most, of, unknown, value, stiffness);
+  ::add("kernelPairGeometricTerms", +[](Reals t, Reals free, Reals most, Ints of, Ints unknown, Reals value, Reals stiffness) {
+    return known->geometricTerms(t, free, most, of, unknown, value, stiffness);
   });
 }
 

@@ -63,10 +63,10 @@ class Surface {
   // The gap of p, its outward normal n.
   double gap(const Point &p, Point &n) const {
     double best = 1e300;
-    Point foot = {0, 0, 0}, normal = {0, 0, 1};
+    Point closestPoint = {0, 0, 0}, normal = {0, 0, 1};
     bool inside = false;
-    look(0, p, best, foot, normal, inside);
-    const Point away = p - foot;
+    look(0, p, best, closestPoint, normal, inside);
+    const Point away = p - closestPoint;
     const double distance = size(away), side = dot(away, normal) < 0 ? -1 : 1;
     const double scale = size(normal);
     n = inside || distance == 0 ? (1 / scale) * normal : (side / distance) * away;
@@ -103,20 +103,20 @@ class Surface {
     return at;
   }
 
-  void look(int at, const Point &p, double &best, Point &foot, Point &normal, bool &inside) const {
+  void look(int at, const Point &p, double &best, Point &closestPoint, Point &normal, bool &inside) const {
     const Node &node = nodes[at];
     if (node.left < 0) {
-      for (int k = node.from; k < node.to; k++) closest(order[k], p, best, foot, normal, inside);
+      for (int k = node.from; k < node.to; k++) closest(order[k], p, best, closestPoint, normal, inside);
       return;
     }
     int near = node.left, far = node.right;
     if (nodes[far].box.distance2(p) < nodes[near].box.distance2(p)) std::swap(near, far);
-    if (nodes[near].box.distance2(p) < best) look(near, p, best, foot, normal, inside);
-    if (nodes[far].box.distance2(p) < best) look(far, p, best, foot, normal, inside);
+    if (nodes[near].box.distance2(p) < best) look(near, p, best, closestPoint, normal, inside);
+    if (nodes[far].box.distance2(p) < best) look(far, p, best, closestPoint, normal, inside);
   }
 
   // The closest point of triangle t (Ericson 2005, Real-Time Collision Detection, 5.1.5), where it is nearer than `best` (squared).
-  void closest(int t, const Point &p, double &best, Point &foot, Point &normal, bool &inside) const {
+  void closest(int t, const Point &p, double &best, Point &closestPoint, Point &normal, bool &inside) const {
     const auto &v = triangle[t];
     const Point a = vertex[v[0]], b = vertex[v[1]], c = vertex[v[2]], ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
     const double d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp), d6 = dot(ac, cp);
@@ -124,7 +124,7 @@ class Surface {
     auto take = [&](const Point &q, const Point &n, bool face) {
       const Point r = p - q;
       const double d = dot(r, r);
-      if (d < best) { best = d;  foot = q;  normal = n;  inside = face; }
+      if (d < best) { best = d;  closestPoint = q;  normal = n;  inside = face; }
     };
     if (d1 <= 0 && d2 <= 0) return take(a, vertexNormal[v[0]], false);
     if (d3 >= 0 && d4 <= d3) return take(b, vertexNormal[v[1]], false);
