@@ -176,7 +176,7 @@ class Loop:
         return moment / self.area
 
     def placed(self, centre: np.ndarray, angle: float) -> "Loop":
-        """The loop, turned counter-clockwise about the origin by angle [rad], moved by `centre` [m].
+        """The loop, turned counter-clockwise about the origin by angle [rad], moved by `centre`.
 
         A turned ellipse remains an ellipse.
         """
@@ -239,7 +239,7 @@ class Shape:
         )
 
     def normal_from(self, other) -> np.ndarray:
-        """The outward normal (axes,) of another body or obstacle at its point closest to this one."""
+        """The outward normal (axes,) of another body or obstacle where this shape is closest."""
         if not getattr(other, "is_exact", True):
             return other.nearest(self)[1]
         if self.disc:
