@@ -41,7 +41,8 @@ class Geometry:
     """A geometry in a file.
 
     `scale` is the length of a unit of the file [m]. `centre` (3,) [m] is the centre of volume in
-    the coordinates of the file. `coarse` is a mesh about this centre that only represents the shape.
+    the coordinates of the file. `coarse` is a mesh about this centre that represents only the
+    shape.
     """
 
     path: Path
@@ -68,8 +69,8 @@ def takes_in_others(path: Path) -> bool:
 def read(path: Path) -> SolidMesh:
     """The mesh of a file, or a mesh that only represents the shape of a geometry.
 
-    Lengths are in units of the file. Raises BadInput, with the name of the file, if the file cannot
-    be used.
+    Lengths are those of the coordinates in the file. Raises BadInput, with the name of the file, if
+    the file cannot be used.
     """
     if path.suffix.lower() not in MESHES + GEOMETRIES:
         raise BadInput(
@@ -89,9 +90,9 @@ def read(path: Path) -> SolidMesh:
 def meshed(path: Path, sizes: Sizes | None = None, cut: float = SHAPE_CUT) -> SolidMesh:
     """The mesh of a file, or the mesh that gmsh generates for a geometry.
 
-    `sizes` are element sizes in units of the file; without them the mesh is coarse. `cut` is the
-    share that flat elements cut off at roundings (rounding.py). Raises BadInput with the name of
-    the file.
+    `sizes` are element sizes in the coordinates of the file; without them the mesh is coarse. `cut`
+    is the largest share of the bounding box that flat elements cut off at roundings (rounding.py).
+    Raises BadInput, with the name of the file, if the file cannot be used.
     """
     try:
         return in_own_process(_taken, path, sizes, cut)
