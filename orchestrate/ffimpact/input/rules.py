@@ -36,10 +36,10 @@ __all__ = [
     "vector",
 ]
 
-LONGEST = 1e9  # [m, m/s], larger than any length or velocity of a scene
+LONGEST = 1e9  # largest accepted length [m] and velocity [m/s]
 # Largest number of points of a polygon or a chain, whose sides are compared with each other.
 MOST = 2000
-SHORTEST = 1e-9  # [m], smaller than any length of a scene
+SHORTEST = 1e-9  # smallest accepted length [m]
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_.-]*")
 # The two entries of each kind of region. Points and directions have a component for each axis; a
 # radius is a number.
