@@ -190,8 +190,8 @@ def closest(points: np.ndarray, code: list[float], limit: float) -> tuple[np.nda
 
     Each iteration projects the points onto the tangent plane of D at the present closest points.
     It stops for points whose distance exceeds 2 `limit`. The first iterates lie beside the points:
-    the bottom of a hollow is another fixed point of the iteration, but it is repelling unless it is
-    the closest point.
+    the bottom of a concave region is another fixed point of the iteration, but it is repelling
+    unless it is the closest point.
     """
     at = points + BESIDE * limit * _along_surface(run(code, points)[1])
     sides, distance = {}, np.zeros(len(points))

@@ -86,7 +86,8 @@ def _sphere(points: np.ndarray) -> Curved | None:
     found, *_ = np.linalg.lstsq(
         np.column_stack([2 * local, np.ones(len(local))]), (local**2).sum(axis=1), rcond=None
     )
-    radius = math.sqrt(max(found[3] + (found[:3] ** 2).sum(), 0.0))  # r^2 - 2 r c + c^2 = R^2
+    # The linear equations are 2 x.c + (R^2 - c^2) = x^2, with the centre c and the radius R.
+    radius = math.sqrt(max(found[3] + (found[:3] ** 2).sum(), 0.0))
     on = abs(np.linalg.norm(local - found[:3], axis=1) - radius).max() <= ON * radius
     return Curved(middle + scale * found[:3], np.array([]), scale * radius) if on else None
 
