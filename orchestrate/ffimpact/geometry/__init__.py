@@ -1,1 +1,1 @@
-"""Curves and motions as formulas, without a mesh."""
+"""Curves, surfaces and motions that are given by formulas and need no mesh."""

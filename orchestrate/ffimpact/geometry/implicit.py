@@ -1,7 +1,9 @@
-"""Obstacles by a signed distance, an expression of x, y (and z) [m] (docs: scenes): positive
-outside, 0 on the surface, any smooth one that is not constant there. It becomes a program of
-numbers for a stack, which FreeFEM runs (edp/core/contact/shapes.idp: what they mean, and how the
-gap comes from it); `gap` does the same.
+"""Implicit obstacles: the surface D(x) = 0 of an expression D of x, y (and z) [m] (docs: scenes).
+
+D is positive outside the solid, smooth, and not constant on the surface. It need not be a distance.
+The expression is translated into a list of numbers, the program of a stack machine. FreeFEM runs
+this program; edp/core/contact/shapes.idp documents the numbers and the gap that follows from D.
+`gap` computes the same gap in Python.
 """
 
 import ast
@@ -26,28 +28,34 @@ __all__ = [
 ]
 
 ACCEPTED = "numbers, pi, {names}, + - * / ^, sin cos sqrt exp abs min max and parentheses"
-LONGEST = 1000  # characters of an expression
+LONGEST = 1000  # largest number of characters of an expression
+# Numbers of the stack operations with two operands and with one operand.
 TWO = {ast.Add: 4, ast.Sub: 5, ast.Mult: 6, ast.Div: 7, ast.Pow: 8, "min": 9, "max": 10}
 ONE = {ast.USub: 11, "sin": 12, "cos": 13, "sqrt": 14, "exp": 15, "abs": 16}
-TINY = 1e-300  # so that the slope of a root of 0 is that of what is in it, where this has none
-TURNS = 60  # towards the closest point, at most
-CLOSE = 1e-9  # of `limit`: how near it is at last
-BESIDE = 1e-6  # of `limit`: how far beside a point its iteration begins
-SAMPLES = 4000  # points at which steepness and curvature are looked for
-STEEPEST = 1e150  # beyond, squares overflow: of the expression the sign alone is known
-FARTHEST = 1e4  # how far, over the size of all bodies, the surface is looked for
+# Added to the denominator of the derivative of sqrt: at sqrt(0) the derivative stays finite, and
+# the chain rule gives 0 where the gradient of the argument is 0.
+TINY = 1e-300
+TURNS = 60  # largest number of iterations of the closest-point projection
+CLOSE = 1e-9  # convergence tolerance of the closest-point projection, relative to `limit`
+BESIDE = 1e-6  # tangential offset of the first iterate from the point, relative to `limit`
+SAMPLES = 4000  # number of points at which gradient and curvature are sampled
+# Largest gradient whose square does not overflow. Beyond it only the sign of D is used.
+STEEPEST = 1e150
+FARTHEST = 1e4  # largest factor by which the box of the bodies grows in search of the surface
 
 
 @dataclass(frozen=True)
 class Stop(Exception):
-    """What of an expression is not accepted."""
+    """An expression is not accepted; `what` is the text of the part that is refused."""
 
     what: str
 
 
 def program(entry: str, text: object, names: str) -> tuple[float, ...]:
-    """The program of an expression of variables with names of one letter. BadInput, naming the
-    entry.
+    """Translates an expression into the program of the stack machine.
+
+    `names` contains the names of the variables, one letter each. Raises BadInput, with the name of
+    the entry, if the text is not an accepted expression.
     """
     accepted = f"(accepted: {ACCEPTED.format(names=', '.join(names))})"
     if not isinstance(text, str) or not text.strip():
@@ -96,8 +104,8 @@ def _tokens(node: ast.AST, names: str) -> list[float]:
     raise Stop(ast.unparse(node))
 
 
-# Of every operation on a (and b): its value and its derivatives by a and b. `side` is what min, max
-# and abs take: 1 where it is a, or the sign of a.
+# Each operation on a (and b) returns its value and its derivatives with respect to a and b. `side`
+# is the branch of min, max and abs: 1 where min and max select a, else 0; of abs the sign of a.
 OPERATIONS = {
     4: lambda a, b, side: (a + b, 1, 1),
     5: lambda a, b, side: (a - b, 1, -1),
@@ -123,8 +131,10 @@ SIDES = {
 def run(
     code: tuple[float, ...], points: np.ndarray, sides: dict | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """D (n,) and its gradient (n, axes) at points (n, axes). `sides`: what min, max and abs
-    take in each place; put in where missing.
+    """Returns D (n,) and its gradient (n, axes) at points (n, axes).
+
+    `sides` holds the branches of min, max and abs, by the position of the operation in the program.
+    Branches in `sides` are kept; a missing branch is chosen at these points and added to `sides`.
     """
     stack, entries, sides, eye = (
         [],
@@ -153,9 +163,11 @@ def run(
 
 
 def gap(points: np.ndarray, numbers: tuple[float, ...], bounds: bool = True) -> np.ndarray:
-    """Signed distances (n,) of points (n, axes) from the surface; where they are more than
-    about `limit`, no more than these, or, without `bounds`, to first order of the
-    expression.
+    """Signed distances (n,) [m] of points (n, axes) from the surface.
+
+    Distances up to about `limit` are exact. Larger values are D / max(steepest, |grad D|), a lower
+    bound of the distance, or without `bounds` D / |grad D|, the distance to first order.
+    `numbers` are those that `settled` returns: steepest, limit and the program.
     """
     steepest, limit, *code = numbers
     with np.errstate(all="ignore"):
@@ -174,10 +186,12 @@ def gap(points: np.ndarray, numbers: tuple[float, ...], bounds: bool = True) -> 
 
 
 def closest(points: np.ndarray, code: list[float], limit: float) -> tuple[np.ndarray, np.ndarray]:
-    """Distances (n,) of points near the surface, and the closest points of it (n, axes):
-    projected on the tangent plane of D there, again and again, unless they turn out to be
-    farther than twice `limit`. The iteration begins beside each point: the bottom of a hollow
-    is a fixed point of it as well, but repels if it is not the closest point.
+    """Closest-point projection: signed distances (n,) of points (n, axes), and the closest points.
+
+    Each iteration projects the points onto the tangent plane of D at the present closest points.
+    It stops for points whose distance exceeds 2 `limit`. The first iterates lie beside the points:
+    the bottom of a concave region is another fixed point of the iteration, but it is repelling
+    unless it is the closest point.
     """
     at = points + BESIDE * limit * _along_surface(run(code, points)[1])
     sides, distance = {}, np.zeros(len(points))
@@ -196,7 +210,7 @@ def closest(points: np.ndarray, code: list[float], limit: float) -> tuple[np.nda
 
 
 def _along_surface(slope: np.ndarray) -> np.ndarray:
-    """Directions (n, axes) across the normals, along no axis in general."""
+    """Tangential directions (n, axes) at gradients (n, axes), in general not along an axis."""
     normal = slope / np.linalg.norm(slope, axis=1)[:, None]
     if slope.shape[1] == 2:
         return normal[:, ::-1] * [1.0, -1.0]
@@ -210,9 +224,12 @@ def nearest(
     limit: float,
     disc: tuple[np.ndarray, float] | None,
 ) -> tuple[float, np.ndarray]:
-    """Gap and outward normal at a point of a body. If that is a disc or ball, centre and
-    radius, and near, at its lowest point as the normal there sees it: centre - radius n, again
-    and again.
+    """Gap [m] and outward normal (axes,) of the obstacle at the closest point of a body.
+
+    `point` (axes,) is the sampled point of the body with the least gap, `gap`. Farther than `limit`
+    the function returns this gap and the direction of the gradient. Nearer than `limit` it projects
+    the point onto the surface. For a disc or ball, `disc` = (centre, radius), it iterates with
+    point = centre - radius n, where n is the normal at the closest point of the surface.
     """
     value, slope = run(code, point[None])
     if abs(value[0]) >= limit * np.linalg.norm(slope):
@@ -230,9 +247,13 @@ def nearest(
 def settled(
     path: str, code: tuple[float, ...], centre: np.ndarray, half: float
 ) -> tuple[float, ...]:
-    """The numbers of an obstacle: steepest, limit, program; from points of a box around
-    `centre` (axes,) of the bodies, at first of the half size `half`, so large that it holds
-    some of the surface.
+    """Returns the numbers of an obstacle: steepest, limit [m] and the program of D.
+
+    `steepest` is 1.1 times the largest gradient of D, and `limit` is a third of the smallest convex
+    or concave radius of curvature, `half` at most. Both are sampled in a box around the `centre`
+    (axes,) of the bodies. The box begins with half the side length `half` [m] and is doubled until
+    it contains a part of the surface. Raises BadInput, with the name path.distance, if D has no
+    value or gradient at a point, or if no surface is found.
     """
     cube, growth = np.random.default_rng(1).uniform(-1, 1, (SAMPLES, len(centre))), 1
     while True:
@@ -257,7 +278,8 @@ def settled(
         size = np.linalg.norm(slope, axis=1)
         on = closest(points[abs(value) < 0.1 * growth * half * size], code, half)[1]
         on = on[(abs(on - centre) <= growth * half).all(axis=1)]
-        # not that of a corner, which grows
+        # Next to a corner the estimate depends on the step: the smaller of two estimates leaves out
+        # most of these points.
         bend = np.minimum(
             *(abs(bending(code, on, step * half)).max(axis=1) for step in (1e-3, 1e-4))
         ).max(initial=0.0)
@@ -265,8 +287,10 @@ def settled(
 
 
 def bending(code: tuple[float, ...], points: np.ndarray, step: float) -> np.ndarray:
-    """Curvatures (n, axes) of the surface at points of it, 1/m, along each axis projected on
-    it, positive where it bulges out: the change of the normal along the way 2 `step`.
+    """Curvatures (n, axes) [1/m] of the surface at points (n, axes) on it, positive where convex.
+
+    Component i is the curvature along axis i projected onto the surface: the change of the normal
+    between the points at -step and +step [m], divided by 2 step.
     """
 
     def normals(at: np.ndarray) -> np.ndarray:
@@ -276,9 +300,8 @@ def bending(code: tuple[float, ...], points: np.ndarray, step: float) -> np.ndar
     n, found = normals(points), []
     for axis in np.eye(points.shape[1]):
         along = axis - n * (n @ axis)[:, None]
-        along /= np.maximum(np.linalg.norm(along, axis=1), 0.3)[
-            :, None
-        ]  # an axis nearly across says nothing
+        # The short projection of an axis that is nearly normal to the surface is not scaled to 1.
+        along /= np.maximum(np.linalg.norm(along, axis=1), 0.3)[:, None]
         found.append(
             np.sum(
                 along * (normals(points + step * along) - normals(points - step * along)), axis=1
@@ -289,8 +312,9 @@ def bending(code: tuple[float, ...], points: np.ndarray, step: float) -> np.ndar
 
 
 def radius_at(point: np.ndarray, numbers: tuple[float, ...]) -> float:
-    """The smallest radius of curvature [m] of the surface where it is nearest to a point
-    (axes,), infinite where it is hollow or flat.
+    """The smallest radius of curvature [m] of the surface at the point closest to `point` (axes,).
+
+    The radius is infinite where the surface is concave or flat.
     """
     _, limit, *code = numbers
     with np.errstate(all="ignore"):
@@ -299,8 +323,9 @@ def radius_at(point: np.ndarray, numbers: tuple[float, ...]) -> float:
 
 
 def is_mirrored(code: tuple[float, ...], axis: int, axes: int) -> bool:
-    """Whether the expression is the same on both sides of the plane through the origin across
-    an axis.
+    """Whether D is symmetric about the plane through the origin that is normal to an axis.
+
+    The values are compared at random points, to a relative 1e-10.
     """
     points = np.random.default_rng(2).normal(size=(SAMPLES, axes))
     points *= np.logspace(-4, 2, SAMPLES)[:, None]

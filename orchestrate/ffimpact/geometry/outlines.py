@@ -1,5 +1,6 @@
-"""Outlines in the plane: closed curves, their areas, what is inside, distances to them. Points are
-arrays (n, 2) in m.
+"""Outlines in the plane: closed curves, their areas and centres, and signed distances from them.
+
+Points are arrays (n, 2) in m.
 """
 
 import math
@@ -28,19 +29,24 @@ __all__ = [
     "signed_area",
 ]
 
-SAMPLES = 400  # points on a loop where its shape is wanted as a polygon
-CHUNK = 500  # points at a time, against as many segments as there are
-FINEST = 4000  # points on an outline at most where it is asked what touches
+SAMPLES = 400  # approximate number of sides of the polygon that represents a loop
+CHUNK = 500  # number of sides that are compared with all other sides in one array operation
+# Largest and smallest number of points on an outline for the search of contact.
+FINEST = 4000
 COARSEST = 400
-FLUSH = 1e-6  # of the bounding radius: gaps that differ by no more are one face on another
+# Gaps whose difference is at most FLUSH times the bounding radius belong to one face that lies flat
+# on the other surface.
+FLUSH = 1e-6
 
 
 @dataclass(frozen=True)
 class Loop:
-    """A closed curve, counter-clockwise: the polygon through `corners`, or, where `semi_axes`
-    are given, the ellipse whose four extreme points (right, top, left, bottom) the corners are.
-    Piece k leads from corner k to the next, straight or, where `hubs` (n, 2) has a centre for
-    it and not nan, along a circle.
+    """A closed counter-clockwise curve: a polygon, an ellipse, or a chain of lines and arcs.
+
+    Segment k leads from corner k of `corners` (n, 2) [m] to the next corner. It is an arc if row k
+    of `hubs` (n, 2) [m] contains the centre of an arc, and straight if the row is nan. If
+    `semi_axes` (2,) [m] is set, the loop is an ellipse, and the four corners are its extreme points
+    (right, top, left, bottom).
     """
 
     corners: np.ndarray
@@ -49,18 +55,18 @@ class Loop:
 
     @property
     def centre(self) -> np.ndarray:
-        """Centre of the ellipse."""
+        """The mean of the corners, which is the centre of an ellipse."""
         return self.corners.mean(axis=0)
 
     @property
     def radius(self) -> float | None:
-        """That of a circle, None for anything else."""
+        """The radius [m] of a circle; None for all other loops."""
         is_circle = self.semi_axes is not None and self.semi_axes[0] == self.semi_axes[1]
         return float(self.semi_axes[0]) if is_circle else None
 
     @property
     def circles(self) -> list[tuple[np.ndarray, float]]:
-        """Centres and radii of the circles that it is, or that pieces of it lie on."""
+        """Centres (2,) and radii [m] of the circles on which segments lie, each circle once."""
         if self.hubs is None:
             return [(self.centre, self.radius)] if self.radius else []
         which, first, *_ = self._arcs
@@ -74,8 +80,9 @@ class Loop:
 
     @cached_property
     def _arcs(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Pieces along circles: which, the radius vectors of their ends, and the angles
-        [rad] between these, positive counter-clockwise.
+        """The arcs: numbers of the segments, radius vectors of both ends (arcs, 2), angles [rad].
+
+        The angles (arcs,) from the first to the second vector are positive counter-clockwise.
         """
         which = (
             np.flatnonzero(~np.isnan(self.hubs[:, 0]))
@@ -89,8 +96,9 @@ class Loop:
         return which, a, b, np.arctan2(cross(a, b), (a * b).sum(axis=1))
 
     def at(self, piece: int, s: np.ndarray) -> np.ndarray:
-        """Points of a piece at the parameters s in [0, 1]; s = 0 is the corner itself,
-        where there are no hubs to the last digit.
+        """Points (n, 2) of segment `piece` at the parameters s (n,) in [0, 1].
+
+        At s = 0 the point is the first corner, exactly in a loop without arcs, else to round-off.
         """
         a, b = self.corners[piece], self.corners[(piece + 1) % len(self.corners)]
         which, first, last, angles = self._arcs
@@ -100,21 +108,19 @@ class Loop:
             return self.hubs[piece] + along / np.sin(turn)
         if self.semi_axes is None:
             return a + s[:, None] * (b - a)
-        turn = (
-            np.pi / 2 * s[:, None]
-        )  # the ellipse is an affine circle: conjugate radii a - c and b - c
+        # An ellipse is an affine image of a circle with the conjugate radii a - c and b - c.
+        turn = np.pi / 2 * s[:, None]
         return self.centre + np.cos(turn) * (a - self.centre) + np.sin(turn) * (b - self.centre)
 
     def sampled(self, spacing: float) -> np.ndarray:
-        """The loop as a polygon with all its corners and sides up to about `spacing`."""
-        counts = [
-            max(1, int(np.ceil(length / spacing - 1e-9))) for length in self.lengths
-        ]  # not one more by round-off
+        """The loop as a polygon (n, 2) with all corners and sides of up to about `spacing` [m]."""
+        # 1e-9 keeps round-off from adding a point
+        counts = [max(1, int(np.ceil(length / spacing - 1e-9))) for length in self.lengths]
         return np.vstack([self.at(k, np.arange(n) / n) for k, n in enumerate(counts)])
 
     @cached_property
     def lengths(self) -> np.ndarray:
-        """Lengths of the pieces; of an ellipse to a millionth."""
+        """The lengths (n,) [m] of the segments; for an ellipse to a relative 1e-6."""
         s = np.linspace(0, 1, 2 if self.semi_axes is None and self.hubs is None else 1001)
         return np.array(
             [
@@ -125,26 +131,28 @@ class Loop:
 
     @cached_property
     def polygon(self) -> np.ndarray:
-        """The loop as a polygon of some hundreds of sides, all its corners among them."""
+        """The loop as a polygon (n, 2) of about SAMPLES sides that contains all corners."""
         return self.sampled(self.lengths.sum() / SAMPLES)
 
     @property
     def sides(self) -> np.ndarray:
-        """The polygon with as few corners as tell its shape."""
+        """The corners (n, 2) of a polygon; for other loops the polygon of about SAMPLES sides."""
         return self.corners if self.semi_axes is None and self.hubs is None else self.polygon
 
     @property
     def area(self) -> float:
-        """Area inside, positive."""
+        """The enclosed area [m2], positive."""
         if self.semi_axes is not None:
             return float(np.pi * np.prod(self.semi_axes))
         return signed_area(self.corners) + float(self._segments[0].sum())
 
     @property
     def _segments(self) -> tuple[np.ndarray, np.ndarray]:
-        """Areas between arcs and their chords (arcs,), and first moments (arcs, 2) of these
-        about the hubs: of a sector a x b (a + b)/(3 (1 + cos)), of its triangle a x b (a +
-        b)/6.
+        """Areas (arcs,) [m2] between arcs and chords, and their first moments (arcs, 2) [m3].
+
+        The moments are about the centres of the arcs. With the radius vectors a and b of the ends
+        and the angle t between them, the moment of the sector is a x b (a + b) / (3 (1 + cos t)),
+        that of its triangle a x b (a + b) / 6.
         """
         _, a, b, turn = self._arcs
         square = cross(a, b)
@@ -154,7 +162,7 @@ class Loop:
 
     @property
     def area_centre(self) -> np.ndarray:
-        """Centre of the area inside."""
+        """The centroid (2,) [m] of the enclosed area."""
         if self.semi_axes is not None:
             return self.centre
         areas, moments = self._segments
@@ -168,8 +176,9 @@ class Loop:
         return moment / self.area
 
     def placed(self, centre: np.ndarray, angle: float) -> "Loop":
-        """The loop turned about the origin by angle [rad], counter-clockwise, and moved by
-        `centre`. A turned ellipse stays one.
+        """The loop, turned counter-clockwise about the origin by angle [rad], moved by `centre`.
+
+        A turned ellipse remains an ellipse.
         """
         turn = rotation(angle).T
         return replace(
@@ -179,10 +188,10 @@ class Loop:
         )
 
     def gap(self, points: np.ndarray) -> np.ndarray:
-        """Signed distances (n,) of points from the loop, negative inside."""
+        """Signed distances (n,) [m] of points (n, 2) from the loop, negative inside."""
         if self.radius:
             return np.linalg.norm(points - self.centre, axis=1) - self.radius
-        import shapely  # here: a disc needs none
+        import shapely  # imported here: circles do not need it
 
         distance = shapely.distance(shapely.LinearRing(self.sides), shapely.points(points))
         return np.where(
@@ -191,27 +200,28 @@ class Loop:
 
 
 def polygon_loop(corners: np.ndarray, hubs: np.ndarray | None = None) -> Loop:
-    """The polygon through the corners, or along the circles about hubs, turned
-    counter-clockwise.
-    """
+    """The loop through the corners (n, 2), along arcs about `hubs`, made counter-clockwise."""
     if signed_area(corners) > 0:
         return Loop(corners, hubs=hubs)
     return Loop(corners[::-1], hubs=None if hubs is None else np.roll(hubs[::-1], -1, axis=0))
 
 
 def ellipse_loop(a: float, b: float) -> Loop:
-    """The ellipse about the origin with semi-axes a along x and b along y."""
+    """The ellipse about the origin with the semi-axes a along x and b along y [m]."""
     return Loop(np.array([[a, 0.0], [0.0, b], [-a, 0.0], [0.0, -b]]), np.array([a, b]))
 
 
 def circle_loop(radius: float) -> Loop:
-    """The circle about the origin."""
+    """The circle about the origin with a radius [m]."""
     return ellipse_loop(radius, radius)
 
 
 class Shape:
-    """What an outline in the plane and a solid have in common: `points` on them, signed
-    distances `gap` from them, and, of a disc or ball, `disc`.
+    """The common base of outlines in the plane and of solids.
+
+    `points` (n, axes) [m] lie on the boundary, `reach` [m] is the bounding radius, `gap` returns
+    signed distances (n,) [m] of points (n, axes). `disc` is the centre and radius of a disc or
+    ball, and None for other shapes.
     """
 
     points: np.ndarray
@@ -220,13 +230,16 @@ class Shape:
     gap: Callable[[np.ndarray], np.ndarray]
 
     def least(self, gap: Callable[[np.ndarray], np.ndarray]) -> float:
-        """The least value of a distance on it: of a disc or ball exactly, else at its points."""
+        """The least value [m] of a distance function on the shape.
+
+        For a disc or ball the value is exact; for other shapes it is the minimum over `points`.
+        """
         return float(
             gap(self.disc[0][None])[0] - self.disc[1] if self.disc else gap(self.points).min()
         )
 
     def normal_from(self, other) -> np.ndarray:
-        """The outward normal of another body or an obstacle where this one is nearest to it."""
+        """The outward normal (axes,) of another body or obstacle where this shape is closest."""
         if not getattr(other, "is_exact", True):
             return other.nearest(self)[1]
         if self.disc:
@@ -234,9 +247,8 @@ class Shape:
         if getattr(other, "disc", None):
             return -normal_of(self, other.disc[0])
         gaps = other.gap(self.points)
-        touching = self.points[
-            gaps <= gaps.min() + FLUSH * self.reach
-        ]  # of a face that lies on another its middle has a normal
+        # If a face lies flat on the other surface, the point next to its middle defines the normal.
+        touching = self.points[gaps <= gaps.min() + FLUSH * self.reach]
         return normal_of(
             other, touching[np.linalg.norm(touching - touching.mean(axis=0), axis=1).argmin()]
         )
@@ -244,7 +256,7 @@ class Shape:
 
 @dataclass(frozen=True)
 class Outline(Shape):
-    """What bounds a body: the loop around it first, then those of its holes."""
+    """The boundary of a body: the outer loop first, then the loops of the holes."""
 
     loops: tuple[Loop, ...]
 
@@ -265,24 +277,22 @@ class Outline(Shape):
 
     @cached_property
     def points(self) -> np.ndarray:
-        """Points on all loops."""
+        """Points (n, 2) [m] on all loops."""
         return np.vstack([loop.polygon for loop in self.loops])
 
     @property
     def extent(self) -> np.ndarray:
-        """Width and height."""
+        """Width and height (2,) [m]."""
         return np.ptp(self.loops[0].polygon, axis=0)
 
     @cached_property
     def reach(self) -> float:
-        """Distance of its farthest point from the centre of its area."""
+        """The bounding radius [m] about the centroid of the area."""
         return float(np.linalg.norm(self.loops[0].polygon - self.area_centre, axis=1).max())
 
     @cached_property
     def gyration(self) -> float:
-        """The square [m2] of its radius of gyration about the centre of its area, of
-        polygons of some hundreds of sides.
-        """
+        """The squared radius of gyration [m2] about the centroid, from the loops as polygons."""
         first, moments, areas = [loop.polygon - self.area_centre for loop in self.loops], [], []
         for a, b in ((one, np.roll(one, -1, axis=0)) for one in first):
             areas.append(cross(a, b).sum() / 2)
@@ -291,43 +301,50 @@ class Outline(Shape):
 
     @property
     def half_thickness(self) -> float:
-        """What stands for the radius of a body that is no disc: half its smaller extent, or
-        2 area / length where that is less (the radius of a disc, the wall of a ring).
+        """The length [m] that replaces the radius for a body that is not a disc.
+
+        It is the smaller of half the smaller extent and 2 area / length of the boundary, which is
+        the radius of a disc and the wall thickness of a ring.
         """
         return float(min(self.extent.min() / 2, 2 * self.area / self.length))
 
     def placed(self, centre: np.ndarray, angle: float) -> "Outline":
         found = Outline(tuple(loop.placed(centre, angle) for loop in self.loops))
-        found.__dict__["reach"] = self.reach  # of hundreds of sides: not once more for every place
+        found.__dict__["reach"] = self.reach  # independent of the position: not computed again
         return found
 
     def turned(self, angle: float, spin: float, t: float) -> float:
-        """The angle [rad] with what a spin [rad/s] adds in the time t."""
+        """The angle [rad] of a body at time t [s], from its angle at t = 0 and its spin [rad/s]."""
         return angle + spin * t
 
     def fastest(self, angle: float, spin: float) -> float:
-        """No spin [rad/s] is larger that it comes to."""
+        """The upper bound of the angular velocity [rad/s], which is constant in the plane."""
         return abs(spin)
 
     def carried(self, moved: "Outline", points: np.ndarray) -> np.ndarray:
-        """Points of this outline carried along to where it is moved, rigidly."""
+        """Points (n, 2) of this outline after the rigid motion that takes it to `moved`."""
         a, b = self.loops[0].corners[:2]
         c, d = moved.loops[0].corners[:2]
         turn = complex(*(d - c)) / complex(*(b - a))
         return c + (points - a) @ np.array([[turn.real, -turn.imag], [turn.imag, turn.real]]).T
 
     def samples(self, size: float) -> tuple[np.ndarray, float]:
-        """Points on it, twice as dense as elements of a size, and their distance [m]."""
+        """Points (n, 2) on the outline, two per element of a size [m], and their spacing [m].
+
+        Their number is limited to the range from COARSEST to FINEST.
+        """
         spacing = self.length / np.clip(2 * self.length / size, COARSEST, FINEST)
         return np.vstack([loop.sampled(spacing) for loop in self.loops]), spacing
 
     def width(self, points: np.ndarray, spacing: float) -> float:
-        """Of a stretch with these of the samples."""
+        """The length [m] of a stretch of the outline that contains these samples."""
         return (max(2, len(points)) - 1) * spacing
 
     def folding(self, revolved: bool = False) -> float:
-        """The strain (or less) of the body bent until its outline, or half a section,
-        touches itself; infinite where it never does.
+        """A lower estimate of the bending strain at which the body comes into contact with itself.
+
+        It is infinite if no two parts of the outline face each other. `revolved`: the outline is
+        the section of a body of revolution, and only parts on one side of the axis are compared.
         """
         return min(
             folding(loop.polygon[:: 1 if k == 0 else -1], self.half_thickness, revolved)
@@ -336,13 +353,14 @@ class Outline(Shape):
 
     @property
     def disc(self) -> tuple[np.ndarray, float] | None:
-        """Centre and radius of a disc, None for anything else."""
+        """The centre (2,) and radius [m] of a disc; None for all other outlines."""
         whole = len(self.loops) == 1 and self.loops[0].radius
         return (self.loops[0].centre, whole) if whole else None
 
     def gap(self, points: np.ndarray) -> np.ndarray:
-        """Signed distances (n,) of points from the body, negative in its material, positive
-        outside and in its holes.
+        """Signed distances (n,) [m] of points (n, 2) from the body.
+
+        They are negative in the material, positive outside and in the holes.
         """
         outer, *holes = self.loops
         return np.max([outer.gap(points), *(-hole.gap(points) for hole in holes)], axis=0)
@@ -350,46 +368,49 @@ class Outline(Shape):
 
 @dataclass(frozen=True)
 class TubeOutline(Outline):
-    """The section of a body of revolution that does not reach the axis: a loop to the right of
-    it, and its mirror image. `loops` are these two.
+    """The section of a body of revolution that does not reach the axis.
+
+    `loops` contains the loop to the right of the axis and its mirror image.
     """
 
     @property
     def area(self) -> float:
-        """Of both."""
+        """The area [m2] of both loops."""
         return sum(loop.area for loop in self.loops)
 
     @property
     def area_centre(self) -> np.ndarray:
-        """On the axis."""
+        """The centroid (2,) [m] of both loops, on the axis."""
         return sum(loop.area_centre for loop in self.loops) / 2
 
     @property
     def extent(self) -> np.ndarray:
-        """Width and height of the right loop: of the wall."""
+        """Width and height (2,) [m] of the right loop, which is the section of the wall."""
         return np.ptp(self.loops[0].polygon, axis=0)
 
     @property
     def disc(self) -> None:
-        """None: it is no ball."""
+        """None, because a tube is not a ball."""
         return None
 
     def placed(self, centre: np.ndarray, angle: float) -> "TubeOutline":
-        """The same elsewhere."""
+        """The section, turned about the origin by angle [rad] and moved by `centre` (2,) [m]."""
         return TubeOutline(tuple(loop.placed(centre, angle) for loop in self.loops))
 
     def folding(self, revolved: bool = False) -> float:
-        """As of an outline: of the right loop."""
+        """The estimate of `Outline.folding`, for the right loop alone."""
         return folding(self.loops[0].polygon, self.half_thickness, revolved)
 
     def gap(self, points: np.ndarray) -> np.ndarray:
-        """Signed distances (n,) of points from the nearer of both."""
+        """Signed distances (n,) [m] of points (n, 2) from the nearer loop."""
         return np.min([loop.gap(points) for loop in self.loops], axis=0)
 
 
 def normal_of(other, point: np.ndarray) -> np.ndarray:
-    """The gradient (axes,) of the distance from a body or an obstacle, the outward normal, to
-    eight digits; 0 where there is none.
+    """The outward normal (axes,) of a body or an obstacle at a point (axes,).
+
+    The normal is the gradient of the signed distance, from central differences of fourth order,
+    rounded to eight decimals. It is 0 where the gradient vanishes.
     """
     h = max(1e-7 * np.abs(point).max(), 1e-3 * abs(other.gap(point[None])[0]), SHORTEST)
     slope = [
@@ -400,46 +421,49 @@ def normal_of(other, point: np.ndarray) -> np.ndarray:
         / (2 * k * h)
         for k in (1, 2)
     ]
-    normal = np.round((4 * slope[0] - slope[1]) / 3, 8)  # of fourth order
+    normal = np.round((4 * slope[0] - slope[1]) / 3, 8)  # Richardson: fourth order
     return normal / max(np.linalg.norm(normal), 0.5)
 
 
-# ---- polygons, (n, 2), closed from the last to the first
+# ---- polygons: corners (n, 2) [m], closed from the last corner to the first
 
 
 def rotation(angle: float) -> np.ndarray:
-    """The matrix (2, 2) that turns by angle [rad], counter-clockwise."""
+    """The matrix (2, 2) of a counter-clockwise rotation by angle [rad]."""
     return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
 
 
 def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """a_x b_y - a_y b_x of vectors (..., 2)."""
+    """The cross product a_x b_y - a_y b_x (...) of vectors (..., 2)."""
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
 
 def signed_area(corners: np.ndarray) -> float:
-    """Positive counter-clockwise."""
-    local = corners - corners[0]  # far from the origin the products would lose digits
+    """The area [m2] of a polygon (n, 2), positive if its corners are counter-clockwise."""
+    local = corners - corners[0]  # keeps the digits of polygons far from the origin
     return float(cross(local, np.roll(local, -1, axis=0)).sum() / 2)
 
 
 def polygon_centre(corners: np.ndarray) -> np.ndarray:
-    """Centre of the area inside."""
+    """The centroid (2,) [m] of the area of a polygon (n, 2)."""
     a = corners - corners[0]
     b = np.roll(a, -1, axis=0)
     return corners[0] + ((a + b) * cross(a, b)[:, None]).sum(axis=0) / (6 * signed_area(corners))
 
 
 def folding(corners: np.ndarray, thickness: float, revolved: bool) -> float:
-    """Least of thickness s / w^2 over pairs of sides of a polygon, the body to its left, that
-    see each other across what is empty (pair.idp): s [m] their distance, w the way along the
-    polygon. A wall that closes s bends by some of that; of a ring it is 0.2 thickness / radius.
-    `revolved`: sides of a meridian see none beyond the axis.
+    """The least thickness * s / w^2 over pairs of sides of a polygon that face each other.
+
+    `corners` (n, 2) [m] have the body to the left. s [m] is the distance of the two sides across
+    empty space, w [m] the arc length between them along the polygon; equation (a) of pair.idp tells
+    which sides face each other. The value estimates the bending strain of a wall that closes the
+    distance s; for a ring it is 0.2 thickness / radius. A convex polygon returns infinity.
+    `revolved`: only sides to the right of the axis x = 0 are compared.
     """
     along = np.roll(corners, -1, axis=0) - corners
     length = np.linalg.norm(along, axis=1)
     if (cross(along, np.roll(along, -1, axis=0)) >= -1e-9 * length * np.roll(length, -1)).all():
-        return math.inf  # convex
+        return math.inf  # the polygon is convex
     middle, normal, place = (
         corners + along / 2,
         along @ [[0, -1], [1, 0]] / length[:, None],
@@ -466,8 +490,9 @@ def folding(corners: np.ndarray, thickness: float, revolved: bool) -> float:
 
 
 def self_crossing(corners: np.ndarray) -> tuple[int, int] | None:
-    """Two sides of a polygon, counted from 0, that cross, touch away from a common corner, or
-    fold back on each other.
+    """The numbers of two sides of a polygon (n, 2), from 0, that cross, touch or fold back.
+
+    Neighbouring sides may touch at their common corner. Returns None for a simple polygon.
     """
     import shapely
 

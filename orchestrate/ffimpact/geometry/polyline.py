@@ -1,10 +1,10 @@
-"""Polylines with rounded corners as rigid obstacles: what is accepted, and their signed distance.
+"""Polylines with rounded corners as rigid obstacles: checks of the input, and signed distances.
 
-A chain of vertices (n, 2) [m], open or closed, has its free side to the LEFT of the direction of
-travel and the solid to the right: clockwise and closed it is a block, counter-clockwise a
-container. Open, it goes straight on beyond both ends. Its surface lies at the distance `rounding`
-[m] from the chain on the free side: convex corners become arcs of that radius, concave ones stay
-corners (edp/core/contact/shapes.idp).
+A polyline is an open or closed chain of vertices (n, 2) [m]. The free side is to the LEFT of the
+direction of travel and the solid is to the right: a closed clockwise chain is a block, a closed
+counter-clockwise chain a container. An open chain continues straight beyond both ends. The surface
+lies at the distance `rounding` [m] from the chain on the free side: convex corners become arcs of
+this radius, concave corners stay sharp (edp/core/contact/shapes.idp).
 """
 
 import math
@@ -17,16 +17,17 @@ from .outlines import cross
 
 __all__ = ["Sides", "check", "gap", "numbers", "radius_at", "sides_of"]
 
-CORNER = math.radians(
-    30
-)  # what turns by less at a vertex is no corner (edp/core/contact/shapes.idp)
-NEAR = 1e-12  # of the chain's size: what round-off cannot tell apart
+# A vertex is a corner if the direction turns by more than this angle [rad]
+# (edp/core/contact/shapes.idp).
+CORNER = math.radians(30)
+NEAR = 1e-12  # round-off tolerance of lengths, relative to the size of the chain
 
 
 @dataclass(frozen=True)
 class Sides:
-    """The m sides: first points (m, 2), unit directions of travel (m, 2), extents along them
-    (m), infinite beyond open ends.
+    """The m sides of a chain: first points `start` (m, 2) [m] and unit directions `along` (m, 2).
+
+    A side extends from `low` to `high` (m,) [m] along its direction, infinite beyond an open end.
     """
 
     start: np.ndarray
@@ -37,8 +38,10 @@ class Sides:
 
 
 def check(path: str, vertices: np.ndarray, closed: bool) -> None:
-    """BadInput, naming path.key, unless the chain of two vertices or more is one that has two
-    sides.
+    """Raises BadInput, with the name of the entry, if the chain does not have two sides.
+
+    `vertices` (n, 2) [m], n >= 2. A closed chain has three vertices or more. Consecutive vertices
+    differ, and the chain neither turns back on itself nor crosses or touches itself.
     """
     if closed and len(vertices) < 3:
         raise BadInput(
@@ -77,24 +80,24 @@ def check(path: str, vertices: np.ndarray, closed: bool) -> None:
 
 
 def numbers(vertices: np.ndarray, closed: bool, rounding: float) -> tuple[float, ...]:
-    """The chain as the scripts read it: closed (1 or 0), rounding, then x y of each vertex."""
+    """The chain as the scripts read it: closed (1 or 0), rounding [m], x y [m] of each vertex."""
     return float(closed), float(rounding), *map(float, np.ravel(vertices))
 
 
 def gap(points: np.ndarray, numbers: tuple[float, ...]) -> np.ndarray:
-    """Signed distances (n,) of points (n, 2) from the surface of the chain `numbers`, negative
-    inside the solid.
+    """Signed distances (n,) [m] of points (n, 2) from the surface, negative inside the solid.
+
+    `numbers` is the chain as the function `numbers` returns it.
     """
     sides = sides_of(numbers)
     from_start = points[:, None] - sides.start  # (n, m, 2)
     at = np.sum(from_start * sides.along, axis=2)
-    away = (
-        from_start - np.clip(at, sides.low, sides.high)[..., None] * sides.along
-    )  # from the nearest point of each side
+    # vectors from the closest point of each side
+    away = from_start - np.clip(at, sides.low, sides.high)[..., None] * sides.along
     distance = np.linalg.norm(away, axis=2)
     row, nearest = np.arange(len(points)), distance.argmin(axis=1)
     at, away = at[row, nearest], away[row, nearest]
-    # at a vertex the side of the sum of the normals of both sides, elsewhere that of the normal
+    # The sign is that of `away` . normal. At a vertex the normal is the sum of both sides' normals.
     normal = np.column_stack([-sides.along[:, 1], sides.along[:, 0]])
     before, after = normal[nearest - 1], normal[(nearest + 1) % len(normal)]
     beyond = (at > sides.high[nearest])[:, None] * after + (at < sides.low[nearest])[
@@ -105,13 +108,14 @@ def gap(points: np.ndarray, numbers: tuple[float, ...]) -> np.ndarray:
 
 
 def sides_of(numbers: tuple[float, ...]) -> Sides:
-    """Those of the chain `numbers`."""
+    """The sides of the chain `numbers`."""
     return _sides(np.reshape(numbers[2:], (-1, 2)), bool(numbers[0]))
 
 
 def radius_at(point: np.ndarray, within: float, numbers: tuple[float, ...]) -> float:
-    """The rounding [m] where a convex corner is as near to a point (2,) as any of the chain, or
-    by `within` [m] less; else infinite.
+    """The radius [m] of the convex corner that is next to a point (2,), infinite if there is none.
+
+    A corner counts if its distance exceeds that of the chain by at most `within` [m].
     """
     sides = sides_of(numbers)
     before, after = (
@@ -119,9 +123,8 @@ def radius_at(point: np.ndarray, within: float, numbers: tuple[float, ...]) -> f
         if sides.closed
         else (sides.along[:-1], sides.along[1:])
     )
-    turn = np.arctan2(
-        -cross(before, after), np.sum(before * after, axis=1)
-    )  # clockwise: the solid is to the right
+    # positive clockwise: there the corner is convex, because the solid is to the right
+    turn = np.arctan2(-cross(before, after), np.sum(before * after, axis=1))
     corners = (sides.start if sides.closed else sides.start[1:])[turn > CORNER]
     near = (
         np.linalg.norm(point - corners, axis=1)
@@ -142,7 +145,7 @@ def _sides(vertices: np.ndarray, closed: bool) -> Sides:
 
 
 def _crossing(sides: Sides, size: float) -> tuple[int, int, np.ndarray] | None:
-    """The first two sides, not neighbours, that have a point in common, and that point."""
+    """The first two sides (i, j) that meet and are not neighbours, and their common point (2,)."""
     m, near = len(sides.start), NEAR * size
     i, j = np.triu_indices(m, 2)
     if sides.closed:
@@ -159,7 +162,7 @@ def _crossing(sides: Sides, size: float) -> tuple[int, int, np.ndarray] | None:
         & (u >= sides.low[j] - near)
         & (u <= sides.high[j] + near)
     )
-    # on one line: from where to where j lies along i
+    # Parallel sides: the interval of side j along side i, for sides on one line.
     turned, offset = np.where(np.sum(e * f, axis=1) < 0, -1, 1), np.sum(r * e, axis=1)
     from_, to = np.sort([offset + turned * sides.low[j], offset + turned * sides.high[j]], axis=0)
     first, last = np.maximum(from_, sides.low[i]), np.minimum(to, sides.high[i])

@@ -1,8 +1,9 @@
 """Functions of time that supports and loads follow: a number, an expression of t [s] or a table.
 
-They become cubic Hermite polynomials between knots, which FreeFEM evaluates
+Each becomes a piecewise cubic Hermite polynomial, which FreeFEM evaluates
 (edp/core/input/conditions.idp). A table is interpolated monotonically and with a continuous slope
-(Fritsch and Carlson 1980), an expression to CLOSE of its largest value.
+(Fritsch and Carlson 1980). An expression is interpolated with an error of CLOSE times its largest
+value.
 """
 
 import ast
@@ -28,50 +29,56 @@ __all__ = [
     "of_table",
 ]
 
-CLOSE = 1e-8  # error of an expression's polynomials over its largest value
-STEEPEST = 1e30  # 1/s: a slope beyond is none
-ROUGH, BROKEN = 1e-6, 1e-2  # the same of what changes often; of what is not continuous
-FEWEST, MOST = 64, 2**17  # knots
+CLOSE = 1e-8  # largest error of the interpolation, relative to the largest value of the expression
+STEEPEST = 1e30  # largest slope, per second; larger slopes are refused
+# Relative errors as CLOSE: ROUGH is accepted when the number of knots reaches MOST; an error beyond
+# BROKEN means that the expression is not continuous.
+ROUGH, BROKEN = 1e-6, 1e-2
+FEWEST, MOST = 64, 2**17  # smallest number of intervals, largest number of knots
 TESTED = 15  # times between two knots at which an expression and its polynomial are compared
-SHORTEST_INTERVAL = 1e-12  # of end_time
+SHORTEST_INTERVAL = 1e-12  # shortest interval between knots, relative to end_time
 
 
 @dataclass(frozen=True)
 class TimeFunction:
-    """`knots` (n, 3): time [s], value, slope; before the first and behind the last it is
-    constant.
+    """A piecewise cubic Hermite polynomial; `knots` (n, 3): time [s], value, slope per second.
+
+    Before the first knot and after the last one the function is constant.
     """
 
     knots: np.ndarray
 
     @property
     def is_constant(self) -> bool:
-        """Whether its value is the same at all times."""
+        """Whether all knots have the same value."""
         return bool(np.ptp(self.knots[:, 1]) == 0)
 
     @property
     def is_zero(self) -> bool:
-        """Whether it is 0 at all times."""
+        """Whether the value is 0 at all knots."""
         return not self.knots[:, 1].any()
 
     def __call__(self, t: np.ndarray | float) -> np.ndarray:
-        """Values at times [s]."""
+        """The values at times t [s], in the shape of t."""
         times, values, slopes = self.knots.T
         if len(times) == 1:
             return values[0] + 0 * np.asarray(t)
-        from scipy.interpolate import CubicHermiteSpline  # most scenes need none
+        from scipy.interpolate import CubicHermiteSpline  # imported here: most scenes need none
 
         return CubicHermiteSpline(times, values, slopes)(np.clip(t, times[0], times[-1]))
 
 
 def constant(value: float) -> TimeFunction:
-    """The same value at all times."""
+    """The function that has the same value at all times."""
     return TimeFunction(np.array([[0.0, value, 0.0]]))
 
 
 def of_entry(entry: str, given: object, end_time: float) -> TimeFunction:
-    """A number, or an expression of t, which is used from 0 to end_time [s]. BadInput, naming the
-    entry, where it is neither, or no number at some time."""
+    """The function of an entry: a number, or an expression of t, used from 0 to end_time [s].
+
+    Raises BadInput, with the name of the entry, if the entry is neither, or if the expression has
+    no finite value or slope at some time.
+    """
     if isinstance(given, bool) or not isinstance(given, int | float | str):
         raise BadInput(
             f"{entry}: '{brief(given)}' is no function of time (accepted: a number, or an "
@@ -95,7 +102,11 @@ def of_entry(entry: str, given: object, end_time: float) -> TimeFunction:
 
 
 def of_table(entry: str, times: object, values: object) -> TimeFunction:
-    """Values at times [s] that grow. BadInput, naming the entry."""
+    """The function of a table: values at increasing times [s].
+
+    Raises BadInput, with the name of the entry, if the lists are not of equal length (two or more),
+    contain anything but numbers, or if the times do not increase.
+    """
     columns = []
     for name, column in (("t", times), ("value", values)):
         if not isinstance(column, list) or not all(type(one) in (int, float) for one in column):
@@ -122,8 +133,10 @@ def of_table(entry: str, times: object, values: object) -> TimeFunction:
 
 
 def of_csv(entry: str, path: Path, columns: str) -> dict[str, list[float]]:
-    """The table in a CSV file as columns {"t": [...], "x": [...], ...}: its first line names t
-    and the `columns`, each a letter. BadInput, naming the entry.
+    """The table of a CSV file as columns {"t": [...], "x": [...], ...}.
+
+    The first line of the file lists t and the `columns`, one letter each, in any order. Raises
+    BadInput, with the name of the entry, if the file cannot be read or is not such a table.
     """
     first = ",".join(["t", *columns])
     accepted = f"(accepted: a CSV file with the first line '{first}' and {len(columns) + 1} columns of numbers)"
@@ -151,8 +164,12 @@ def of_csv(entry: str, path: Path, columns: str) -> dict[str, list[float]]:
 
 
 def functions(entry: str, given: object, names: str, end_time: float) -> tuple[TimeFunction, ...]:
-    """An entry as a function for each of the names: a list of them, one alone, or a table {t, ...}.
-    BadInput, naming the entry."""
+    """The functions of an entry, one for each component in `names`.
+
+    The entry is a list of numbers and expressions, a single one for a single component, or a table
+    {t, ...} with a column for each component. `end_time` is in s. Raises BadInput, with the name of
+    the entry, for anything else.
+    """
     if isinstance(given, dict):
         if set(given) != {"t", *names}:
             raise BadInput(
@@ -175,8 +192,9 @@ def functions(entry: str, given: object, names: str, end_time: float) -> tuple[T
 def displacements(
     entry: str, given: object, names: str, end_time: float
 ) -> tuple[TimeFunction, ...]:
-    """The same for a motion, which counts from its value at t = 0. BadInput where a component is a
-    number other than 0: it would have no effect.
+    """The functions of a motion, as `functions`. A displacement is the change since t = 0.
+
+    Raises BadInput, in addition, if a component is a number other than 0: it would have no effect.
     """
     found = functions(entry, given, names, end_time)
     for k, one in enumerate(found, 1):
@@ -190,8 +208,10 @@ def displacements(
 
 
 def farthest(way: Sequence[TimeFunction], until: float = np.inf) -> tuple[np.ndarray, float]:
-    """How far (axes,) functions of the components have moved when that is farthest from their
-    start, up to a time [s], and when [s].
+    """The largest displacement (axes,) from the value at t = 0, and the time [s] of it.
+
+    `way` contains the functions of the components. Only their knots from 0 to `until` [s] are
+    examined.
     """
     times = np.unique(np.concatenate([one.knots[:, 0] for one in way]))
     times = times[(times >= 0) & (times <= until)]
@@ -203,8 +223,12 @@ def farthest(way: Sequence[TimeFunction], until: float = np.inf) -> tuple[np.nda
 
 
 def _sampled(entry: str, given: str, program: tuple[float, ...], end: float) -> np.ndarray:
-    """Knots of an expression from 0 to `end`: intervals are halved until the polynomial in each is
-    close to it, at a kink until they are as short as SHORTEST_INTERVAL."""
+    """The knots (n, 3) of an expression from 0 to `end` [s].
+
+    Intervals are halved until the polynomial in each agrees with the expression to CLOSE. At a kink
+    they are halved until they are as short as SHORTEST_INTERVAL. Raises BadInput if the expression
+    is not continuous or needs more than MOST knots.
+    """
     t = np.linspace(0, end, FEWEST + 1)
     while True:
         knots = np.column_stack([t, *_evaluated(entry, given, program, t)])
@@ -234,7 +258,10 @@ def _sampled(entry: str, given: str, program: tuple[float, ...], end: float) -> 
 def _evaluated(
     entry: str, given: str, program: tuple[float, ...], t: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Values and slopes at times (n,)."""
+    """The values (n,) and slopes (n,) per second of an expression at times (n,) [s].
+
+    Raises BadInput if a value or slope is not finite or too large.
+    """
     with np.errstate(all="ignore"):
         value, slope = implicit.run(program, t[:, None])
     value, slope = np.broadcast_to(value, t.shape), np.broadcast_to(slope[:, 0], t.shape)

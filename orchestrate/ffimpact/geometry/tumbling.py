@@ -1,5 +1,7 @@
-"""How a free rigid body turns: Euler's equations, its angular momentum L constant in space, dR/dt =
-w x R with w = R J^-1 R^T L.
+"""The rotation of a free rigid body, from Euler's equations.
+
+The angular momentum L is constant in space: dR/dt = w x R with w = R J^-1 R^T L, where R is the
+rotation matrix, J the matrix of inertia in the body's axes and w the angular velocity [rad/s].
 """
 
 import math
@@ -9,14 +11,17 @@ import numpy as np
 
 __all__ = ["fastest", "rotation", "turned"]
 
-STEP = 0.05  # rad: a step of Runge and Kutta's fourth order; its error is some 1e-9
-# of spin and angular momentum, how far they may be from parallel for an axis to be principal
+# Largest rotation [rad] in a step of the fourth-order Runge-Kutta method; its error is about 1e-9.
+STEP = 0.05
+# An axis is principal if |w x L| <= PRINCIPAL |w| |L|.
 PRINCIPAL = 1e-9
 
 
 def turned(moments: np.ndarray, start: np.ndarray, spin: np.ndarray, t: float) -> np.ndarray:
-    """The matrix (3, 3) of a body at time t >= 0 [s], `start` and `spin` (3,) [rad/s] at 0;
-    `moments` (3, 3): of inertia in its axes.
+    """The rotation matrix (3, 3) of a body at time t >= 0 [s].
+
+    `start` (3, 3) is the matrix and `spin` (3,) [rad/s] the angular velocity at t = 0; `moments`
+    (3, 3) is the matrix of inertia in the body's axes, in any unit.
     """
     if _principal(moments, start, spin):
         return rotation(spin * t) @ start
@@ -24,15 +29,16 @@ def turned(moments: np.ndarray, start: np.ndarray, spin: np.ndarray, t: float) -
 
 
 def fastest(moments: np.ndarray, start: np.ndarray, spin: np.ndarray) -> float:
-    """No spin [rad/s] that it comes to is larger."""
+    """An upper bound of the angular velocity [rad/s] at all times; arguments as of `turned`."""
     if _principal(moments, start, spin):
         return float(np.linalg.norm(spin))
     return float(np.linalg.norm(start @ moments @ start.T @ spin) / np.linalg.eigvalsh(moments)[0])
 
 
 def rotation(turn: np.ndarray) -> np.ndarray:
-    """The matrix of a rotation vector [rad] (Rodrigues), exact at right angles about an axis of
-    coordinates.
+    """The matrix (3, 3) of a rotation vector (3,) [rad], by Rodrigues' formula.
+
+    It is exact for multiples of a right angle about a coordinate axis.
     """
     angle = float(np.linalg.norm(turn))
     if angle == 0:
@@ -43,13 +49,13 @@ def rotation(turn: np.ndarray) -> np.ndarray:
 
 
 def _cross(w: np.ndarray) -> np.ndarray:
-    """The matrix of w x."""
+    """The matrix (3, 3) of the cross product: _cross(w) @ x = w x x."""
     x, y, z = w
     return np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
 
 
 def _principal(moments: np.ndarray, start: np.ndarray, spin: np.ndarray) -> bool:
-    """Whether it turns about a principal axis, or not at all, and so goes on."""
+    """Whether the spin is constant: the body does not turn, or turns about a principal axis."""
     momentum = start @ moments @ start.T @ spin
     return bool(
         np.linalg.norm(np.cross(spin, momentum))
@@ -58,9 +64,10 @@ def _principal(moments: np.ndarray, start: np.ndarray, spin: np.ndarray) -> bool
 
 
 class _Motion:
-    """The matrices at multiples of a step of a period, as far as they were asked for. After a
-    period the spin is the same to the body again, which has turned as a whole about its angular
-    momentum.
+    """The rotation of one body, with the matrices at multiples of the time step.
+
+    The matrices are computed when they are needed. In the body's axes the spin is periodic. After
+    each period the body has turned by the same angle about its angular momentum.
     """
 
     def __init__(self, moments: np.ndarray, start: np.ndarray, spin: np.ndarray):
@@ -81,7 +88,7 @@ class _Motion:
 
     @cached_property
     def _turn(self) -> np.ndarray:
-        """The rotation vector of a period."""
+        """The rotation vector (3,) [rad] of the body over one period."""
         axis, once = (
             self.momentum / np.linalg.norm(self.momentum),
             self._within(self.period) @ self.found[0].T,
@@ -103,15 +110,17 @@ class _Motion:
         c = self._rate(R + dt / 2 * b)
         d = self._rate(R + dt * c)
         left, _, right = np.linalg.svd(R + dt / 6 * (a + 2 * b + 2 * c + d))
-        return left @ right  # the nearest rotation
+        return left @ right  # the rotation that is closest to the result of the step
 
     def _rate(self, R: np.ndarray) -> np.ndarray:
         return _cross(R @ self.inverse @ R.T @ self.momentum) @ R
 
 
 def _period(moments: np.ndarray, momentum: np.ndarray, spin: np.ndarray) -> float:
-    """Seconds, 4 K(m) / p, of Jacobi's functions (Landau and Lifshitz, Mechanics, 37), K by the
-    arithmetic-geometric mean.
+    """The period [s] of the spin in the body's axes: 4 K(m) / p, from Jacobi's elliptic functions.
+
+    Source: Landau and Lifshitz, Mechanics, section 37. The complete elliptic integral K is computed
+    by the arithmetic-geometric mean.
     """
     (least, middle, most), square, energy = (
         np.linalg.eigvalsh(moments),

@@ -1,1 +1,1 @@
-"""What a user may say: parameters, tables of TOML, the words of a dimension."""
+"""The input of a user: parameters, tables of a scene, their rules, and the dimension."""

@@ -1,5 +1,6 @@
-"""What a scene of bodies is computed in: the entry `dimension` at the top of its file. y is up in
-each.
+"""The dimension in which a scene is computed: the entry `dimension` at the top of its file.
+
+y points up in all dimensions.
 """
 
 from dataclasses import dataclass
@@ -20,9 +21,11 @@ __all__ = [
 
 @dataclass(frozen=True)
 class Dimension:
-    """`script` is a file edp/<script>.edp; `axes` the components of a point; `like` the script
-    whose rules of sizes stand for two bodies that meet: those of a disc or of a ball that hits
-    a plane; `cases` the scripts of the paper's bodies.
+    """A dimension and its FreeFEM scripts.
+
+    `script` is the file edp/<script>.edp for scenes of bodies. `axes` is the number of components
+    of a point. `like` is the script whose element sizes, step and penalty apply to contact pairs:
+    that of a disc or of a ball that hits a plane. `cases` are the scripts of the paper's cases.
     """
 
     name: str
@@ -42,13 +45,14 @@ SCRIPTS = tuple(one.script for one in DIMENSIONS.values())
 
 
 def of(given: dict) -> Dimension:
-    """That of a scene's tables; BadInput for a word that is none."""
+    """The dimension of a scene's tables; raises BadInput for an unknown word."""
     rule = Parameter("dimension", "word", PLANE_STRAIN.name, "-", "", words=tuple(DIMENSIONS))
     return DIMENSIONS[rule.check(given.get("dimension", rule.default))]
 
 
 def per_metre(script: str) -> str:
-    """Behind the units of forces and energies of a script: plane strain is per metre of
-    thickness, a ball is not.
+    """The suffix of the units of forces and energies of a script.
+
+    In plane strain they are per metre of thickness ("/m"); in other dimensions the suffix is empty.
     """
     return "" if any(script in (one.script, *one.cases) for one in (AXISYMMETRIC, SOLID)) else "/m"

@@ -1,8 +1,8 @@
-"""The flags of the FreeFEM scripts, written from the table of parameters:
+"""Generates the flags of the FreeFEM scripts from the table of parameters.
 
     python -m ffimpact.input.flags
 
-writes the part of edp/core/input/parameters.idp between its marks.
+writes the part of edp/core/input/parameters.idp between its two marks.
 """
 
 from itertools import groupby
@@ -15,14 +15,13 @@ __all__ = ["FILE", "flags", "variable", "written"]
 
 FILE = ROOT / "edp/core/input/parameters.idp"
 BEGIN, END = "// THE TABLE", "// END OF THE TABLE\n"
-OTHERWISE = {
-    "dt": "dtGiven"
-}  # FreeFEM variables that are not called as their flags: the scripts' dt is that of a step
+# FreeFEM variables whose names differ from their flags. The scripts' own dt is that of a step.
+OTHERWISE = {"dt": "dtGiven"}
 TYPES = {"real": "real", "int": "int", "word": "string", "numbers": "string"}
 
 
 def flags() -> str:
-    """The lines of FreeFEM that read the flags, each script those that it takes."""
+    """The FreeFEM lines that read the flags; each script reads the flags that it takes."""
     text = f"{BEGIN}, written by python -m ffimpact.input.flags from orchestrate/ffimpact/input/table.py\n"
     for scripts, rows in groupby(PARAMETERS.values(), lambda one: one.scripts):
         text += f'takers = "{"|".join(scripts)}";\n'
@@ -31,7 +30,7 @@ def flags() -> str:
 
 
 def variable(name: str) -> str:
-    """The FreeFEM variable of a parameter: FreeFEM's names have no underscore."""
+    """The FreeFEM variable of a parameter, in camelCase: FreeFEM's names have no underscore."""
     first, *others = name.split("_")
     return OTHERWISE.get(name, first + "".join(map(str.capitalize, others)))
 
@@ -47,13 +46,13 @@ def _call(one: Parameter) -> str:
 
 
 def _number(value: float | str, kind: str) -> str:
-    """A number as FreeFEM reads it: a real one with a point or an exponent."""
+    """A number as FreeFEM reads it: a real number has a point or an exponent."""
     text = next(form for form in (f"{value:g}", str(value)) if float(form) == value)
     return f"{text}." if kind == "real" and text.lstrip("-").isdigit() else text
 
 
 def written() -> str:
-    """The whole file with its table made anew."""
+    """The text of the whole file with a newly generated table."""
     before, _, rest = FILE.read_text().partition(BEGIN)
     return before + flags() + rest.partition(END)[2]
 

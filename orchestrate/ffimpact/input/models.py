@@ -1,8 +1,8 @@
-"""The tables of a scene as models: bodies by shape, materials by law, supports, loads, obstacles by
-kind, contact, pairs, and what stands at the top. A TOML file, --set, the Python interface and the
-JSON schema go through them.
+"""The tables of a scene as pydantic models.
 
-An entry that is None is left open: the program chooses it. Units are SI.
+The models are bodies by shape, materials by law, supports, loads, obstacles by kind, contact, pairs
+and the entries at the top. TOML files, --set, the Python interface and the JSON schema use them.
+The program chooses an entry that is None. Units are SI.
 """
 
 from __future__ import annotations
@@ -93,13 +93,13 @@ __all__ = [
     "tables",
 ]
 
-MOST_PRESSURE = 1e15  # Pa
-MOST_TURN = 36000.0  # degrees
+MOST_PRESSURE = 1e15  # largest accepted pressure [Pa]
+MOST_TURN = 36000.0  # largest accepted angle [degrees]
 SIDES = ("left", "right", "bottom", "top", "back", "front", "all", "outer", "inner", "axis")
 
 
 def shared(name: str, meaning: str = "") -> Parameter:
-    """The rule of a parameter of the table, for an entry of that name."""
+    """The rule of a parameter of the table, for an entry of the same name."""
     one = PARAMETERS[name]
     return Parameter(
         "", one.kind, None, one.unit, meaning or one.help, one.low, one.high, one.words, one.scripts
@@ -107,12 +107,15 @@ def shared(name: str, meaning: str = "") -> Parameter:
 
 
 def several(value: Any) -> Any:
-    """One table as a list of one."""
+    """Returns a single table as a list with one element, and any other value unchanged."""
     return [value] if isinstance(value, Entries) else value
 
 
 class _Made(type(BaseModel)):  # type: ignore[misc]
-    """In Python: BadInput in place of pydantic's error, and an entry that is None is left open."""
+    """The metaclass of models: Python constructors raise BadInput and ignore entries that are None.
+
+    BadInput replaces pydantic's ValidationError.
+    """
 
     def __call__(cls, *unnamed: Any, **entries: Any) -> Any:
         if unnamed:
@@ -130,7 +133,7 @@ class _Made(type(BaseModel)):  # type: ignore[misc]
 
     @property
     def __signature__(cls) -> Signature:
-        """The entries as keywords, each with its unit and meaning: for help() and notebooks."""
+        """The entries as keywords, with units and meanings, for help() and notebooks."""
         keywords = [_keyword(*one) for one in cls.model_fields.items() if not one[1].exclude]
         if issubclass(cls, Body):
             own = Keyword("material", Keyword.KEYWORD_ONLY, default=None, annotation="a Material")
@@ -139,11 +142,11 @@ class _Made(type(BaseModel)):  # type: ignore[misc]
 
     @__signature__.setter
     def __signature__(cls, made: Any) -> None:
-        """That of pydantic has types alone."""
+        """Ignores pydantic's own signature, which contains only types."""
 
 
 def _keyword(name: str, field: FieldInfo) -> Keyword:
-    """An entry of a model as a keyword of its constructor."""
+    """The entry of a model as a keyword of its constructor."""
     rules = [one for one in field.metadata if isinstance(one, Rule)]
     text = rules[0].meaning if rules else field.description or ""
     default = Keyword.empty if field.is_required() else field.get_default()
@@ -152,13 +155,13 @@ def _keyword(name: str, field: FieldInfo) -> Keyword:
 
 
 class Entries(BaseModel, metaclass=_Made):
-    """What all tables of a scene have in common."""
+    """The common base of all tables of a scene."""
 
-    model_config = ConfigDict(extra="forbid", defer_build=True)  # built where they are used
-    nested: ClassVar[dict[str, type[Entries]]] = {}  # the models of tables in it
-    only: ClassVar[dict[str, tuple[Dimension, ...]]] = {}  # entries that not all dimensions have
-    heading: ClassVar[tuple[str, ...]] = ()  # the entry that says which model it is
-    _entry: str = PrivateAttr("")  # its name in the scene: body.2
+    model_config = ConfigDict(extra="forbid", defer_build=True)  # built at the first use
+    nested: ClassVar[dict[str, type[Entries]]] = {}  # the models of nested tables, by entry
+    only: ClassVar[dict[str, tuple[Dimension, ...]]] = {}  # entries of some dimensions alone
+    heading: ClassVar[tuple[str, ...]] = ()  # the entry that selects the model: shape or kind
+    _entry: str = PrivateAttr("")  # the name of the table in the scene: body.2
     _given: dict[str, Any] = PrivateAttr(default_factory=dict)
 
     def __repr_args__(self) -> list[tuple[str | None, Any]]:
@@ -173,26 +176,24 @@ class Entries(BaseModel, metaclass=_Made):
 
     @property
     def entry(self) -> str:
-        """Its name in the scene, "body.2"."""
+        """The name of the table in the scene, "body.2"."""
         return self._entry
 
     def at(self, name: str) -> str:
-        """The full name of an entry, "body.2.radius"."""
+        """The full name of an entry of the table, "body.2.radius"."""
         return f"{self._entry}.{name}" if self._entry else name
 
     def given(self, name: str) -> str:
-        """An entry as it was given, as a message repeats it."""
+        """The given value of an entry, as a message prints it."""
         return brief(self._given.get(name, ""))
 
     def table(self) -> dict[str, Any]:
-        """The table of a TOML file: without what is left open."""
+        """The table as in a TOML file, without entries that are None."""
         return {name: _table(value) for name, value in self if value is not None}
 
     @classmethod
     def names(cls, of: Dimension | None) -> list[str]:
-        """The entries that there are in a dimension, its own before those of what it is a
-        kind of.
-        """
+        """The names of the entries in a dimension; the model's own precede those of its base."""
         general = cls.__mro__[1]
         common = (
             general.model_fields if issubclass(general, Entries) and general is not Entries else {}
@@ -202,20 +203,21 @@ class Entries(BaseModel, metaclass=_Made):
 
     @classmethod
     def refused(cls, name: str, value: Any, of: Dimension | None) -> str:
-        """What a message says of an entry that there is not."""
+        """The message about an entry that the model does not have, behind the entry's name."""
         return _no_such(name, value, [*cls.heading, *cls.names(of)])
 
     @classmethod
     def read(cls, entry: str, given: Any, of: Dimension | None) -> Self:
-        """The model of the table `entry` of a scene; BadInput with a line for each thing
-        that is wrong in it.
+        """The model of the table `entry` of a scene.
+
+        Raises BadInput with a line for each error in the table.
         """
         if not isinstance(given, dict):
             raise BadInput(
                 f"{entry}: '{brief(given)}' is no table (accepted: a table with {', '.join(cls.names(of))})"
             )
         names, others = cls.names(of), {}
-        if set(cls.model_fields) - set(names):  # entries of other dimensions
+        if set(cls.model_fields) - set(names):  # the model has entries of other dimensions
             others = {
                 name: value
                 for name, value in given.items()
@@ -257,14 +259,15 @@ def _no_such(name: str, value: Any, accepted: list[str], meant: str = "") -> str
     return f": no such entry, set to '{brief(value)}'{hint} (accepted: {', '.join(accepted)})"
 
 
-MOST_LINES = 20  # of one table
+MOST_LINES = 20  # largest number of messages about one table
 
 
 def _lines(
     model: type[Entries], error: ValidationError, entry: str, between: str, of: Dimension | None
 ) -> list[str]:
-    """What pydantic refuses, a line each: entry, value, what is accepted. `between` stands
-    behind the name of the table.
+    """The messages about all errors that pydantic finds: entry, value and accepted values.
+
+    `between` is the text between the name of the table and that of the entry.
     """
     found = []
     every = error.errors()
@@ -277,7 +280,7 @@ def _lines(
         place = [str(part + 1 if isinstance(part, int) else part) for part in way]
         name = brief(last + 1 if isinstance(last, int) else last)
         if one["type"] == "missing" and any(suggestion(word, [name]) for word in misspelt):
-            continue  # said already
+            continue  # the message about the misspelt name covers it
         at = f"{entry}{between if entry else ''}{'.'.join([*place, name])}"
         found.append(
             at + _refusal(holder, one, name, ".".join([*([entry] if entry else []), *place]), of)
@@ -290,7 +293,7 @@ def _lines(
 
 
 def _refusal(holder: type[Entries], one: Any, name: str, table: str, of: Dimension | None) -> str:
-    """What stands behind the name of an entry in a message. `table`: the name of what it is in."""
+    """The message about an error, behind the name of the entry; `table` is the enclosing table."""
     if one["type"] == "extra_forbidden":
         return holder.refused(name, one["input"], of)
     if one["type"] == "missing":
@@ -311,12 +314,11 @@ def _refusal(holder: type[Entries], one: Any, name: str, table: str, of: Dimensi
 
 
 class Material(Entries):
-    """What a body is made of. `law` is a constitutive law of edp/core/law; the classes below
-    are those laws.
+    """The material of a body; `law` is a constitutive law, and the classes below are the laws.
 
-    Damping beside it: `viscosity` and `bulk_viscosity` [Pa s] of Kelvin and Voigt's kind, or
-    `loss`, the loss factor at the first mode; a Maxwell branch of `relaxation_modulus` [Pa] and
-    `relaxation_time` [s].
+    The laws are in edp/core/law. The damping is of the Kelvin-Voigt type with `viscosity` and
+    `bulk_viscosity` [Pa s], or with `loss`, the loss factor at the first mode. A Maxwell branch has
+    `relaxation_modulus` [Pa] and `relaxation_time` [s].
     """
 
     law: Annotated[str, shared("law")]
@@ -332,7 +334,7 @@ class Material(Entries):
 
 
 class SaintVenantKirchhoff(Material):
-    """S = lambda tr(E) I + 2 mu E, paper (5)."""
+    """St. Venant-Kirchhoff law, S = lambda tr(E) I + 2 mu E, paper (5)."""
 
     law: Annotated[str, shared("law")] = "svk"
 
@@ -351,16 +353,18 @@ class Incompressible(Material):
 
 
 class MooneyRivlin(Material):
-    """Mooney and Rivlin's law; law_parameters = "s", the share of the second invariant in the
-    shear modulus.
+    """Mooney-Rivlin law; law_parameters = "s".
+
+    s is the share of the second invariant in the shear modulus.
     """
 
     law: Annotated[str, shared("law")] = "mooney-rivlin"
 
 
 class Ogden(Material):
-    """Ogden's law of one to three terms; law_parameters = "alpha_1, s_1, alpha_2, s_2 ...",
-    exponents and shares.
+    """Ogden's law of one to three terms.
+
+    law_parameters = "alpha_1, s_1, alpha_2, s_2 ..." are the exponents and shares of the terms.
     """
 
     law: Annotated[str, shared("law")] = "ogden"
@@ -377,7 +381,7 @@ MATERIAL = tuple(Material.model_fields)
 
 
 class Support(Entries):
-    """A part of a body's boundary that is held or moved."""
+    """A part of a body's boundary that is held or moves with a given displacement."""
 
     where: Annotated[str | dict[str, Any], Where(SIDES)]
     fix: Annotated[
@@ -391,7 +395,7 @@ class Support(Entries):
 
 
 class Gas(Entries):
-    """p V^n = const in a closed cavity."""
+    """A gas in a closed cavity, with p V^n = const."""
 
     gauge_pressure: Annotated[
         float,
@@ -406,7 +410,7 @@ class Gas(Entries):
 
 
 class Load(Entries):
-    """A stress on a part of a body's boundary: one of traction, pressure, gas."""
+    """A stress on a part of a body's boundary: one of `traction`, `pressure` and `gas`."""
 
     nested = {"gas": Gas}
     where: Annotated[str | dict[str, Any], Where(SIDES)]
@@ -423,9 +427,10 @@ class Load(Entries):
 
 
 class Body(Entries):
-    """What bodies of all shapes have; the shapes are the classes below. `material` gives law,
-    young, nu, density and damping at once. Rigid ones need none of it but a density or a
-    mass.
+    """The entries of bodies of all shapes; the shapes are the classes below.
+
+    `material` sets law, young, nu, density and damping together. A rigid body needs only a density
+    or a mass.
     """
 
     shape: ClassVar[str]
@@ -486,7 +491,7 @@ class Body(Entries):
     @model_validator(mode="before")
     @classmethod
     def _of_material(cls, entries: Any) -> Any:
-        """With the entries of the material that it is said to be of."""
+        """Replaces the entry `material` by the entries of the material; entries of the body win."""
         if not isinstance(entries, dict):
             return entries
         if not isinstance(entries.get("material"), Material | None):
@@ -499,7 +504,7 @@ class Body(Entries):
 
     @property
     def material(self) -> Material | None:
-        """What it is made of, where that is its own."""
+        """The body's own material; None unless law, young, nu and density are all set."""
         own = {name: getattr(self, name) for name in MATERIAL if name in self}
         return (
             LAWS.get(own.get("law", ""), Material)(**own)
@@ -509,13 +514,13 @@ class Body(Entries):
 
     @property
     def sizes(self) -> list[Any]:
-        """The numbers that a shape is made of, in the order of its entries."""
+        """The values of the shape's own entries, in the order of the model."""
         return [
             getattr(self, name) for name in type(self).model_fields if name not in Body.model_fields
         ]
 
     def table(self) -> dict[str, Any]:
-        """A table [[body]]."""
+        """The table `[[body]]`."""
         return {"shape": self.shape} | super().table()
 
 
@@ -552,8 +557,9 @@ class Ring(Body):
 
 
 class Polygon(Body):
-    """A polygon in plane strain; of revolution its section, from the axis to the axis or beside
-    it.
+    """A polygon in plane strain, or the section of a body of revolution.
+
+    The section leads from the axis to the axis, or lies beside the axis.
     """
 
     shape = "polygon"
@@ -564,7 +570,7 @@ class Polygon(Body):
 
 
 class Ball(Body):
-    """A ball, of revolution or in space."""
+    """A ball, as a body of revolution or in space."""
 
     shape = "ball"
     dimensions = (AXISYMMETRIC, SOLID)
@@ -581,7 +587,7 @@ class Shell(Body):
 
 
 class Ellipsoid(Body):
-    """An ellipsoid of revolution: radius, half height."""
+    """An ellipsoid of revolution, with a radius and half a height."""
 
     shape = "ellipsoid"
     dimensions = (AXISYMMETRIC,)
@@ -589,7 +595,7 @@ class Ellipsoid(Body):
 
 
 class Cylinder(Body):
-    """A cylinder about the y axis, of revolution or in space."""
+    """A cylinder about the y axis, as a body of revolution or in space."""
 
     shape = "cylinder"
     dimensions = (AXISYMMETRIC, SOLID)
@@ -608,7 +614,7 @@ class Tube(Body):
 
 
 class Torus(Body):
-    """An O-ring of revolution; `section` is the radius of its section."""
+    """A torus (O-ring) of revolution; `section` is the radius of its circular section."""
 
     shape = "torus"
     dimensions = (AXISYMMETRIC,)
@@ -657,15 +663,16 @@ BODIES: dict[str, type[Body]] = {
 
 # ---- rigid obstacles
 
+# Entries of contact that a pair and an obstacle may have of their own.
 OWN = (
     "penalty",
     "friction_static",
     "friction_dynamic",
-)  # what a pair and an obstacle may have of its own
+)
 
 
 class Obstacle(Entries):
-    """What rigid obstacles of all kinds have; the kinds are the classes below."""
+    """The entries of rigid obstacles of all kinds; the kinds are the classes below."""
 
     kind: ClassVar[str]
     heading = ("kind",)
@@ -683,7 +690,7 @@ class Obstacle(Entries):
     friction_dynamic: Annotated[float | str | None, shared("friction_dynamic")] = None
 
     def table(self) -> dict[str, Any]:
-        """A table [[obstacle]]."""
+        """The table `[[obstacle]]`."""
         return {"kind": self.kind} | super().table()
 
     @classmethod
@@ -692,7 +699,7 @@ class Obstacle(Entries):
 
 
 class Plane(Obstacle):
-    """A half space below a plane; in Python the floor y = 0 by default."""
+    """The half-space below a plane; in Python the floor y = 0 by default."""
 
     kind = "plane"
     point: Annotated[list[float] | None, Vector("on it [m]")] = None
@@ -700,7 +707,7 @@ class Plane(Obstacle):
 
 
 class Circle(Obstacle):
-    """A disc in the plane."""
+    """A solid disc in the plane."""
 
     kind = "circle"
     dimensions = (PLANE_STRAIN,)
@@ -709,7 +716,7 @@ class Circle(Obstacle):
 
 
 class Bowl(Obstacle):
-    """What is outside a circle or sphere."""
+    """A concave obstacle: the solid outside a circle or sphere."""
 
     kind = "bowl"
     centre: Annotated[Any, Place("[m]")]
@@ -717,7 +724,7 @@ class Bowl(Obstacle):
 
 
 class Sphere(Obstacle):
-    """A ball, of revolution or in space."""
+    """A solid ball, of revolution or in space."""
 
     kind = "sphere"
     dimensions = (AXISYMMETRIC, SOLID)
@@ -756,7 +763,7 @@ class Surface(Obstacle):
 
 
 class Implicit(Obstacle):
-    """An expression of the signed distance in x, y (, z), positive outside."""
+    """A surface given by an expression in x, y (, z) for the signed distance, positive outside."""
 
     kind = "implicit"
     distance: Annotated[
@@ -773,8 +780,9 @@ OBSTACLES: dict[str, type[Obstacle]] = {
 
 
 class Pair(Entries):
-    """What differs between two partners, by their names; between a body and an obstacle, or two
-    bodies.
+    """The entries of one contact pair, a body and an obstacle or two bodies, given by their names.
+
+    They replace the entries of the whole scene.
     """
 
     bodies: Annotated[Any, Partners("two names")] = None
@@ -818,9 +826,7 @@ CONTACT = tuple(name for name in Contact.model_fields if name not in ("self_cont
 
 
 def _of_all(name: str, value: Any) -> str:
-    """What a message says of an entry that is of the contact of the whole scene; empty of
-    others.
-    """
+    """The message about an entry that belongs to the contact of the whole scene; else empty."""
     if name not in CONTACT:
         return ""
     return f": '{brief(value)}' holds for the whole scene (accepted: in [contact]; here {', '.join(OWN)})"
@@ -830,8 +836,9 @@ def _of_all(name: str, value: Any) -> str:
 
 
 class Top(Entries):
-    """What stands at the top: how the run is to be made, and the material and mesh sizes of
-    bodies without their own.
+    """The entries at the top of a scene.
+
+    They control the run, and set the material and mesh sizes of bodies without their own.
     """
 
     title: Annotated[str | None, Text("a line about it")] = None
@@ -884,7 +891,7 @@ class Top(Entries):
 
     @classmethod
     def refused(cls, name: str, value: Any, of: Dimension | None) -> str:
-        """Entries of bodies and of contact are not at the top."""
+        """The message about an unknown entry, with the table that has this entry, if any."""
         of_bodies = {each for one in BODIES.values() for each in one.names(of)}
         meant = (
             f"body.1.{name}" if name in of_bodies else f"contact.{name}" if name in CONTACT else ""
@@ -911,7 +918,7 @@ KINDS: dict[str, tuple[str, dict[str, type[Any]]]] = {
 
 
 def read(given: dict[str, Any], of: Dimension) -> Tables:
-    """The tables of a scene; BadInput with a line for each thing that is wrong in one of them."""
+    """The tables of a scene; raises BadInput with a line for each error in any of them."""
     top = {name: value for name, value in given.items() if name not in (*KINDS, "contact")}
     found = gathered([
         lambda: Top.read("", top, of), lambda: tables(given, "body", of), lambda: tables(given, "obstacle", of),
@@ -920,14 +927,16 @@ def read(given: dict[str, Any], of: Dimension) -> Tables:
 
 
 def tables(given: dict[str, Any], key: str, of: Dimension) -> list[Any]:
-    """The bodies or obstacles of a scene's tables [[key]]."""
+    """The bodies or obstacles of a scene's tables `[[key]]`."""
     listed_ones = enumerate(listed(given, key), 1)
     return gathered([partial(of_table, f"{key}.{k}", one, key, of) for k, one in listed_ones])
 
 
 def of_table(entry: str, given: dict[str, Any], key: str, of: Dimension | None = None) -> Any:
-    """The body or obstacle of a table, by its shape or kind; where the dimension is not known,
-    of any.
+    """The body or obstacle of a table, by its shape or kind.
+
+    Without a dimension `of`, the shapes or kinds of all dimensions are accepted. Raises BadInput
+    for other ones and for errors in the table.
     """
     word, models = KINDS[key]
     accepted = [name for name, one in models.items() if of is None or of in one.dimensions]
@@ -941,7 +950,7 @@ def of_table(entry: str, given: dict[str, Any], key: str, of: Dimension | None =
 
 
 def listed(given: dict[str, Any], key: str) -> list[dict[str, Any]]:
-    """The tables [[key]] of a file, [] where there are none."""
+    """The list of tables `[[key]]` of a file, [] without such tables; raises BadInput otherwise."""
     tables = given.get(key, [])
     if not isinstance(tables, list):
         raise BadInput(f"{key}: '{brief(tables)}' is no list of tables (accepted: [[{key}]])")

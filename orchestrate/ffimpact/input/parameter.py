@@ -1,4 +1,4 @@
-"""What one entry of a scene accepts, and the words for what it does not."""
+"""The rule of a single entry of a scene: checks of its value, and messages about refused values."""
 
 from __future__ import annotations
 
@@ -21,7 +21,8 @@ __all__ = ["Parameter", "Rule", "Value", "integer", "numbers", "plain", "real", 
 Value = float | int | str
 
 _NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]+)?|\.[0-9]+)([eE][+-]?[0-9]+)?")
-# A number with a unit behind it: factors of units, of which a prefix and a name make one.
+# A number with a unit behind it is recognised for messages. A unit is a prefix and a name; the
+# factors are those of the prefixes.
 PREFIXES = {
     "": 1.0,
     "n": 1e-9,
@@ -37,7 +38,7 @@ PREFIXES = {
 _UNIT = rf"(?:[{''.join(PREFIXES)}]?(?:m|s|g|N|Pa|J|Hz|rad)|km|min|h|t|bar|psi|in|ft|deg(?:rees?)?|°|%)[²³]?(?:\^?-?[0-9])?"
 POWERS = {ord("²"): "2", ord("³"): "3", ord("^"): None}
 _QUANTITY = re.compile(rf"({_NUMBER.pattern}) *({_UNIT}(?:[*/· ]{_UNIT})*)")
-# of other units than those that a prefix makes: how many of an entry's own they are
+# By the unit of an entry: other units that no prefix makes, and their factors to the entry's unit.
 OTHER_UNITS = {
     "-": {"%": 0.01},
     "deg": {"°": 1.0, "degree": 1.0, "degrees": 1.0},
@@ -47,24 +48,25 @@ OTHER_UNITS = {
 
 
 class Rule:
-    """What an entry of a model accepts: Annotated[float, rule]."""
+    """The base of rules: an entry of a model is declared as Annotated[float, rule]."""
 
-    accepted: str  # in the words of messages
+    accepted: str  # the accepted values as messages print them
     meaning: str = ""
 
     def checked(self, given: Any, of: Dimension | None) -> Any:
-        """The value as the program uses it. BadInput where it is not accepted, with what
-        follows the entry's name: ": 'x' is not a number (accepted: ...)", or ".2: ..." of a
-        component. `of`: the scene's dimension, where it is known.
+        """Returns the value as the program uses it; `of` is the scene's dimension, if known.
+
+        Raises BadInput if the value is not accepted. The message contains the text behind the
+        entry's name: ": 'x' is not a number (accepted: ...)", or ".2: ..." for a component.
         """
         raise NotImplementedError
 
     def accepted_in(self, of: Dimension | None) -> str:
-        """What is accepted in a dimension."""
+        """The accepted values in a dimension, as messages print them."""
         return self.accepted
 
     def schema(self) -> dict[str, Any]:
-        """The same as JSON schema."""
+        """The rule as a JSON schema."""
         raise NotImplementedError
 
     def __get_pydantic_core_schema__(
@@ -85,7 +87,7 @@ class Rule:
 
 
 def plain(value: Any) -> Any:
-    """Arrays and numbers of numpy as lists and numbers, tuples as lists: what TOML has."""
+    """A value with the types of TOML: numpy's arrays and numbers, and tuples, are converted."""
     if isinstance(value, np.ndarray | np.generic):
         return value.tolist()
     if isinstance(value, list | tuple):
@@ -95,14 +97,16 @@ def plain(value: Any) -> Any:
 
 @dataclass(frozen=True)
 class Parameter(Rule):
-    """One entry. `kind` is real, int, word or numbers (text, separated by commas); `low`/`high`
-    bound numbers, `words` lists the words that are accepted, beside numbers too (auto);
-    `scripts` those that take it.
+    """The rule of one parameter.
+
+    `kind` is real, int, word or numbers (text, separated by commas). `low` and `high` bound
+    numbers. `words` are the accepted words; a number may have them too (auto). `scripts` are the
+    scripts that take the parameter.
     """
 
     name: str
     kind: str
-    default: Any  # None: there is none
+    default: Any  # None: the parameter has no default
     unit: str
     help: str
     low: float = 0.0
@@ -112,7 +116,7 @@ class Parameter(Rule):
 
     @property
     def meaning(self) -> str:  # type: ignore[override]
-        """What it is, with its unit."""
+        """The meaning of the parameter, with its unit."""
         return f"{self.help} [{self.unit}]" if self.unit not in ("", "-") else self.help
 
     def checked(self, given: Any, of: Dimension | None) -> Value:
@@ -133,7 +137,7 @@ class Parameter(Rule):
 
     @property
     def accepted(self) -> str:  # type: ignore[override]
-        """What is accepted, in the words of the error messages."""
+        """The accepted values, as messages print them."""
         if self.kind == "numbers":
             return "none, or numbers separated by commas"
         return (
@@ -143,8 +147,9 @@ class Parameter(Rule):
         )
 
     def check(self, given: Any) -> Value:
-        """`given` (text, a TOML value or a number of numpy) as float, int or word; BadInput
-        where it is not accepted.
+        """Converts `given` (text, a TOML value or a number of numpy) to a float, an int or a word.
+
+        Raises BadInput, with the name of the parameter, if the value is not accepted.
         """
         given = plain(given)
         if isinstance(given, str) and given in self.words:
@@ -185,9 +190,10 @@ class Parameter(Rule):
 
 
 def with_unit(text: str, unit: str) -> str:
-    """What is wrong with a number that has a unit, where an entry in `unit` is wanted: the
-    number to give, if a prefix makes the difference; empty where the text is no number with a
-    unit.
+    """The message about a number with a unit, for an entry in `unit`.
+
+    The message contains the converted number if the units are known multiples of each other. It is
+    empty if the text is not a number with a unit.
     """
     if not (found := _QUANTITY.fullmatch(text)):
         return ""
@@ -208,7 +214,7 @@ def real(
     meaning: str,
     scripts: tuple[str, ...] = (),
 ) -> Parameter:
-    """A number between two bounds, or auto where that is its default."""
+    """The rule of a number between two bounds; `auto` is accepted if it is the default."""
     words = ("auto",) if default == "auto" else ()
     return Parameter(
         name,
@@ -232,17 +238,17 @@ def integer(
     meaning: str,
     scripts: tuple[str, ...] = (),
 ) -> Parameter:
-    """A whole number between two bounds."""
+    """The rule of a whole number between two bounds."""
     return Parameter(name, "int", default, unit, meaning, low, high, (), scripts)
 
 
 def word(
     name: str, default: str, words: tuple[str, ...], meaning: str, scripts: tuple[str, ...] = ()
 ) -> Parameter:
-    """One of some words."""
+    """The rule of a choice between words."""
     return Parameter(name, "word", default, "-", meaning, words=words, scripts=scripts)
 
 
 def numbers(name: str, meaning: str, scripts: tuple[str, ...] = ()) -> Parameter:
-    """Numbers separated by commas, or none."""
+    """The rule of numbers separated by commas, or the word none."""
     return Parameter(name, "numbers", "none", "-", meaning, words=("none",), scripts=scripts)

@@ -1,4 +1,4 @@
-"""The parameters of a run by name, and checks of what is given for them."""
+"""The parameters of a run by name, and checks of their values."""
 
 import argparse
 import re
@@ -26,10 +26,11 @@ __all__ = [
     "with_unit",
 ]
 
-# What a scene fixes for others of its entries: where one of those is set and it is not, it is open
-# again, as by default (auto, 0). friction_static alone sets both coefficients, loss the viscosity;
-# a penalty is of a material, a size and an exponent; a step and meshes are of a size. slip_velocity
-# and end_time stay, with their warnings.
+# Entries of a scene that depend on other entries. If one of the other entries is changed and the
+# dependent entry is not, the dependent entry is reset to automatic (auto, 0). `friction_static`
+# sets both coefficients of friction, and `loss` sets the viscosity. A penalty belongs to a
+# material, a size and an exponent; a time step belongs to a material and a size; mesh sizes belong
+# to a size. `slip_velocity` and `end_time` are not reset; they have their own warnings.
 FOLLOWS = {
     "friction_dynamic": ("friction_static",),
     "viscosity": ("loss",),
@@ -38,20 +39,18 @@ FOLLOWS = {
     **dict.fromkeys(("mesh_size", "contact_mesh_size", "block_width", "block_height"), ("radius",)),
 }
 
-NOT_DECISIVE = ("checkpoint_every",)  # parameters that do not change the answer
-OUTPUT = {
-    "fields": 0,
-    "modes": 0,
-}  # parameters that only ask for output, with the value that asks for none
+NOT_DECISIVE = ("checkpoint_every",)  # parameters that do not change the results
+# Parameters that only request output, with the value that requests none.
+OUTPUT = {"fields": 0, "modes": 0}
 
 
 def names(script: str = "") -> list[str]:
-    """The parameters of one script, or of all."""
+    """The names of the parameters of one script, or of all scripts."""
     return [one.name for one in PARAMETERS.values() if not script or script in one.scripts]
 
 
 def taken(name: str, script: str) -> None:
-    """BadInput where a script does not take a parameter of the table."""
+    """Raises BadInput if a script does not take a parameter of the table."""
     if script not in PARAMETERS[name].scripts:
         raise BadInput(
             f"{brief(name)}: {script} takes no such parameter (accepted: in {'|'.join(PARAMETERS[name].scripts)})"
@@ -59,8 +58,9 @@ def taken(name: str, script: str) -> None:
 
 
 def check(given: dict[str, Value], script: str = "") -> dict[str, Value]:
-    """The given parameters (of one script, or of all), checked and converted; BadInput names
-    the first that is unknown or not accepted.
+    """Checks and converts the given parameters of one script, or of all scripts.
+
+    Raises BadInput with the name of the first parameter that is unknown or not accepted.
     """
     for name in given:
         if name in names() and script:
@@ -73,26 +73,29 @@ def check(given: dict[str, Value], script: str = "") -> dict[str, Value]:
 
 
 def defaults(script: str = "disc-plane") -> dict[str, Value]:
-    """Every parameter of a scene of a script at its default."""
+    """The default values of all parameters of a script."""
     return {name: PARAMETERS[name].default for name in names(script)}
 
 
 def whole(text: str) -> int:
-    """A whole number of the command line, for argparse."""
-    if not re.fullmatch("[0-9]+", text):  # int() takes the digits of every alphabet
+    """A whole number of the command line, for argparse; raises ValueError for other text."""
+    if not re.fullmatch("[0-9]+", text):  # int() would also accept digits of other alphabets
         raise ValueError
     return int(text)
 
 
 def add_set(parser: argparse.ArgumentParser, meaning: str) -> None:
-    """The option --set of a command, whose words overrides() reads."""
+    """Adds the option --set to a command; `overrides` reads its words."""
     parser.add_argument(
         "--set", metavar="NAME=VALUE", nargs="+", action="extend", default=[], help=meaning
     )
 
 
 def overrides(texts: list[str]) -> dict[str, str]:
-    """The pairs of --set name=value; BadInput where one has another form."""
+    """The names and values of --set name=value.
+
+    Raises BadInput if a text has another form or a name occurs more than once.
+    """
     pairs = [text.partition("=") for text in texts]
     for name, equals, value in pairs:
         if not (name and equals and value):

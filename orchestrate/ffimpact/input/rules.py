@@ -1,6 +1,7 @@
-"""What entries of bodies, obstacles, supports and loads accept beside the parameters of a run
-(parameter.py): points, lists of points, words of one's own, functions of time, parts of a boundary.
-All in SI units.
+"""The rules of entries of bodies, obstacles, supports and loads that are not parameters of a run.
+
+The entries are points, lists of points, names, functions of time and parts of a boundary, in SI
+units. The rules of single parameters are in parameter.py.
 """
 
 from __future__ import annotations
@@ -35,29 +36,34 @@ __all__ = [
     "vector",
 ]
 
-LONGEST = 1e9  # m, m/s: beyond the largest of anything
-MOST = 2000  # points of a polygon or a chain: each of its sides is held against all others
-SHORTEST = 1e-9  # m
+LONGEST = 1e9  # largest accepted length [m] and velocity [m/s]
+# Largest number of points of a polygon or a chain, whose sides are compared with each other.
+MOST = 2000
+SHORTEST = 1e-9  # smallest accepted length [m]
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_.-]*")
-# what a region is made of: the counts of numbers, of points and directions as many as axes
+# The two entries of each kind of region. Points and directions have a component for each axis; a
+# radius is a number.
 REGIONS = {"half-space": ("point", "normal"), "box": ("low", "high"), "ball": ("centre", "radius")}
-ALIAS = {"half-plane": "half-space", "disc": "ball"}  # in the plane
+ALIAS = {"half-plane": "half-space", "disc": "ball"}  # names of regions in the plane
 
 
 def number(
     low: float = SHORTEST, high: float = LONGEST, unit: str = "m", meaning: str = ""
 ) -> Parameter:
-    """A number between two bounds; a length where they are not given."""
+    """The rule of a number between two bounds; without bounds the rule of a length [m]."""
     return Parameter("", "real", None, unit, meaning, low, high)
 
 
 def placeholder(count: int) -> str:
-    """A point, in the words of messages."""
+    """The form of a point with `count` components as messages print it: [x, y, z]."""
     return f"[{', '.join('xyz'[:count])}]"
 
 
 def vector(given: Any, count: int, low: float, high: float, at: str = "") -> list[float]:
-    """So many numbers; BadInput, behind the entry's name, where they are not."""
+    """Checks a list of `count` numbers between two bounds.
+
+    Raises BadInput otherwise; its message begins with `at`, the text behind the entry's name.
+    """
     if not isinstance(given, list | tuple) or len(given) != count:
         raise BadInput(
             f"{at}: '{brief(given)}' is no {placeholder(count)} (accepted: {('two', 'three')[count - 2]} numbers, each "
@@ -70,7 +76,10 @@ def vector(given: Any, count: int, low: float, high: float, at: str = "") -> lis
 
 
 def points(given: Any, least: int, at: str = "") -> list[list[float]]:
-    """At least so many points [x, y]; BadInput, behind the entry's name, where they are not."""
+    """Checks a list of at least `least` points [x, y].
+
+    Raises BadInput otherwise; its message begins with `at`, the text behind the entry's name.
+    """
     if not isinstance(given, list) or len(given) < least:
         raise BadInput(
             f"{at}: '{brief(given)}' is too little (accepted: {least} points [x, y] or more)"
@@ -82,7 +91,7 @@ def points(given: Any, least: int, at: str = "") -> list[list[float]]:
 
 @dataclass(frozen=True)
 class Vector(Rule):
-    """A component for each axis, or `count`."""
+    """A vector with a component for each axis, or with `count` components."""
 
     meaning: str = ""
     low: float = -LONGEST
@@ -112,7 +121,7 @@ class Vector(Rule):
 
 @dataclass(frozen=True)
 class Place(Vector):
-    """A place or a vector; of revolution along the axis, [0, y] or y alone."""
+    """A position or a vector; for bodies of revolution along the axis, [0, y] or y alone."""
 
     def checked(self, given: Any, of: Dimension | None) -> Any:
         if of in (AXISYMMETRIC, None) and not isinstance(given, list):
@@ -136,7 +145,10 @@ class Place(Vector):
 
 @dataclass(frozen=True)
 class InSpace(Rule):
-    """A number in the plane; in space a vector, and `about_z` also a number, of z."""
+    """A number in the plane and a vector in space.
+
+    If `about_z` is true, a number in space is the component along z.
+    """
 
     plane: Parameter
     meaning: str = ""
@@ -163,7 +175,7 @@ class InSpace(Rule):
 
 @dataclass(frozen=True)
 class Points(Rule):
-    """At least so many points [x, y]."""
+    """A list of at least `least` points [x, y]."""
 
     least: int = 3
     meaning: str = ""
@@ -202,7 +214,7 @@ class Polygons(Rule):
 
 @dataclass(frozen=True)
 class Flag(Rule):
-    """true or false."""
+    """A truth value: true or false."""
 
     meaning: str = ""
     accepted: str = "true|false"
@@ -236,7 +248,7 @@ class Text(Rule):
 
 @dataclass(frozen=True)
 class Name(Rule):
-    """One word in a data file."""
+    """A name, which is written as one word to data files."""
 
     meaning: str = ""
     accepted: str = "letters, digits, _ - . without blanks, a letter first"
@@ -252,7 +264,7 @@ class Name(Rule):
 
 @dataclass(frozen=True)
 class Partners(Rule):
-    """Two names, which are sought in the scene (scenes/scene.py)."""
+    """The names of a contact pair; scenes/scene.py looks them up in the scene."""
 
     meaning: str = ""
     accepted: str = "two names, one at least of a body"
@@ -266,8 +278,9 @@ class Partners(Rule):
 
 @dataclass(frozen=True)
 class Function(Rule):
-    """Functions of time of the components, `single` of one quantity; time_functions.py checks
-    them.
+    """Functions of time, one for each component, or a `single` function of one quantity.
+
+    time_functions.py checks them.
     """
 
     meaning: str = ""
@@ -284,8 +297,9 @@ class Function(Rule):
 
 @dataclass(frozen=True)
 class Where(Rule):
-    """A part of a body's boundary: a side, a group of its file, or a region of space, {kind =
-    "half-space", point, normal} say.
+    """A part of a body's boundary: a side, a group of its file, or a region of space.
+
+    An example of a region is {kind = "half-space", point, normal}.
     """
 
     sides: tuple[str, ...] = ()

@@ -1,9 +1,9 @@
-"""The parameters of a run: names, defaults, ranges, units, meanings. Everything else about them is
-made from this table: flags.py writes the flags of the FreeFEM scripts
-(edp/core/input/parameters.idp), schema.py what editors know, docs/pages.py the table of
-docs/reference/parameters.md.
+"""The table of the parameters of a run: names, defaults, ranges, units and meanings.
 
-Numbers are in SI units. `auto`, and 0 where the meaning says so, leave a parameter to the program.
+All other texts about parameters are generated from this table: flags.py writes the flags of the
+FreeFEM scripts (edp/core/input/parameters.idp), schema.py the JSON schema for editors, and
+docs/pages.py the table of docs/reference/parameters.md. Numbers are in SI units. The program
+chooses a parameter with the value `auto`, or with 0 if the meaning of the parameter says so.
 """
 
 from dataclasses import replace
@@ -12,8 +12,8 @@ from .parameter import Parameter, integer, numbers, real, word
 
 __all__ = ["FALLING", "LAWS", "MESHED", "PARAMETERS", "SCRIPTS", "SIDEWAYS"]
 
-SIDEWAYS = ("disc-plane", "disc-block", "ball-plane")  # where a body may come down at an angle
-FALLING = (*SIDEWAYS, "ball-axisymmetric")  # the paper's cases, whose one material the flags name
+SIDEWAYS = ("disc-plane", "disc-block", "ball-plane")  # scripts with oblique impact
+FALLING = (*SIDEWAYS, "ball-axisymmetric")  # the paper's cases; the flags set their only material
 SCRIPTS = (
     "disc-plane",
     "disc-block",
@@ -23,16 +23,17 @@ SCRIPTS = (
     "bodies-axisymmetric",
     "bodies-3d",
 )
+# Scripts that read a mesh.
 MESHED = (
     "disc-plane",
     "ball-axisymmetric",
     "bodies",
     "bodies-axisymmetric",
     "bodies-3d",
-)  # those that read a mesh
+)
 LAWS = ("svk", "neohookean", "mooney-rivlin", "ogden", "incompressible")  # edp/core/law/laws.idp
 
-# without scripts behind the meaning: a parameter of all
+# A row without scripts behind the meaning is a parameter of all scripts.
 ROWS = (
     word(
         "law",

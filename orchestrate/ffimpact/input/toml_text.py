@@ -1,4 +1,4 @@
-"""The text of a TOML file of a scene's tables."""
+"""Writes the tables of a scene as the text of a TOML file."""
 
 import re
 
@@ -11,15 +11,16 @@ __all__ = ["to_toml"]
 
 
 def to_toml(table: dict) -> str:
-    """The tables, lists of tables and values of `table` as the text of a TOML file, numbers
-    with all their digits. Reading the text gives the same table. BadInput where a text in it is
-    not UTF-8, as the bytes of a path may be.
+    """The text of a TOML file with the tables, lists of tables and values of `table`.
+
+    Numbers keep all their digits: reading the text gives the same table. Raises BadInput if a text
+    is not UTF-8, as the bytes of a path may not be.
     """
     return tomli_w.dumps(_plain(table))
 
 
 def _plain(value):
-    """A value with Python's own numbers in place of numpy's."""
+    """A value with Python's numbers and lists in place of numpy's."""
     if isinstance(value, dict):
         return {_plain(key): _plain(one) for key, one in value.items()}
     if isinstance(value, list | tuple):

@@ -1,1 +1,1 @@
-"""Meshes of bodies: made with gmsh, read from files."""
+"""Meshes of bodies: generated with gmsh or read from files."""

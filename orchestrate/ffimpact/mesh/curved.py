@@ -1,10 +1,10 @@
-"""Which faces of a mesh of tetrahedra lie on spheres and cylinders: the rule that outline.idp has
-in the plane, for meshes of files.
+"""Finds the faces of a mesh of tetrahedra that lie on spheres and cylinders, for meshes of files.
 
-Faces that meet at 30 degrees or less are one surface. It is a sphere or a cylinder where all its
-corners lie on that, to 1e-9 of the radius, every edge spans at most 30 degrees, and the normal of
-every face is within 30 degrees of that of the sphere or cylinder at its middle; where it bends by
-less than 30 degrees in all, and everywhere else, faces are flat.
+The rule is that of outline.idp in the plane. Adjacent faces at an angle of 30 degrees or less form
+one surface. The surface is a sphere or cylinder if all its corners lie on it to 1e-9 of the radius,
+each edge spans at most 30 degrees, and each normal is within 30 degrees of the exact normal at the
+middle of the face. All other faces are flat, as are surfaces that bend by less than 30 degrees in
+total.
 """
 
 import math
@@ -16,17 +16,18 @@ from .solid_mesh import Curved
 
 __all__ = ["surfaces"]
 
-WIDEST = math.radians(
-    30
-)  # what two faces that meet, an edge, a normal may differ by; what a surface bends by at least
-ON = 1e-9  # of the radius
-PLACES = 5  # around the axis of a cylinder at least
-CORRECTIONS = 20  # of a cylinder's axis
+# Largest angle [rad] between adjacent faces, across an edge, and between a face's normal and the
+# exact one. Also the smallest angle by which a curved surface bends in total.
+WIDEST = math.radians(30)
+ON = 1e-9  # tolerance of distances relative to the radius, and of angles
+PLACES = 5  # smallest number of different angles of corners around the axis of a cylinder
+CORRECTIONS = 20  # number of Gauss-Newton iterations for the axis of a cylinder
 
 
 def surfaces(points: np.ndarray, faces: np.ndarray) -> list[tuple[Curved, np.ndarray]]:
-    """The spheres and cylinders, each with the numbers of its faces (f, 3), which are seen
-    counter-clockwise from outside.
+    """The spheres and cylinders of a mesh, each with the numbers of its faces.
+
+    `faces` (f, 3) are counter-clockwise seen from outside.
     """
     a, b, c = points[faces].transpose(1, 0, 2)
     normals = np.cross(b - a, c - a)
@@ -37,9 +38,9 @@ def surfaces(points: np.ndarray, faces: np.ndarray) -> list[tuple[Curved, np.nda
         own = np.flatnonzero(patch == k)
         if not _bends(normals[own]):
             continue
-        inner = np.setdiff1d(
-            faces[own], faces[patch != k]
-        )  # a strip along a rim lies on spheres and cylinders alike
+        # The corners of a strip along a rim, which has no inner vertices, can lie on a sphere and
+        # on a cylinder: only a cylinder is tried for it.
+        inner = np.setdiff1d(faces[own], faces[patch != k])
         corners = points[np.unique(faces[own])]
         one = _sphere(corners) if len(inner) else None
         one = one or _cylinder(corners, normals[own])
@@ -49,7 +50,7 @@ def surfaces(points: np.ndarray, faces: np.ndarray) -> list[tuple[Curved, np.nda
 
 
 def _patches(faces: np.ndarray, normals: np.ndarray) -> np.ndarray:
-    """The surface (f,) that each face belongs to."""
+    """The number (f,) of the surface to which each face belongs."""
     sides = np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     order = np.lexsort(sides.T)
     same = (sides[order[1:]] == sides[order[:-1]]).all(axis=1)
@@ -59,13 +60,13 @@ def _patches(faces: np.ndarray, normals: np.ndarray) -> np.ndarray:
 
 
 def _bends(normals: np.ndarray) -> bool:
-    """Whether two normals differ by 30 degrees or more."""
+    """Whether the normals (f, 3) of a surface span an angle of 30 degrees or more."""
     far = normals[(normals @ normals[0]).argmin()]
     return bool((normals @ far).min() <= math.cos(WIDEST * (1 - ON)))
 
 
 def _agrees(one: Curved, corners: np.ndarray, normals: np.ndarray) -> bool:
-    """Whether faces with these corners (f, 3, 3) lie on it."""
+    """Whether faces with corners (f, 3, 3) and unit normals (f, 3) lie on a sphere or cylinder."""
     arms = one.arms(corners)
     if abs(np.linalg.norm(arms, axis=2) - one.radius).max() > ON * one.radius:
         return False
@@ -79,20 +80,22 @@ def _agrees(one: Curved, corners: np.ndarray, normals: np.ndarray) -> bool:
 
 
 def _sphere(points: np.ndarray) -> Curved | None:
-    """That through the points, by least squares."""
+    """The sphere through points (n, 3), by least squares; None if the points do not lie on it."""
     middle, scale = points.mean(axis=0), np.ptp(points, axis=0).max()
     local = (points - middle) / scale
     found, *_ = np.linalg.lstsq(
         np.column_stack([2 * local, np.ones(len(local))]), (local**2).sum(axis=1), rcond=None
     )
-    radius = math.sqrt(max(found[3] + (found[:3] ** 2).sum(), 0.0))  # r^2 - 2 r c + c^2 = R^2
+    # The linear equations are 2 x.c + (R^2 - c^2) = x^2, with the centre c and the radius R.
+    radius = math.sqrt(max(found[3] + (found[:3] ** 2).sum(), 0.0))
     on = abs(np.linalg.norm(local - found[:3], axis=1) - radius).max() <= ON * radius
     return Curved(middle + scale * found[:3], np.array([]), scale * radius) if on else None
 
 
 def _cylinder(points: np.ndarray, normals: np.ndarray) -> Curved | None:
-    """That through the points, by least squares (Gauss and Newton) from the direction that is
-    across the normals.
+    """The cylinder through points (n, 3), by Gauss-Newton least squares; None if there is none.
+
+    The iteration starts with the axis that is most nearly orthogonal to all normals (f, 3).
     """
     middle, scale = points.mean(axis=0), np.ptp(points, axis=0).max()
     local, centre, axis = (

@@ -1,5 +1,6 @@
-"""Shapes of bodies in the plane: [[body]] tables as outlines (or meshes of files) about their
-centres of area, SI units.
+"""Shapes of bodies in the plane: outlines, or meshes of files, from `[[body]]` tables, in SI units.
+
+Outlines and meshes are given about the centroids of the bodies.
 """
 
 import math
@@ -34,7 +35,7 @@ LOOPS = {
 
 
 def shape(body: Body, folder: Path) -> tuple[Outline, mesh.Mesh | None]:
-    """The outline of a body, and its mesh where a file brings it, both about the centre of area."""
+    """The outline of a body, and its mesh if a file contains one, both about the centroid."""
     found = mesh_file(body, folder, "disc-plane") if isinstance(body, Mesh) else None
     outline = mesh_outline(found) if found else _outline(body)
     centre = outline.area_centre
@@ -42,8 +43,9 @@ def shape(body: Body, folder: Path) -> tuple[Outline, mesh.Mesh | None]:
 
 
 def motion(body: Body) -> dict:
-    """Where a body is at the start and how it moves: position [m], angle [rad], velocity [m/s],
-    spin [rad/s].
+    """The initial position (2,) [m], angle [rad], velocity (2,) [m/s] and spin [rad/s] of a body.
+
+    Raises BadInput if the velocity is over- or underdetermined.
     """
     return {
         "position": np.array(body.position),
@@ -71,7 +73,7 @@ def _velocity(body: Body) -> np.ndarray:
 
 
 def _sin(degrees: float) -> float:
-    """The sine, exact at multiples of a right angle."""
+    """The sine of an angle in degrees, exact at multiples of a right angle."""
     return (
         (0.0, 1.0, 0.0, -1.0)[int(degrees // 90) % 4]
         if degrees % 90 == 0
@@ -93,10 +95,12 @@ def _outline(body: Body) -> Outline:
 
 
 def _polygon(body: Polygon) -> Outline:
-    """The polygon with its holes; BadInput where it crosses itself, or a hole is not inside it
-    and apart from the others.
+    """The outline of a polygon with holes.
+
+    Raises BadInput if a polygon crosses itself, or if a hole is not inside the outer polygon and
+    apart from the other holes.
     """
-    import shapely  # here: other bodies need none
+    import shapely  # imported here: other bodies do not need it
 
     outer, holes = np.array(body.vertices), [np.array(one) for one in body.holes or []]
     named = [
@@ -140,9 +144,11 @@ def check_simple(path: str, corners: np.ndarray) -> None:
 
 
 def mesh_file(body: Mesh, folder: Path, script: str) -> mesh.Mesh:
-    """The mesh of a body's file, checked as any mesh file of edp/<script>.edp is, which also
-    says what lies on circles: a whole body in the plane, or half a meridian plane, or what of
-    it is to the right of an axis that it does not reach.
+    """The mesh of a body's file in m, with the centres of the circles on which its edges lie.
+
+    FreeFEM checks the mesh as edp/<script>.edp checks each mesh file, and finds the circles. The
+    mesh is a whole body in the plane, half a meridian section with edges on the axis, or a section
+    to the right of an axis that it does not reach. Raises BadInput if the mesh is not accepted.
     """
     name, file = body.file or "", None
     if "\0" in name or not _may_be_read(folder / name):
@@ -156,7 +162,7 @@ def mesh_file(body: Mesh, folder: Path, script: str) -> mesh.Mesh:
             file.flush()
             found = mesh.read(Path(file.name))
             if script == "ball-axisymmetric" and not (found.labels == mesh.AXIS).any():
-                script = "disc-plane"  # of a tube: a whole outline
+                script = "disc-plane"  # the section of a tube is a closed outline
             elif script == "disc-plane" and (found.labels == mesh.AXIS).any():
                 raise BadInput(
                     f"mesh: '{brief(name)}' has edges with the label {mesh.AXIS} of a symmetry axis (accepted: whole bodies, "
@@ -169,8 +175,8 @@ def mesh_file(body: Mesh, folder: Path, script: str) -> mesh.Mesh:
                     f"contact boundary, but labels from {found.labels.min()} to "
                     f"{found.labels.max()}"
                 )
-            # as if all of it may touch: that script has a plane below, which this scene may not
-            # have
+            # For the check the whole boundary may come into contact: the script has a plane below
+            # the body, which this scene need not have.
             labels = np.where(found.labels > mesh.AXIS, mesh.FREE, found.labels)
             mesh.write(replace(found, labels=labels), Path(file.name))
             said = describe(
@@ -186,16 +192,20 @@ def mesh_file(body: Mesh, folder: Path, script: str) -> mesh.Mesh:
 
 
 def _may_be_read(path: Path) -> bool:
-    """Not a folder, and not a pipe or device, which would be waited for."""
+    """Whether a path may be opened: it is a file or does not exist.
+
+    Folders are refused, and so are pipes and devices, because reading would wait for them.
+    """
     try:
         return path.is_file() or not path.exists()
-    except OSError:  # too long a name, a folder that may not be entered: said where it is opened
+    except OSError:  # too long a name or a forbidden folder: opening the file reports the error
         return True
 
 
 def mesh_outline(found: mesh.Mesh) -> Outline:
-    """The boundary of a mesh as loops, that of the largest area first; edges on circles are
-    arcs, a loop on one circle is that circle.
+    """The boundary of a mesh as loops, the loop with the largest area first.
+
+    Edges on circles become arcs. A loop whose edges all lie on one circle becomes that circle.
     """
     hub = {tuple(sorted(edge)): at for edge, at in zip(found.edges.tolist(), found.hubs)}
     following = dict(mesh.boundary(found.triangles).tolist())

@@ -1,7 +1,6 @@
-"""A mesh in gmsh's format as one of ours: its triangles in the plane, its boundary from them,
-labels from its physical curves.
+"""Reads plane meshes in gmsh's format: triangles, their boundary, labels from physical curves.
 
-Without physical curves all of the boundary may touch, the outlines of holes, too.
+Without physical curves the whole boundary may come into contact, including the outlines of holes.
 """
 
 import tempfile
@@ -14,20 +13,20 @@ from . import mesh
 
 __all__ = ["load", "read", "taken"]
 
-TRIANGLES = {
-    2: 3,
-    9: 6,
-}  # gmsh's types of element that are read: their nodes, of which the first three are the corners
-LINES = {1: 2, 8: 3}  # likewise, the first two are the ends
-OTHER = mesh.Mesh.NEVER  # the label of what is neither contact nor axis
+# Numbers of nodes by gmsh's element types that are read. The first three nodes of a triangle are
+# the corners, the first two nodes of a line are the ends.
+TRIANGLES = {2: 3, 9: 6}
+LINES = {1: 2, 8: 3}
+OTHER = mesh.Mesh.NEVER  # label of edges that are neither contact boundary nor axis
 LABELS = {"contact": mesh.FREE, "symmetry": mesh.AXIS}
 
 
 def load(path: Path, alone: bool = False) -> bytes:
-    """The mesh in a file as FreeFEM's .msh: one of gmsh is converted, one of FreeFEM is taken
-    as it is (what is in it is checked by edp/core/input/mesh-file.idp). A body `alone` on a
-    plane touches nothing in its holes. BadInput where it cannot be read, or is one of gmsh that
-    gmsh or we cannot use.
+    """Returns the mesh of a file as the bytes of a FreeFEM .msh file.
+
+    A gmsh file is converted. A FreeFEM file is returned unchanged; edp/core/input/mesh-file.idp
+    checks its content. If the body is `alone` on a plane, the outlines of its holes never come into
+    contact. Raises BadInput if the file cannot be read or a gmsh mesh is not accepted.
     """
     try:
         text = path.read_bytes()
@@ -36,10 +35,8 @@ def load(path: Path, alone: bool = False) -> bytes:
     if not text.startswith(b"$"):
         return text
     with tempfile.TemporaryDirectory() as folder:
-        copy, made = (
-            Path(folder) / "mesh.msh",
-            Path(folder) / "freefem.msh",
-        )  # gmsh goes by the ending of the name
+        # gmsh recognises the format by the ending of the name
+        copy, made = Path(folder) / "mesh.msh", Path(folder) / "freefem.msh"
         copy.write_bytes(text)
         try:
             found = mesh.in_own_process(read, copy)
@@ -50,18 +47,20 @@ def load(path: Path, alone: bool = False) -> bytes:
 
 
 def read(path: Path) -> mesh.Mesh:
-    """The mesh in a gmsh file, lengths in m."""
+    """The mesh of a gmsh file, lengths in m. Raises BadInput if gmsh cannot read the file."""
     with mesh.gmsh_session() as gmsh:
         try:
             gmsh.open(str(path))
-        except Exception as error:  # gmsh knows no other
+        except Exception as error:  # gmsh raises plain exceptions
             raise BadInput(f"gmsh cannot read it: {error}") from None
         return taken(gmsh.model)
 
 
 def taken(model) -> mesh.Mesh:
-    """The mesh in a model of gmsh: triangles turned counter-clockwise, vertices that no
-    triangle uses left out.
+    """The mesh of a gmsh model, with counter-clockwise triangles and without unused vertices.
+
+    Raises BadInput if the model is not flat, has other elements than triangles, or has physical
+    curves but no contact boundary among them.
     """
     points, triangles, used = mesh.elements_of(model, (2, 3), TRIANGLES, "triangle", "triangles")
     curves = _physical_curves(model)
@@ -76,8 +75,9 @@ def taken(model) -> mesh.Mesh:
     else:
         number = {int(tag): k for k, tag in enumerate(used)}
         labelled = {}
-        for a, b, label in curves:  # of a line in several groups the one that says something
-            if a not in number or b not in number:  # beside all triangles
+        # A line in several groups gets the label of contact or symmetry if one group defines it.
+        for a, b, label in curves:
+            if a not in number or b not in number:  # the line belongs to no triangle
                 continue
             edge = frozenset((number[a], number[b]))
             if {label, labelled.get(edge)} == set(LABELS.values()):
@@ -100,8 +100,9 @@ def taken(model) -> mesh.Mesh:
 
 
 def _physical_curves(model) -> list[tuple[int, int, int]] | None:
-    """(node, node, label) of every line in a physical curve, None where there is no such curve.
-    A name decides what the label is, a number where there is no name.
+    """Returns (node, node, label) of each line in a physical curve, None without physical curves.
+
+    The name of the curve determines the label; the number of the curve does if it has no name.
     """
     groups = model.getPhysicalGroups(1)
     lines = []

@@ -1,9 +1,9 @@
-"""Meshes by gmsh: a disc (or half of it) graded towards its contact arc, and what is inside closed
-curves, written as FreeFEM's own .msh.
+"""Plane meshes by gmsh: discs or half discs that are graded towards the contact arc, and the inside
+of closed curves; written in FreeFEM's .msh format.
 
-Boundary labels: 1 = the free outer boundary, 2 = the symmetry axis x = 0. The triangles are
-straight; the FreeFEM side curves the boundary. The lowest point of the disc touches the plane y =
-0.
+Boundary labels: 1 = free outer boundary, which may come into contact, 2 = symmetry axis x = 0. The
+triangles are straight; the FreeFEM scripts curve the boundary. The lowest point of a disc lies on
+the plane y = 0.
 """
 
 import atexit
@@ -58,29 +58,32 @@ __all__ = [
 ]
 
 FREE, AXIS = 1, 2  # boundary labels
-# of a triangle; of a tetrahedron, seen from outside
+# Vertices of the sides of a triangle (counter-clockwise) and of the faces of a tetrahedron
+# (counter-clockwise seen from outside).
 SIDES = {
     3: np.array([[0, 1], [1, 2], [2, 0]]),
     4: np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]]),
 }
-# that gmsh's wheel needs, with what they need
+# Installs the system libraries that gmsh's wheel needs, with their dependencies.
 LIBRARIES = "apt-get install libglu1-mesa libxcursor1 libxft2 libxinerama1 libgomp1"
-SAMPLED = 0.25  # a step between points at which an element size is asked for, over that size
-GROWTH = 0.3  # element size gained per length of distance from the contact arc
-# decimals of what gmsh is given, in sizes of the body: round-off settles ties, and the mesh would
-# depend on the unit of length
+SAMPLED = 0.25  # largest step between samples of the size field on a curve, over the element size
+GROWTH = 0.3  # increase of the element size per length of distance from the contact arc
+# Decimals of the coordinates and sizes that gmsh gets, relative to the size of the body. Without
+# rounding, round-off would decide ties, and the mesh would depend on the unit of length.
 DIGITS = 10
-# the region of the triangles of our own discs, whose outline is a circle however long its edges are
-# (edp/core/input/mesh-file.idp)
+# Region number of the triangles of discs that this module meshes: edp/core/input/mesh-file.idp
+# treats their outline as a circle, however long its edges are.
 OWN = 360
 Curve = Callable[[np.ndarray], np.ndarray]  # points (n, 2) [m] at parameters (n,) in [0, 1]
 
 
 @dataclass(frozen=True)
 class Mesh:
-    """points (n, 2) in m, triangles (t, 3) counter-clockwise, edges (e, 2) of the boundary,
-    their labels (e,); `hubs` (e, 2) are the centres of the circles that the edges of a file lie
-    on, nan of straight ones; `region` is that of all triangles.
+    """A mesh of triangles in the plane.
+
+    `points` (n, 2) are in m, `triangles` (t, 3) are counter-clockwise, `edges` (e, 2) of the
+    boundary have the `labels` (e,). `hubs` (e, 2) [m], of meshes of files, are the centres of the
+    circles on which edges lie, nan for straight edges. `region` is the number of all triangles.
     """
 
     points: np.ndarray
@@ -89,40 +92,42 @@ class Mesh:
     labels: np.ndarray
     hubs: np.ndarray | None = None
     region: int = 0
-    NEVER: ClassVar[int] = 3  # the label of edges that may not touch
+    NEVER: ClassVar[int] = 3  # label of edges that never come into contact
 
     @property
     def sides(self) -> np.ndarray:
         return self.edges
 
     def moved(self, by: np.ndarray) -> "Mesh":
-        """The same mesh, `by` [m] elsewhere."""
+        """The mesh, translated by the vector `by` (2,) [m]."""
         return replace(
             self, points=self.points + by, hubs=None if self.hubs is None else self.hubs + by
         )
 
     def scaled(self, factor: float) -> "Mesh":
-        """The same mesh, `factor` times as large."""
+        """The mesh, scaled by `factor` about the origin."""
         hubs = None if self.hubs is None else self.hubs * factor
         return replace(self, points=self.points * factor, hubs=hubs)
 
 
-MOST_ON_CURVE = 50_000  # samples of a curve: more than any run could follow
+MOST_ON_CURVE = 50_000  # largest number of samples of a curve; no run could use a mesh so fine
 
 
 @dataclass(frozen=True)
 class Sizes:
-    """Element sizes of a body [m]: in the bulk, and within `near` (its points, as it is in its
-    mesh) on the outline, to `slack`.
+    """The size field of a body: element sizes [m] in the bulk and at the expected contact.
+
+    `near` (n, axes) [m] are the outline points of the expected contact, in the coordinates of the
+    body's mesh. The size `contact` applies up to the distance `slack` from these points.
     """
 
     bulk: float
     contact: float
     near: np.ndarray
-    slack: float  # half the distance of points on the outline
+    slack: float  # half the spacing of points on the outline [m]
 
     def at(self, points: np.ndarray) -> np.ndarray:
-        """Element sizes (n,): growing linearly with the distance from where the body touches."""
+        """Element sizes (n,) [m] at points (n, axes), linear in the distance from the contact."""
         if not len(self.near):
             return np.full(len(points), self.bulk)
         away = np.maximum(nearest(points, self.near) - self.slack, 0.0)
@@ -130,7 +135,7 @@ class Sizes:
 
 
 def nearest(points: np.ndarray, others: np.ndarray) -> np.ndarray:
-    """Distances (n,) to the nearest of the others."""
+    """Distances (n,) [m] of points (n, axes) from the nearest of the other points (m, axes)."""
     return cKDTree(others).query(points)[0]
 
 
@@ -141,13 +146,13 @@ def disc(
     half: bool,
     contact_arc: float = math.pi / 4,
 ) -> Mesh:
-    """A disc, or its half x >= 0, centre (0, radius), all lengths in m.
+    """The mesh of a disc with the centre (0, radius), or of its half x >= 0. All lengths are in m.
 
-    The size is contact_mesh_size along the lowest arc of +-contact_arc radians (seen from the
-    centre) and grows linearly to mesh_size away from it. Vertices of the circle and of the axis
-    lie on them to rounding.
+    The element size is contact_mesh_size along the lowest arc of +-contact_arc radians (seen from
+    the centre) and grows linearly to mesh_size with the distance from this arc. Vertices of the
+    circle and of the axis lie on them to round-off.
     """
-    # gmsh's tolerances are absolute
+    # The mesh is generated for the radius 1, because gmsh's tolerances are absolute.
     bulk, contact, arc = (
         round(size, DIGITS)
         for size in (mesh_size / radius, contact_mesh_size / radius, contact_arc)
@@ -180,11 +185,12 @@ def disc(
 
 
 def _outline(geo, half: bool, contact_arc: float) -> tuple[list[int], list[int]]:
-    """Arcs of the unit circle, counter-clockwise from its lowest point, and the axis; as curves
-    of gmsh.
+    """Adds the unit circle to gmsh; returns its arcs and the axis as numbers of curves.
+
+    The arcs are counter-clockwise from the lowest point. The axis is empty for a whole disc.
     """
 
-    def point(angle):  # measured from the lowest point
+    def point(angle):  # angle [rad] from the lowest point
         return geo.addPoint(math.sin(angle), -math.cos(angle), 0)
 
     centre, bottom, top = geo.addPoint(0, 0, 0), point(0.0), point(math.pi)
@@ -196,9 +202,12 @@ def _outline(geo, half: bool, contact_arc: float) -> tuple[list[int], list[int]]
 
 
 def mesh_body(boundary: list[list[tuple[Curve, float, int]]], sizes: Sizes, scale: float) -> Mesh:
-    """The mesh inside closed curves, of a body about as large as `scale` [m]: the ends of their
-    pieces are vertices, and all vertices of the boundary lie on them to rounding; boundary
-    edges have the body to their left, and the label of their piece.
+    """The mesh inside closed curves, the outer curve first.
+
+    `boundary` lists the segments of each closed curve: the curve, the largest element size [m] on
+    it and its label. The ends of segments become vertices, and all boundary vertices lie on the
+    curves to round-off. Boundary edges have the body to the left and the label of their segment.
+    `scale` [m] is about the size of the body.
     """
     pieces = [[nodes_on(curve, largest, sizes) for curve, largest, _ in loop] for loop in boundary]
     labels = [
@@ -206,10 +215,9 @@ def mesh_body(boundary: list[list[tuple[Curve, float, int]]], sizes: Sizes, scal
         for loop, each in zip(boundary, pieces)
     ]
     loops = [np.vstack(each) for each in pieces]
-    loops = [
-        nodes if k == 0 else nodes[::-1] for k, nodes in enumerate(loops)
-    ]  # a hole has one label
-    # gmsh's tolerances are absolute
+    # Holes are reversed; their labels are not, because a hole has a single label.
+    loops = [nodes if k == 0 else nodes[::-1] for k, nodes in enumerate(loops)]
+    # Lengths are divided by `scale`, because gmsh's tolerances are absolute.
     bulk, inside = (
         round(sizes.bulk / scale, DIGITS),
         [np.round(nodes / scale, DIGITS) for nodes in loops],
@@ -231,13 +239,14 @@ def mesh_body(boundary: list[list[tuple[Curve, float, int]]], sizes: Sizes, scal
 
 
 def nodes_on(curve: Curve, largest: float, sizes: Sizes) -> np.ndarray:
-    """Vertices (n, 2) on a curve from its first end on, without its last, in steps ds with the
-    integral of ds / size constant.
+    """Vertices (n, 2) on a curve, with its first end and without its last.
+
+    The integral of ds / size is the same between any two successive vertices. `largest` [m] bounds
+    the sizes. Raises BadInput if the curve needs more than MOST_ON_CURVE samples.
     """
     s, size = np.array([0.0, 1.0]), np.array([])
-    while len(size) < len(
-        s
-    ):  # halved until the size, which is Lipschitz, is known between points too
+    # Intervals are halved until the size field, which is Lipschitz, is resolved between samples.
+    while len(size) < len(s):
         size = np.minimum(sizes.at(curve(s)), largest)
         step = np.linalg.norm(np.diff(curve(s), axis=0), axis=1)
         coarse = step > SAMPLED * np.minimum(size[1:], size[:-1])
@@ -253,7 +262,7 @@ def nodes_on(curve: Curve, largest: float, sizes: Sizes) -> np.ndarray:
 
 
 def _loop(model, nodes: np.ndarray) -> tuple[list[int], list[int]]:
-    """Points and lines of gmsh along a loop, one element a line."""
+    """Adds points and lines along a loop to gmsh, one element per line; returns their numbers."""
     points = [model.geo.addPoint(x, y, 0) for x, y in nodes]
     lines = [model.geo.addLine(a, b) for a, b in zip(points, [*points[1:], points[0]])]
     for line in lines:
@@ -262,19 +271,20 @@ def _loop(model, nodes: np.ndarray) -> tuple[list[int], list[int]]:
 
 
 def _grade(field, loops: list[np.ndarray], curves: tuple[list[int], ...], bulk: float) -> int:
-    """A field of element sizes inside: those of the edges on the outline, growing linearly with
-    the distance from them up to the bulk's. Edges of about one length are one source.
+    """Adds the size field inside the loops to gmsh and returns its number.
+
+    On the outline the size is the length of the edges. It grows linearly with the distance from the
+    outline up to the size of the bulk. Edges of similar lengths share one gmsh field.
     """
     length = np.concatenate(
         [np.linalg.norm(np.roll(nodes, -1, axis=0) - nodes, axis=1) for nodes in loops]
     )
-    fineness = np.ceil(2 * np.log2(np.maximum(bulk / length, 1)) - 1e-9).astype(
-        int
-    )  # from bulk down in steps of sqrt(1/2)
+    # levels of the size, from the bulk's down in steps of sqrt(1/2)
+    fineness = np.ceil(2 * np.log2(np.maximum(bulk / length, 1)) - 1e-9).astype(int)
     lines, sources = np.concatenate(curves), []
     for level in np.unique(fineness):
         size = bulk * np.sqrt(0.5) ** level
-        # points on a line; of 2 gmsh makes none
+        # 5 sampling points on a line: with 2 gmsh would use none
         sources.append(
             graded(field, "CurvesList", lines[fineness == level], (size, bulk), sampling=5)
         )
@@ -286,10 +296,11 @@ def _grade(field, loops: list[np.ndarray], curves: tuple[list[int], ...], bulk: 
 def _filled(
     gmsh, loops: Sequence[Sequence[int]], sizes: Callable
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """elements_of() the triangles inside loops of curves of gmsh, the outer first, with `sizes`
-    a field that is made of its fields.
+    """Meshes the inside of loops of gmsh curves and returns its triangles as `elements_of` does.
+
+    The outer loop is the first. `sizes` adds the size field to gmsh and returns its number.
     """
-    gmsh.option.setNumber("Mesh.Algorithm", 6)  # frontal Delaunay: the best triangles
+    gmsh.option.setNumber("Mesh.Algorithm", 6)  # frontal Delaunay: triangles of the best quality
     for source in ("FromPoints", "FromCurvature", "ExtendFromBoundary"):
         gmsh.option.setNumber(f"Mesh.MeshSize{source}", 0)
     gmsh.model.geo.addPlaneSurface([gmsh.model.geo.addCurveLoop(list(lines)) for lines in loops])
@@ -297,19 +308,19 @@ def _filled(
     field = gmsh.model.mesh.field
     field.setAsBackgroundMesh(sizes(field))
     gmsh.model.mesh.generate(2)
-    return elements_of(
-        gmsh.model, (2,), {2: 3}, "triangle", "triangles"
-    )  # gmsh also keeps centres of arcs
+    # elements_of leaves out the centres of arcs, which gmsh keeps as nodes
+    return elements_of(gmsh.model, (2,), {2: 3}, "triangle", "triangles")
 
 
 # ---- gmsh
 
-_alone = threading.RLock()  # gmsh has one model, and serves one thread at a time
+_alone = threading.RLock()  # gmsh has a single model and serves one thread at a time
 
 
 def start_gmsh() -> ModuleType:
-    """The module gmsh, started, also where a script that uses gmsh itself has ended it;
-    NotInstalled where a system library is missing.
+    """The initialised module gmsh, even if a script that uses gmsh itself has finalised it.
+
+    Raises NotInstalled if a system library is missing.
     """
     with _alone:
         gmsh = _loaded()
@@ -320,7 +331,7 @@ def start_gmsh() -> ModuleType:
 
 @cache
 def _loaded() -> ModuleType:
-    """The module gmsh, which ends with this program."""
+    """The module gmsh, which is finalised when this program ends."""
     try:
         import gmsh
     except OSError as error:
@@ -332,10 +343,10 @@ def _loaded() -> ModuleType:
 
 
 def _initialize(gmsh: ModuleType) -> None:
-    """Starts gmsh.
+    """Initialises gmsh and restores the signal handlers.
 
-    For a moment gmsh sets signal handlers back to their defaults: a run starts it before it
-    makes anything that a signal could leave behind.
+    During the initialisation the signal handlers have their defaults. So a run starts gmsh before
+    it creates anything that a signal could leave behind.
     """
     handlers = {
         number: signal.getsignal(number)
@@ -348,12 +359,14 @@ def _initialize(gmsh: ModuleType) -> None:
 
 
 def in_own_process(read: Callable, path: Path, *given):
-    """read(path, *given) in a process of its own, where gmsh reads the file: some broken files
-    kill it. BadInput as there, or with how it ended.
+    """Returns read(path, *given) from a separate process, because some broken files crash gmsh.
+
+    Raises the BadInput of `read`, or BadInput with the signal or exit code of the process.
     """
     modules = os.pathsep.join([str(PACKAGE.parent), *filter(None, [os.environ.get("PYTHONPATH")])])
     command = [sys.executable, "-P", "-c", f"from {__name__} import _answer; _answer()"]
-    with tempfile.NamedTemporaryFile() as answer:  # in this working folder: relative paths stay
+    # The process keeps the working folder, so relative paths stay valid.
+    with tempfile.NamedTemporaryFile() as answer:
         child = subprocess.run(
             [*command, answer.name],
             env=os.environ | {"PYTHONPATH": modules},
@@ -361,7 +374,8 @@ def in_own_process(read: Callable, path: Path, *given):
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
         )
-        if child.returncode == 0 and (said := answer.read()):  # a script in a geometry may end gmsh
+        # The file is empty if a script in a geometry has ended the process.
+        if child.returncode == 0 and (said := answer.read()):
             found = pickle.loads(said)
             if isinstance(found, BadInput):
                 raise BadInput(str(found).replace(str(path), path.name))
@@ -375,7 +389,7 @@ def in_own_process(read: Callable, path: Path, *given):
 
 
 def _answer() -> None:
-    """In that process: what was found, or why not, into the file."""
+    """Runs in the separate process: writes the result, or the BadInput, to the answer file."""
     read, *given = pickle.load(sys.stdin.buffer)
     try:
         found = read(*given)
@@ -386,12 +400,15 @@ def _answer() -> None:
 
 @contextmanager
 def gmsh_session() -> Iterator[ModuleType]:
-    """The module gmsh as it is at its start, silent, for this thread alone."""
+    """Provides the module gmsh with default options, without output, to one thread at a time.
+
+    The model is cleared at the end.
+    """
     with _alone:
         gmsh = start_gmsh()
         gmsh.option.restoreDefaults()
         gmsh.option.setNumber("General.Terminal", 0)
-        gmsh.option.setNumber("General.AbortOnError", 2)  # exceptions, as after initialize()
+        gmsh.option.setNumber("General.AbortOnError", 2)  # errors raise exceptions
         try:
             yield gmsh
         finally:
@@ -406,8 +423,10 @@ def graded(
     sampling: int = 0,
     flat: float = 0.0,
 ) -> int:
-    """A field of gmsh: the first of the sizes up to the distance `flat` from the sources (of a
-    kind: PointsList, CurvesList), growing linearly with it to the other. `sampling`: points on
+    """Adds a size field to gmsh that grows with the distance from sources; returns its number.
+
+    The size is the first of `sizes` up to the distance `flat` from the sources and grows linearly
+    from there to the second. `kind` is PointsList or CurvesList, `sampling` the number of points on
     a curve.
     """
     distance, size = field.add("Distance"), field.add("Threshold")
@@ -429,9 +448,11 @@ def graded(
 def elements_of(
     model, dimensions: Sequence[int], nodes: dict[int, int], one: str, many: str
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Vertices (n, 3) and elements (t, corners) of a model of gmsh, those of `nodes` (gmsh's
-    types: how many, corners first), and gmsh's numbers of the vertices; BadInput where there
-    are none, or others.
+    """Returns vertices (n, 3), elements (t, corners) and gmsh's numbers (n,) of the vertices.
+
+    `nodes` maps the accepted gmsh element types to their numbers of nodes, of which the first are
+    the corners. Only vertices of elements are returned. Raises BadInput if the model contains no
+    elements or other types; `one` and `many` are the names of an element and of elements.
     """
     kinds = [kind for dimension in dimensions for kind in model.mesh.getElementTypes(dimension)]
     for kind in kinds:
@@ -444,7 +465,7 @@ def elements_of(
         raise BadInput(f"it has no {many}")
     found = [model.mesh.getElementsByType(kind)[1].reshape(-1, nodes[kind]) for kind in kinds]
     corners = np.vstack([each[:, : min(nodes.values())] for each in found])
-    # gmsh 2.2 writes an element once for each physical group that it belongs to
+    # The format 2.2 contains an element once for each physical group to which it belongs.
     once = np.unique(np.sort(corners, axis=1), axis=0, return_index=True)[1]
     used, elements = np.unique(corners[np.sort(once)], return_inverse=True)
     tags, coordinates, _ = model.mesh.getNodes()
@@ -456,7 +477,7 @@ def elements_of(
 
 
 def counter_clockwise(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """The triangles (t, 3), those that are clockwise turned over."""
+    """The triangles (t, 3), with clockwise ones reversed."""
     a, b, c = (points[triangles[:, k]] for k in range(3))
     clockwise = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) < (b[:, 1] - a[:, 1]) * (
         c[:, 0] - a[:, 0]
@@ -465,8 +486,9 @@ def counter_clockwise(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
 
 
 def boundary(cells: np.ndarray) -> np.ndarray:
-    """The sides (e, 2) of triangles or faces (f, 3) of tetrahedra that belong to one cell,
-    which is to their left, or seen counter-clockwise from outside.
+    """The boundary: sides (e, 2) of triangles, or faces (f, 3) of tetrahedra, of a single cell.
+
+    Sides have the cell to the left; faces are counter-clockwise seen from outside.
     """
     sides = cells[:, SIDES[cells.shape[1]]].reshape(-1, cells.shape[1] - 1)
     _, first, count = np.unique(
@@ -476,8 +498,10 @@ def boundary(cells: np.ndarray) -> np.ndarray:
 
 
 def pieces(points: int, elements: np.ndarray) -> np.ndarray:
-    """The number (points,) of the piece that each point belongs to: elements (n, corners) hang
-    together by common points.
+    """The number (points,) of the connected component of each point.
+
+    Elements (n, corners) are connected if they have a point in common. `points` is the number of
+    points.
     """
     links = elements[:, :-1].ravel(), elements[:, 1:].ravel()
     return connected_components(
@@ -486,16 +510,21 @@ def pieces(points: int, elements: np.ndarray) -> np.ndarray:
 
 
 def inner_outlines(points: np.ndarray, sides: np.ndarray) -> list[np.ndarray]:
-    """Of each hole of a body the numbers of its sides among those of the boundary (f, axes). The
-    outline that has the leftmost point is the outer one."""
+    """For each hole of a body, the numbers of its sides among the boundary sides (f, axes).
+
+    The outline with the leftmost point is the outer one.
+    """
     piece = pieces(len(points), sides)[sides[:, 0]]
     outer = piece[points[sides][:, :, 0].min(axis=1).argmin()]
     return [np.flatnonzero(piece == inner) for inner in np.unique(piece) if inner != outer]
 
 
 def without_inner(made, keeps: Callable[[np.ndarray, np.ndarray], bool] = lambda own, rest: False):
-    """The Mesh or SolidMesh with inner outlines that may not touch, except those that are kept, for
-    which `keeps` is asked with the vertices (n, axes) on it and on the rest of the boundary."""
+    """The Mesh or SolidMesh with inner outlines that never come into contact.
+
+    An inner outline keeps its labels if `keeps`(own, rest) is true for the vertices (n, axes) on
+    the outline and on the rest of the boundary.
+    """
     labels = made.labels.copy()
     for own in inner_outlines(made.points, made.sides):
         rest = np.delete(made.sides, own, axis=0)
@@ -505,11 +534,14 @@ def without_inner(made, keeps: Callable[[np.ndarray, np.ndarray], bool] = lambda
 
 
 def write(mesh: Mesh, path: Path, regions: np.ndarray | None = None) -> None:
-    """Writes FreeFEM's 2D .msh: counts; x y label; v1 v2 v3 region; v1 v2 label; vertices count
-    from 1. `regions` (t,): if several.
+    """Writes FreeFEM's 2D .msh format, with vertices counted from 1.
+
+    The lines are: numbers of vertices, triangles and edges; x y label; v1 v2 v3 region; v1 v2
+    label. `regions` (t,) replaces the common region of all triangles.
     """
     point_labels = np.zeros(len(mesh.points), dtype=int)
-    for label in np.unique(mesh.labels)[::-1]:  # where two meet, the contact's
+    # A vertex of edges with different labels gets the smallest, which is that of the contact.
+    for label in np.unique(mesh.labels)[::-1]:
         point_labels[mesh.edges[mesh.labels == label]] = label
     regions = np.full(len(mesh.triangles), mesh.region) if regions is None else regions
     with open(path, "w") as file:
@@ -524,7 +556,7 @@ def write(mesh: Mesh, path: Path, regions: np.ndarray | None = None) -> None:
 
 
 def read(path: Path) -> Mesh:
-    """Reads what `write` writes; BadInput where the file is not such a mesh."""
+    """Reads a mesh in the format of `write`; raises BadInput if the file is not such a mesh."""
     try:
         words = path.read_text().split()
         n, t, e = map(int, words[:3])

@@ -1,8 +1,8 @@
-"""Bodies of revolution about the axis x = 0: [[body]] tables (docs: scenes) as their section with
-a plane through the axis, SI units.
+"""Bodies of revolution about the axis x = 0: their meridian sections, in SI units.
 
-x is the radius, y the axis. The section is symmetric about x = 0: an Outline about the centre of
-volume, of which the half x >= 0 is meshed.
+The sections are made from the `[[body]]` tables of a scene (docs: scenes). x is the radius, y the
+coordinate along the axis. A section is an Outline about the centre of volume that is symmetric
+about x = 0; its half x >= 0 is meshed.
 """
 
 from collections.abc import Callable
@@ -45,16 +45,16 @@ LOOPS = {
 
 
 def shape(body: Body, folder: Path) -> tuple[Outline, mesh.Mesh | None]:
-    """The section of a body, and the mesh of its half x >= 0 where a file brings it, both about
-    the centre of volume.
+    """The section of a body, and the mesh of its half x >= 0 if a file contains one.
+
+    Both are about the centre of volume. Raises BadInput if the body is not accepted.
     """
     if isinstance(body, Mesh):
         half = flat.mesh_file(body, folder, "ball-axisymmetric")
         if not (half.labels == mesh.AXIS).any():
             return _tube_mesh(body, half)
-        half.points[np.unique(half.edges[half.labels == mesh.AXIS]), 0] = (
-            0.0  # what a file has of the axis to round-off
-        )
+        # Vertices on the axis get x = 0 exactly; in a file they lie there to round-off.
+        half.points[np.unique(half.edges[half.labels == mesh.AXIS]), 0] = 0.0
         centre = np.array([0.0, _centre_of_volume(half.points[half.triangles])])
         half = half.moved(-centre)
         return flat.mesh_outline(whole(half)), half
@@ -69,7 +69,7 @@ def shape(body: Body, folder: Path) -> tuple[Outline, mesh.Mesh | None]:
 
 
 def motion(body: Body) -> dict:
-    """Where a body is at the start and how it moves along the axis."""
+    """The initial position (2,) [m] and velocity (2,) [m/s] of a body; angle and spin are 0."""
     return {
         "position": np.array(body.position),
         "angle": 0.0,
@@ -79,14 +79,14 @@ def motion(body: Body) -> dict:
 
 
 def _loop(body: Body) -> Loop:
-    """The outline of a section, with corners where it crosses the axis."""
+    """The outline of a section that reaches the axis, with corners where it crosses the axis."""
     if isinstance(body, Polygon):
         return Loop(closed_over_axis(body.at("vertices"), np.array(body.vertices)))
     return LOOPS[body.shape](*body.sizes)
 
 
 def _check_radii(body: Shell | Tube) -> None:
-    """BadInput where a hollow body has no wall."""
+    """Raises BadInput if the wall of a hollow body has no thickness."""
     if not body.inner_radius < body.radius:
         raise BadInput(
             f"{body.at('inner_radius')}: {body.inner_radius:g} m is no smaller than radius (accepted: below {body.radius:g} m)"
@@ -94,8 +94,9 @@ def _check_radii(body: Shell | Tube) -> None:
 
 
 def _tube_loop(body: Body) -> Loop | None:
-    """The loop of a section to the right of the axis, that does not reach it; None of another
-    body.
+    """The loop to the right of the axis, of a section that does not reach the axis; else None.
+
+    Raises BadInput if the lengths of the body contradict each other.
     """
     if isinstance(body, Torus):
         if not body.section < body.radius:
@@ -114,14 +115,17 @@ def _tube_loop(body: Body) -> Loop | None:
 
 
 def image(loop: Loop) -> Loop:
-    """The mirror image of a loop across the axis."""
+    """The mirror image of a loop about the axis, counter-clockwise."""
     if loop.radius:
         return circle_loop(loop.radius).placed(loop.centre * [-1, 1], 0.0)
     return Loop(loop.corners[::-1] * [-1, 1])
 
 
 def _tube_mesh(body: Mesh, half: mesh.Mesh) -> tuple[TubeOutline, mesh.Mesh]:
-    """The section and the mesh of a body from a file that does not reach the axis."""
+    """The section and the mesh of a body that does not reach the axis, from a file.
+
+    Raises BadInput if the mesh is not wholly to the right of the axis, or if it has a hole.
+    """
     if half.points[:, 0].min() <= 0:
         raise BadInput(
             f"{body.at('file')}: it lies down to x = {half.points[:, 0].min():g} m (accepted: to the right of the axis, "
@@ -137,7 +141,7 @@ def _tube_mesh(body: Mesh, half: mesh.Mesh) -> tuple[TubeOutline, mesh.Mesh]:
 
 
 def _mirror(half: mesh.Mesh) -> mesh.Mesh:
-    """The mirror image of a mesh across the axis."""
+    """The mirror image of a mesh about the axis."""
     return mesh.Mesh(
         half.points * [-1, 1],
         half.triangles[:, ::-1],
@@ -148,8 +152,10 @@ def _mirror(half: mesh.Mesh) -> mesh.Mesh:
 
 
 def closed_over_axis(path: str, right: np.ndarray) -> np.ndarray:
-    """The polygon, counter-clockwise, of a chain (n, 2) from the axis to the axis and its
-    mirror image.
+    """The counter-clockwise polygon of a chain `right` (n, 2) [m] and its mirror image.
+
+    The chain leads from the axis to the axis, with x > 0 between. Otherwise, or if the polygon is
+    not simple, the function raises BadInput with the entry `path`.
     """
     if right[0, 0] != 0 or right[-1, 0] != 0 or (right[1:-1, 0] <= 0).any():
         raise BadInput(
@@ -162,17 +168,17 @@ def closed_over_axis(path: str, right: np.ndarray) -> np.ndarray:
 
 
 def right_half(loop: Loop) -> list[int]:
-    """The pieces of a section's loop to the right of the axis, from its lower end on; pieces
-    lead from corner to corner.
-    """
+    """The numbers of the segments of a section's loop to the right of the axis, upwards."""
     lower, upper = sorted(np.flatnonzero(loop.corners[:, 0] == 0), key=lambda k: loop.corners[k, 1])
     return [(lower + k) % len(loop.corners) for k in range((upper - lower) % len(loop.corners))]
 
 
 def boundary(outline: Outline) -> list[tuple[Callable[[np.ndarray], np.ndarray], Loop | None]]:
-    """The boundary of the half x >= 0, counter-clockwise, as curves over [0, 1], each with the
-    loop that it is part of, None on the axis: the outer surface upwards, down the axis, where
-    there is a cavity down its surface, and down the axis.
+    """The boundary of the half x >= 0, counter-clockwise, as curves over [0, 1].
+
+    Each curve comes with the loop to which it belongs, None on the axis. The boundary leads upwards
+    along the outer surface and down the axis. Where it reaches a cavity, it follows the surface of
+    the cavity downwards and then continues down the axis.
     """
     curves, ends = [], []
     for k, loop in enumerate(outline.loops):
@@ -192,7 +198,7 @@ def boundary(outline: Outline) -> list[tuple[Callable[[np.ndarray], np.ndarray],
 
 
 def _straight(start: np.ndarray, end: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
-    """A straight curve over [0, 1]."""
+    """The straight curve over [0, 1] from start (2,) to end (2,)."""
     return lambda s: start + s[:, None] * (end - start)
 
 
@@ -217,8 +223,9 @@ def _loop_centre(loop: Loop) -> float:
 
 
 def _centre_of_volume(triangles: np.ndarray) -> float:
-    """y of the centre of what triangles (t, 3, 2), areas signed, make about the axis: the
-    integral of x y over that of x.
+    """y [m] of the centre of the volume that triangles (t, 3, 2) generate about the axis.
+
+    It is the integral of x y over the triangles divided by that of x; areas have signs.
     """
     areas = cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]) / 2
     x, y = triangles[..., 0], triangles[..., 1]
@@ -227,7 +234,7 @@ def _centre_of_volume(triangles: np.ndarray) -> float:
 
 
 def whole(half: mesh.Mesh) -> mesh.Mesh:
-    """The mesh of a section with its mirror image, which shares the vertices on the axis."""
+    """The mesh of a half section and its mirror image, with common vertices on the axis."""
     n, off = len(half.points), half.points[:, 0] != 0
     mirrored = np.where(off, n + np.cumsum(off) - 1, np.arange(n))
     outer = half.labels != mesh.AXIS
@@ -241,9 +248,11 @@ def whole(half: mesh.Mesh) -> mesh.Mesh:
 
 
 def mirrored(path: str, chain: np.ndarray) -> tuple[np.ndarray, bool]:
-    """The vertices of a rigid chain (n, 2) that begins or ends on the axis with those of its
-    mirror image, in one direction of travel, and whether they close: the mirror image of what
-    is to the left of a chain is to the left of its mirror image travelled backwards.
+    """The vertices of a rigid chain (n, 2) with its mirror image, and whether they form a loop.
+
+    The chain begins or ends on the axis, and all other vertices have x > 0; otherwise the function
+    raises BadInput with the entry `path`. The mirror image is travelled backwards, so that the free
+    side stays to the left.
     """
     begins, ends = bool(chain[0, 0] == 0), bool(chain[-1, 0] == 0)
     if not (begins or ends) or (chain[begins : len(chain) - ends, 0] <= 0).any():

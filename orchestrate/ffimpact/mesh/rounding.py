@@ -1,10 +1,10 @@
-"""Element sizes on the curved surfaces of a geometry: its fillets, holes and round ends, as fields
-of gmsh.
+"""Size fields of gmsh for the curved surfaces of a geometry: fillets, holes and round ends.
 
-A surface whose radius r is at least the element size, in the bulk or next to the contact, is
-resolved: it gets TURN elements a full turn. A smaller one, such as a fillet away from contact, gets
-what its volume asks for: flat elements of the size h lie h^2 / (12 r) off the surface in the mean,
-and one across a quarter of a turn (1 - 2 / pi) r / 2.
+A surface is resolved if its radius r is at least the element size, in the bulk or next to the
+contact: it gets TURN elements per full turn. The element size of a smaller surface, such as a
+fillet away from contact, follows from the volume that flat elements cut off. The mean distance of
+flat elements of the size h from the surface is h^2 / (12 r), and that of one element across a
+quarter turn is (1 - 2 / pi) r / 2.
 """
 
 import math
@@ -17,15 +17,17 @@ from .mesh import GROWTH, Sizes
 
 __all__ = ["Rounding", "TURN", "fields", "roundings"]
 
-TURN = 20  # elements on a full turn of a curved surface that they resolve
-GRID = 7  # points along each parameter at which a surface is evaluated
-FINER = 1.1  # ratio of one size that is tried to the next smaller one
+TURN = 20  # elements per full turn of a resolved surface
+GRID = 7  # number of points along each parameter at which a surface is evaluated
+FINER = 1.1  # ratio of successive element sizes in the search for the largest admissible size
 
 
 @dataclass(frozen=True)
 class Rounding:
-    """A curved surface in a model of gmsh: its number, the median of its radii [m] and its area
-    [m2], untrimmed.
+    """A curved surface of a gmsh model.
+
+    `tag` is its number, `radius` [m] the median of its radii of curvature, and `area` [m2] the area
+    of the untrimmed surface.
     """
 
     tag: int
@@ -34,27 +36,30 @@ class Rounding:
 
     @property
     def fine(self) -> float:
-        """The element size [m] of TURN elements a full turn."""
+        """The element size [m] for TURN elements per full turn."""
         return 2 * math.pi * self.radius / TURN
 
     @property
     def across(self) -> float:
-        """Its length [m] over a quarter of a turn."""
+        """The arc length [m] of a quarter turn."""
         return math.pi / 2 * self.radius
 
     def cut(self, size: float) -> float:
-        """The volume [m3] between it and flat elements of a size."""
+        """The volume [m3] between the surface and flat elements of a size [m]."""
         depth = max(size, self.fine) ** 2 / (12 * self.radius)
         return self.area * min(depth, (1 - 2 / math.pi) / 2 * self.radius)
 
 
 def fields(gmsh, sizes: Sizes, sources: list[int], bulk: float, cut: float) -> list[int]:
-    """Fields of gmsh with the element sizes on curved surfaces, of a body with elements of the
-    size `bulk` that touches next to the points `sources`; flat elements on surfaces that are
-    not resolved `cut` no more than this share of the body's box.
+    """Adds size fields for the curved surfaces of a body to gmsh and returns their numbers.
+
+    `bulk` is the element size in the bulk, and `sources` are gmsh's points of the expected contact.
+    `cut` is the largest share of the body's bounding box that flat elements may cut off at surfaces
+    that are not resolved.
     """
     low, high = np.reshape(gmsh.model.getBoundingBox(-1, -1), (2, 3))
-    found = roundings(gmsh.model, bulk * TURN / (2 * math.pi))  # on others the bulk's size is finer
+    # On surfaces with larger radii the size of the bulk gives more than TURN elements per turn.
+    found = roundings(gmsh.model, bulk * TURN / (2 * math.pi))
     small = [one for one in found if one.radius < bulk]
     size = _size(small, bulk, cut * float(np.prod(high - low)))
     field, made = gmsh.model.mesh.field, []
@@ -63,7 +68,7 @@ def fields(gmsh, sizes: Sizes, sources: list[int], bulk: float, cut: float) -> l
         if one.radius >= bulk or own < one.across:
             made.append(_on_surface(field, one, "Constant", VIn=own))
         if sources and sizes.contact <= one.radius < bulk:
-            # as far as elements are no larger than its radius
+            # The surface is resolved where the elements around the contact are not larger than r.
             reach = sizes.slack + (one.radius - sizes.contact) / GROWTH
             near = mesh.graded(field, "PointsList", sources, (one.fine, bulk), flat=reach)
             made.append(_on_surface(field, one, "Restrict", InField=near))
@@ -71,7 +76,7 @@ def fields(gmsh, sizes: Sizes, sources: list[int], bulk: float, cut: float) -> l
 
 
 def roundings(model, largest: float) -> list[Rounding]:
-    """The curved surfaces with a radius below the largest [m]."""
+    """The curved surfaces of a gmsh model with a radius below `largest` [m]."""
     found = []
     for _, tag in model.getEntities(2):
         low, high = model.getParametrizationBounds(2, tag)
@@ -87,8 +92,9 @@ def roundings(model, largest: float) -> list[Rounding]:
 
 
 def _size(small: list[Rounding], bulk: float, cut: float) -> float:
-    """The largest element size [m] with which all of them together cut no more than that, if
-    any.
+    """The largest element size [m] with which all surfaces together cut off at most `cut` [m3].
+
+    The size is divided by FINER until this holds or all surfaces have TURN elements per turn.
     """
     size = bulk
     while sum(one.cut(size) for one in small) > cut and any(size > one.fine for one in small):
@@ -97,7 +103,7 @@ def _size(small: list[Rounding], bulk: float, cut: float) -> float:
 
 
 def _on_surface(field, one: Rounding, kind: str, **values: float) -> int:
-    """A field of gmsh of a kind with these values, on one surface and its edges."""
+    """Adds a gmsh field of a kind for one surface and its edges; returns its number."""
     made = field.add(kind)
     field.setNumbers(made, "SurfacesList", [one.tag])
     for name, value in values.items():

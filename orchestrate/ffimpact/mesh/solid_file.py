@@ -1,8 +1,8 @@
-"""A solid in a file: a mesh of tetrahedra (gmsh's .msh, Medit's .mesh) or a geometry that gmsh
-meshes (.geo, .step, .stp), lengths in m.
+"""Reads solids from files: meshes of tetrahedra (gmsh's .msh, Medit's .mesh) or geometries that
+gmsh meshes (.geo, .step, .stp), lengths in m.
 
-Faces of a physical surface named `contact` may touch, others never; without physical surfaces all
-may, those of cavities, too.
+Faces of a physical surface with the name `contact` may come into contact, other faces never do.
+Without named physical surfaces all faces may, including those of cavities.
 """
 
 import re
@@ -20,27 +20,29 @@ from .solid_mesh import SolidMesh, cell_volumes, cells_of, generate
 __all__ = ["GEOMETRIES", "Geometry", "MESHES", "is_geometry", "meshed", "read", "takes_in_others"]
 
 MESHES, GEOMETRIES = (".msh", ".mesh"), (".geo", ".step", ".stp")
-OTHERS = re.compile(r"\b(Merge|Include|ShapeFromFile)\b")  # in a .geo: takes in another file
+OTHERS = re.compile(r"\b(Merge|Include|ShapeFromFile)\b")  # .geo commands that read other files
 CONTACT = "contact"
 HEADER = b"$MeshFormat"
-TRIANGLES = {
-    2: 3,
-    9: 6,
-}  # gmsh's types of element: their nodes, of which the first three are the corners
-COARSE = 15  # elements along the largest extent where only the shape of a geometry is wanted
-
-SHAPE_CUT = 1e-3  # likewise: what flat elements cut off its box at most (rounding.py)
+# Numbers of nodes by gmsh's element types; the first three nodes are the corners.
+TRIANGLES = {2: 3, 9: 6}
+# For a mesh that only represents the shape of a geometry: the number of elements along the largest
+# extent, and the largest share of the bounding box that flat elements cut off (rounding.py).
+COARSE = 15
+SHAPE_CUT = 1e-3
 
 
 def is_geometry(path: Path) -> bool:
-    """Whether gmsh has to mesh it."""
+    """Whether the file contains a geometry, which gmsh has to mesh."""
     return path.suffix.lower() in GEOMETRIES
 
 
 @dataclass(frozen=True)
 class Geometry:
-    """A geometry in a file: metres per unit of the file, the centre of its volume in it [m],
-    and about that centre a mesh that is good for its shape only.
+    """A geometry in a file.
+
+    `scale` is the length of a unit of the file [m]. `centre` (3,) [m] is the centre of volume in
+    the coordinates of the file. `coarse` is a mesh about this centre that represents only the
+    shape.
     """
 
     path: Path
@@ -49,21 +51,26 @@ class Geometry:
     coarse: SolidMesh
 
     def meshed(self, sizes: Sizes, cut: float) -> SolidMesh:
-        """Its mesh as it lies in the file, in m, with element sizes [m] about its centre and a cut
-        (rounding.py)."""
+        """The mesh of the geometry in the coordinates of the file, in m.
+
+        `sizes` are element sizes [m] with points relative to the centre. `cut` is the largest share
+        of the bounding box that flat elements cut off at roundings (rounding.py).
+        """
         lengths = (sizes.bulk, sizes.contact, sizes.near + self.centre, sizes.slack)
         inside = Sizes(*(length / self.scale for length in lengths))
         return meshed(self.path, inside, cut).scaled(self.scale)
 
 
 def takes_in_others(path: Path) -> bool:
-    """Whether it is a .geo that names other files."""
+    """Whether the file is a .geo file that reads other files."""
     return path.suffix.lower() == ".geo" and bool(OTHERS.search(path.read_text(errors="replace")))
 
 
 def read(path: Path) -> SolidMesh:
-    """The mesh in a file; of a geometry one that is good for its shape only. BadInput, by the
-    file's name, where it cannot be used.
+    """The mesh of a file, or a mesh that only represents the shape of a geometry.
+
+    Lengths are those of the coordinates in the file. Raises BadInput, with the name of the file, if
+    the file cannot be used.
     """
     if path.suffix.lower() not in MESHES + GEOMETRIES:
         raise BadInput(
@@ -81,8 +88,11 @@ def read(path: Path) -> SolidMesh:
 
 
 def meshed(path: Path, sizes: Sizes | None = None, cut: float = SHAPE_CUT) -> SolidMesh:
-    """The mesh in a file, that of a geometry with element sizes, which are of the coordinates
-    in the file, and a cut (rounding.py).
+    """The mesh of a file, or the mesh that gmsh generates for a geometry.
+
+    `sizes` are element sizes in the coordinates of the file; without them the mesh is coarse. `cut`
+    is the largest share of the bounding box that flat elements cut off at roundings (rounding.py).
+    Raises BadInput, with the name of the file, if the file cannot be used.
     """
     try:
         return in_own_process(_taken, path, sizes, cut)
@@ -95,14 +105,14 @@ def _read(path: Path, changed: int) -> SolidMesh:
     return meshed(path)
 
 
-# ---- in the process of its own
+# ---- functions that run in a separate process
 
 
 def _taken(path: Path, sizes: Sizes | None, cut: float) -> SolidMesh:
     try:
         if is_geometry(path):
             return _meshed(path, sizes, cut)
-        if path.suffix.lower() == ".msh":  # what gmsh does not know it runs as a script
+        if path.suffix.lower() == ".msh":  # gmsh would run a file of unknown format as a script
             with open(path, "rb") as file:
                 if not file.read(len(HEADER)) == HEADER:
                     raise BadInput(
@@ -113,7 +123,7 @@ def _taken(path: Path, sizes: Sizes | None, cut: float) -> SolidMesh:
             return _labelled(gmsh.model)
     except BadInput:
         raise
-    except Exception as error:  # gmsh knows no other
+    except Exception as error:  # gmsh raises plain exceptions
         raise BadInput(f"gmsh cannot read or mesh it: {error}") from None
 
 
@@ -131,7 +141,11 @@ def _meshed(path: Path, sizes: Sizes | None, cut: float) -> SolidMesh:
 
 
 def _labelled(model) -> SolidMesh:
-    """The mesh in a model of gmsh, with the labels of boundary faces from its physical surfaces."""
+    """The mesh of a gmsh model, with labels of boundary faces from its physical surfaces.
+
+    Raises BadInput if a tetrahedron is flat, if the mesh is not one connected piece, or if the
+    physical surface `contact` is not on the boundary.
+    """
     points, cells = cells_of(model)
     volumes = cell_volumes(points, cells)
     if not (volumes > 1e-12 * np.ptp(points, axis=0).max() ** 3 / len(cells)).all():
@@ -151,7 +165,7 @@ def _labelled(model) -> SolidMesh:
     scale = np.ptp(points, axis=0).max()
 
     def keys(corners: np.ndarray) -> list[tuple]:
-        """Triangles by their corners, to a billionth of the size."""
+        """Keys of triangles: their sorted corners, rounded to 1e-9 of the size of the mesh."""
         return [tuple(sorted(map(tuple, one))) for one in np.round(corners / scale, 9).tolist()]
 
     wanted = set(keys(named))
@@ -162,9 +176,10 @@ def _labelled(model) -> SolidMesh:
 
 
 def _check_surface(points: np.ndarray, faces: np.ndarray) -> None:
-    """BadInput where the body hangs together by an edge or a point alone: a side of boundary
-    faces belongs to two of them, and around a point of the boundary they follow each other in
-    one turn.
+    """Raises BadInput if two parts of the body are connected by an edge or a point alone.
+
+    In an accepted mesh each edge of the boundary belongs to two faces, and the faces around each
+    boundary point form one closed fan.
     """
     corners = np.arange(3 * len(faces)).reshape(-1, 3)
     sides, ends = (of[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2) for of in (faces, corners))
@@ -198,8 +213,9 @@ def _check_surface(points: np.ndarray, faces: np.ndarray) -> None:
 
 
 def _contact_triangles(model) -> np.ndarray | None:
-    """Corners (t, 3, 3) of the triangles in the physical surfaces named `contact`; None where
-    no physical surface has a name.
+    """Corners (t, 3, 3) of the triangles in physical surfaces with the name `contact`.
+
+    Returns None if no physical surface has a name. Raises BadInput if only others have names.
     """
     names = {
         number: model.getPhysicalName(2, number).strip().lower()

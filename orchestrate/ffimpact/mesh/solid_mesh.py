@@ -1,8 +1,8 @@
-"""Meshes of tetrahedra: of balls, boxes and cylinders by gmsh, or parts of them on one side of
-planes of symmetry; written in Medit's format, as FreeFEM reads it.
+"""Meshes of tetrahedra: gmsh generates them, and they are written in Medit's format for FreeFEM.
 
-Labels of boundary faces: 1 may touch, 2 on the plane x = 0 of what is computed by symmetry, 3 on
-its plane z = 0, 4 never touches.
+Balls, boxes and cylinders are meshed wholly, or reduced by symmetry. Labels of boundary faces:
+1 may come into contact, 2 lies on the plane of symmetry x = 0, 3 lies on the plane of symmetry
+z = 0, 4 never comes into contact.
 """
 
 from collections.abc import Callable
@@ -32,18 +32,20 @@ __all__ = [
 ]
 
 DEPTH = 3
-PLANES = {0: AXIS, 2: DEPTH}  # of symmetry: the axis across it, and its label
-LARGEST = 0.52  # element of a ball over its radius: twelve on a full turn
-MOST_SOURCES = 2000  # points that sizes are measured from
-FILL = 0.118  # volume of a regular tetrahedron over the cube of its side
-MOST_CELLS = 400_000  # that gmsh is asked for
-MOST_UNKNOWNS = 150_000  # displacement unknowns of a run
+PLANES = {0: AXIS, 2: DEPTH}  # planes of symmetry: the axis normal to the plane, and its label
+LARGEST = 0.52  # largest element size of a ball over its radius: twelve elements per full turn
+MOST_SOURCES = 2000  # largest number of points from which the size field measures distances
+FILL = 0.118  # volume of a regular tetrahedron over the cube of its edge
+MOST_CELLS = 400_000  # largest expected number of tetrahedra of a body
+MOST_UNKNOWNS = 150_000  # largest number of displacement unknowns of a run
 
 
 @dataclass(frozen=True)
 class Curved:
-    """A sphere, without an axis (), or a cylinder, about a point of its axis with its direction
-    (3,).
+    """A sphere or a cylinder of a radius [m].
+
+    `centre` (3,) [m] is the centre of the sphere or a point on the axis of the cylinder. `axis` is
+    the unit direction (3,) of the cylinder's axis, and empty for a sphere.
     """
 
     centre: np.ndarray
@@ -51,21 +53,23 @@ class Curved:
     radius: float
 
     def arms(self, points: np.ndarray) -> np.ndarray:
-        """Vectors (..., 3) to points from the centre, or from the nearest points of the axis."""
+        """Radius vectors (..., 3) of points, from the centre or from the axis at right angles."""
         away = points - self.centre
         return away - (away @ self.axis)[..., None] * self.axis if len(self.axis) else away
 
     def onto(self, points: np.ndarray) -> np.ndarray:
-        """Points (n, 3) moved straight onto it."""
+        """Points (n, 3), moved along their radius vectors onto the sphere or cylinder."""
         arms = self.arms(points)
         return points + arms * (self.radius / np.linalg.norm(arms, axis=1, keepdims=True) - 1)
 
 
 @dataclass(frozen=True)
 class SolidMesh:
-    """points (n, 3) in m, tetrahedra (t, 4) of positive volume, faces (f, 3) of the boundary
-    seen counter-clockwise from outside, their labels (f,); the spheres and cylinders that faces
-    lie on.
+    """A mesh of tetrahedra.
+
+    `points` (n, 3) are in m. `cells` (t, 4) are tetrahedra of positive volume. `faces` (f, 3) of
+    the boundary are counter-clockwise seen from outside, with their `labels` (f,). `curved` are the
+    spheres and cylinders on which faces lie.
     """
 
     points: np.ndarray
@@ -73,28 +77,28 @@ class SolidMesh:
     faces: np.ndarray
     labels: np.ndarray
     curved: tuple[Curved, ...] = ()
-    NEVER: ClassVar[int] = 4  # the label of faces that may not touch
+    NEVER: ClassVar[int] = 4  # label of faces that never come into contact
 
     @property
     def sides(self) -> np.ndarray:
         return self.faces
 
     def moved(self, by: np.ndarray) -> "SolidMesh":
-        """The same mesh, `by` [m] elsewhere."""
+        """The mesh, translated by the vector `by` (3,) [m]."""
         return replace(self, points=self.points + by)
 
     def scaled(self, factor: float) -> "SolidMesh":
-        """The same mesh, `factor` times as large."""
+        """The mesh, scaled by `factor` about the origin; `curved` is kept unchanged."""
         return replace(self, points=self.points * factor)
 
     @property
     def volumes(self) -> np.ndarray:
-        """Those of the tetrahedra (t,) [m3]."""
+        """The volumes (t,) [m3] of the tetrahedra."""
         return cell_volumes(self.points, self.cells)
 
     @property
     def centre(self) -> np.ndarray:
-        """The centre of volume."""
+        """The centre of volume (3,) [m]."""
         return (self.volumes[:, None] * self.points[self.cells].mean(axis=1)).sum(
             axis=0
         ) / self.volumes.sum()
@@ -106,12 +110,12 @@ def cell_volumes(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
 
 
 def right_handed(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
-    """The tetrahedra (t, 4), those that are inside out turned over."""
+    """The tetrahedra (t, 4) with positive volumes: two corners of inverted ones are swapped."""
     return np.where(cell_volumes(points, cells)[:, None] < 0, cells[:, [0, 1, 3, 2]], cells)
 
 
 def unknowns(cells: np.ndarray, degree: int) -> int:
-    """Displacement unknowns: three a vertex, of degree 2 three an edge more."""
+    """The number of displacement unknowns: three per vertex, and for degree 2 three per edge."""
     vertices = len(np.unique(cells))
     edges = np.unique(
         np.sort(cells[:, [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]]].reshape(-1, 2), axis=1),
@@ -131,9 +135,12 @@ def mesh_shape(
     sizes: Sizes,
     scale: float,
 ) -> SolidMesh:
-    """The mesh of a ball (radius), box (extents) or cylinder (radius, height, its axis y) about
-    the origin, turned: only what lies on the positive side of the planes across the axes
-    `folded`. `scale` [m] is about its size: gmsh's tolerances are absolute.
+    """The mesh of a ball, box or cylinder about the origin, turned by the matrix `rotation`.
+
+    `lengths` [m] are the radius; width, height and depth; or radius and height, with the axis y.
+    `folded` contains the axes that are normal to planes of symmetry: only the part on the positive
+    side of these planes is meshed. `scale` [m] is about the size of the body. Lengths are divided
+    by it, because gmsh's tolerances are absolute.
     """
     bulk = min(sizes.bulk, LARGEST * lengths[0]) if kind == "ball" else sizes.bulk
     inside = Sizes(
@@ -142,7 +149,7 @@ def mesh_shape(
             for size in (bulk, min(bulk, sizes.contact), sizes.near, sizes.slack)
         )
     )
-    sides = np.round(lengths / scale, 12)  # its corners are exact to as much
+    sides = np.round(lengths / scale, 12)  # 12 decimals: the accuracy of the corners
 
     def build(gmsh) -> None:
         occ, (a, *more) = gmsh.model.occ, map(float, sides)
@@ -153,7 +160,7 @@ def mesh_shape(
         else:
             tag = occ.addBox(-a / 2, -more[0] / 2, -more[1] / 2, a, *more)
         if kind == "ball":
-            occ.rotate([(3, tag)], 0, 0, 0, 1, 0, 0, np.pi / 2)  # its poles on the axis y
+            occ.rotate([(3, tag)], 0, 0, 0, 1, 0, 0, np.pi / 2)  # puts the poles on the axis y
         else:
             occ.affineTransform(
                 [(3, tag)], [*np.column_stack([rotation, np.zeros(3)]).ravel(), 0, 0, 0, 1]
@@ -189,8 +196,9 @@ def mesh_shape(
 
 
 def cells_of(model) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices (n, 3) and tetrahedra (t, 4) of a model of gmsh, of those of second order the
-    corners; BadInput for other elements.
+    """Vertices (n, 3) and tetrahedra (t, 4) of a gmsh model.
+
+    Of tetrahedra of second order only the corners are kept. Raises BadInput for other elements.
     """
     points, cells, _ = mesh.elements_of(model, (3,), {4: 4, 11: 10}, "tetrahedron", "tetrahedra")
     return points, right_handed(points, cells)
@@ -199,9 +207,11 @@ def cells_of(model) -> tuple[np.ndarray, np.ndarray]:
 def generate(
     build: Callable, sizes: Sizes, turn: int, take: Callable = cells_of, cut: float | None = None
 ):
-    """What `take` makes of the model that `build` puts into gmsh, meshed; on curved surfaces with
-    `turn` elements a full turn at least, or, where `cut` is given, as rounding.py says. A bulk size
-    of 0 is open: `build` sets the largest."""
+    """Builds a model with `build`, meshes it with gmsh and returns the result of `take`.
+
+    A curved surface gets at least `turn` elements per full turn. If `cut` is set, rounding.py
+    determines the sizes on curved surfaces. If the bulk size is 0, `build` sets the largest size.
+    """
     with mesh.gmsh_session() as gmsh:
         build(gmsh)
         for name, value in {
@@ -220,7 +230,7 @@ def generate(
 
 
 def _grade(gmsh, sizes: Sizes, cut: float | None) -> None:
-    """The size grows linearly with the distance from the points where the body touches."""
+    """Sets the size field: sizes grow linearly with the distance from expected contact points."""
     field, sources, made = gmsh.model.mesh.field, _sources(gmsh, sizes), []
     if sources:
         both = sizes.contact, sizes.bulk
@@ -235,12 +245,14 @@ def _grade(gmsh, sizes: Sizes, cut: float | None) -> None:
 
 
 def _sources(gmsh, sizes: Sizes) -> list[int]:
-    """Points of gmsh where the body touches, where elements are smaller."""
+    """Adds the expected contact points to gmsh and returns their numbers.
+
+    The list is empty if elements are not smaller there than in the bulk.
+    """
     if not len(sizes.near) or sizes.contact >= sizes.bulk:
         return []
-    free = 1 + max(
-        tag for _, tag in gmsh.model.getEntities(0)
-    )  # whose own numbers do not know those of another kernel
+    # Gmsh's own numbering does not know the points of the other geometry kernel.
+    free = 1 + max(tag for _, tag in gmsh.model.getEntities(0))
     near = sizes.near[:: -(-len(sizes.near) // MOST_SOURCES)]
     points = [gmsh.model.geo.addPoint(*point, tag=free + k) for k, point in enumerate(near)]
     gmsh.model.geo.synchronize()
@@ -248,8 +260,10 @@ def _sources(gmsh, sizes: Sizes) -> list[int]:
 
 
 def expected_cells(volume: float, sizes: Sizes) -> float:
-    """About how many tetrahedra a body gets: of its bulk, and around where it touches in layers
-    whose area grows with the distance.
+    """An estimate of the number of tetrahedra of a body with a volume [m3].
+
+    It is the sum over the bulk and over layers around the contact patch, whose area grows with the
+    distance from the patch.
     """
     bulk = volume / (FILL * sizes.bulk**3)
     if not len(sizes.near) or sizes.contact >= sizes.bulk:
@@ -262,8 +276,9 @@ def expected_cells(volume: float, sizes: Sizes) -> float:
 
 
 def write(together: SolidMesh, regions: np.ndarray, path: Path) -> None:
-    """Medit's text format: tetrahedra with the number of their body, boundary faces with their
-    labels; vertices count from 1.
+    """Writes a mesh in Medit's text format, with vertices counted from 1.
+
+    Tetrahedra have the numbers of their bodies, `regions` (t,), and boundary faces their labels.
     """
     with open(path, "w") as file:
         file.write(f"MeshVersionFormatted 2\nDimension 3\nVertices\n{len(together.points)}\n")

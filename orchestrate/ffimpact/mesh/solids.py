@@ -1,5 +1,7 @@
-"""Bodies in three dimensions: [[body]] tables (docs: scenes) as solids with signed distances,
-their places and motions, SI units. y is up, z completes x and y.
+"""Bodies in three dimensions: solids with signed distances, positions, motions and meshes.
+
+The solids are made from the `[[body]]` tables of a scene (docs: scenes), in SI units. y points up;
+x, y and z are right-handed.
 """
 
 import math
@@ -37,40 +39,40 @@ MADE = {
     "box": lambda *extent: box(np.array(extent)),
     "cylinder": lambda radius, height: cylinder(radius, height),
 }
-SAMPLES = 1500  # points on a surface where its shape is wanted as points
-# share of the accuracy by which flat elements on its roundings may change the volume of a geometry
+SAMPLES = 1500  # smallest number of points that represent a surface
+# Largest relative change of the volume of a geometry by flat elements on its roundings, relative to
+# the accuracy.
 CUT = 0.25
-AT_ONCE = 500_000  # pairs of a point and a triangle
+AT_ONCE = 500_000  # largest number of pairs (point, triangle) in one array operation
 
 
 @dataclass(frozen=True)
 class Shape:
-    """What a solid is, about its centre of volume and not turned."""
+    """The shape of a solid, about its centre of volume and not rotated."""
 
-    kind: str  # ball, box, cylinder; surface of a mesh
-    lengths: np.ndarray  # radius; width, height, depth; radius and height [m]
-    extent: np.ndarray  # along x, y, z [m]
+    kind: str  # ball, box, cylinder, or surface (of a mesh)
+    # [m], by kind: radius; width, height and depth; radius and height; empty for a surface
+    lengths: np.ndarray
+    extent: np.ndarray  # (3,), along x, y, z [m]
     volume: float  # [m3]
-    area: float  # [m2]
-    reach: float  # distance of its farthest point from the centre [m]
-    moments: np.ndarray  # (3, 3), of inertia over the density, about the centre [m5]
-    gap: Callable[
-        [np.ndarray], np.ndarray
-    ]  # signed distances (n,) of points (n, 3), negative inside
-    sampled: Callable[
-        [float], np.ndarray
-    ]  # points (n, 3) on the surface, corners and edges included, about so far [m] apart
-    is_mirrored: Callable[
-        [np.ndarray], bool
-    ]  # its own mirror image in the plane through its centre with this unit normal?
+    area: float  # of the surface [m2]
+    reach: float  # bounding radius about the centre [m]
+    moments: np.ndarray  # (3, 3), matrix of inertia about the centre over the density [m5]
+    # signed distances (n,) [m] of points (n, 3), negative inside
+    gap: Callable[[np.ndarray], np.ndarray]
+    # points (n, 3) on the surface, with corners and edges, for a spacing [m]
+    sampled: Callable[[float], np.ndarray]
+    # whether the shape is symmetric about the plane through its centre with a unit normal (3,)
+    is_mirrored: Callable[[np.ndarray], bool]
 
 
 def ball(radius: float) -> Shape:
     volume, area = 4 / 3 * math.pi * radius**3, 4 * math.pi * radius**2
 
     def sampled(spacing: float) -> np.ndarray:
-        """A spiral of points of equal shares, golden section turns apart, from the lowest
-        to the highest.
+        """Points (n, 3) of a golden-angle spiral from the lowest to the highest point.
+
+        Each point represents the same area.
         """
         n = max(20, round(area / spacing**2))
         y, turn = np.linspace(-1, 1, n), math.pi * (3 - math.sqrt(5)) * np.arange(n)
@@ -120,7 +122,7 @@ def box(extent: np.ndarray) -> Shape:
 
 
 def cylinder(radius: float, height: float) -> Shape:
-    """Its axis is y."""
+    """The shape of a cylinder with the axis y; radius and height in m."""
     volume, across = math.pi * radius**2 * height, (3 * radius**2 + height**2) / 12
 
     def gap(points: np.ndarray) -> np.ndarray:
@@ -157,27 +159,30 @@ def cylinder(radius: float, height: float) -> Shape:
 
 
 def _outside(beyond: np.ndarray) -> np.ndarray:
-    """Signed distances (n,) of points that are `beyond` (n, k) [m] pairs of faces at right
-    angles to each other.
+    """Signed distances (n,) [m] of points from a solid between k orthogonal pairs of faces.
+
+    `beyond` (n, k) [m] is the distance of each point beyond each pair, negative between its faces.
     """
     return np.linalg.norm(np.maximum(beyond, 0), axis=1) + np.minimum(beyond.max(axis=1), 0)
 
 
 def surface(triangles: np.ndarray) -> Shape:
-    """The boundary of a mesh of tetrahedra: triangles (t, 3, 3) of corners, counter-clockwise
-    seen from outside.
+    """The shape bounded by a closed surface of triangles.
+
+    `triangles` (t, 3, 3) [m] contains the corners, counter-clockwise seen from outside.
     """
     (a, b, c), corners = triangles.transpose(1, 0, 2), np.unique(triangles.reshape(-1, 3), axis=0)
     low, high, six = corners.min(axis=0), corners.max(axis=0), (a * np.cross(b, c)).sum(axis=1)
-    # the integral of x x^T over the tetrahedra between the centre and each triangle is 1/120 of six
-    # times its volume times (s s^T + a a^T + b b^T + c c^T), s = a + b + c
+    # The integral of x x^T over the tetrahedron of volume V between the centre and a triangle
+    # (a, b, c) is 6 V / 120 (s s^T + a a^T + b b^T + c c^T) with s = a + b + c.
     square = sum(np.einsum("t,ti,tj->ij", six, one, one) for one in (a + b + c, a, b, c)) / 120
 
     distances = distances_from(triangles)
 
     def gap(points: np.ndarray) -> np.ndarray:
-        """The distance from the nearest triangle; inside, where they are seen under a full
-        solid angle.
+        """Signed distances (n,) [m] of points (n, 3) from the nearest triangle.
+
+        A point is inside if the solid angle of all triangles exceeds 2 pi.
         """
         chunk = max(1, AT_ONCE // len(triangles))
         distance = np.concatenate(
@@ -191,9 +196,7 @@ def surface(triangles: np.ndarray) -> Shape:
         return distance
 
     def sampled(spacing: float) -> np.ndarray:
-        """Corners, and points of a grid in each triangle whose sides are longer than the
-        spacing.
-        """
+        """The corners, and a grid of points in each triangle that is larger than the spacing."""
         longest = np.linalg.norm(triangles - np.roll(triangles, 1, axis=1), axis=2).max(axis=1)
         parts, found = np.ceil(longest / spacing).astype(int), [corners]
         for n in np.unique(parts[parts > 1]):
@@ -217,16 +220,17 @@ def surface(triangles: np.ndarray) -> Shape:
 
 
 def distances_from(triangles: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
-    """The function that gives the distances (n,) of points (n, 3) from the nearest of the
-    triangles (t, 3, 3).
+    """Returns a function for the distances (n,) [m] of points (n, 3) from triangles (t, 3, 3).
+
+    The distance of a point is that of the nearest triangle.
     """
     centres = triangles.mean(axis=1)
     radius = np.linalg.norm(triangles - centres[:, None], axis=2).max()
     corners, within = cKDTree(triangles.reshape(-1, 3)), cKDTree(centres)
 
     def distances(points: np.ndarray) -> np.ndarray:
-        # the nearest triangle is no farther than the nearest corner, its centre than that and the
-        # radius
+        # The nearest triangle is no farther than the nearest corner. So its centre is no farther
+        # than the nearest corner plus the largest radius of a triangle.
         near = within.query_ball_point(points, (1 + 1e-9) * (corners.query(points)[0] + radius))
         count = np.array([len(one) for one in near])
         found = distance_to_triangles(
@@ -238,8 +242,9 @@ def distances_from(triangles: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
 
 
 def _solid_angle(triangles: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Of all triangles, seen from points: 4 pi inside, 0 outside (van Oosterom and Strackee
-    1983).
+    """The solid angle (n,) of all triangles (t, 3, 3), seen from points (n, 3).
+
+    It is 4 pi inside and 0 outside (van Oosterom and Strackee 1983).
     """
     a, b, c = (triangles[:, k] - points[:, None] for k in range(3))
     la, lb, lc = (np.linalg.norm(one, axis=2) for one in (a, b, c))
@@ -253,7 +258,7 @@ def _solid_angle(triangles: np.ndarray, points: np.ndarray) -> np.ndarray:
 
 
 def distance_to_triangles(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """Distances (...) of points (..., 3) from triangles (..., 3, 3)."""
+    """The unsigned distances (...) [m] of points (..., 3) from triangles (..., 3, 3)."""
     a, b, c = (triangles[..., k, :] for k in range(3))
 
     def dot(u: np.ndarray, v: np.ndarray) -> np.ndarray:
@@ -275,8 +280,9 @@ def distance_to_triangles(points: np.ndarray, triangles: np.ndarray) -> np.ndarr
 
 @dataclass(frozen=True)
 class Solid(outlines.Shape):
-    """A shape with its centre of volume at `centre`, turned by the matrix `rotation`; where
-    gmsh is to mesh a file, that `geometry`.
+    """A shape with its centre of volume at `centre` (3,) [m], turned by the matrix `rotation`.
+
+    `geometry` is set if gmsh meshes the geometry of a file.
     """
 
     shape: Shape
@@ -291,13 +297,14 @@ class Solid(outlines.Shape):
 
     @property
     def disc(self) -> tuple[np.ndarray, float] | None:
-        """Centre and radius of a ball, None for anything else."""
+        """The centre (3,) and radius [m] of a ball; None for all other solids."""
         return (self.centre, self.shape.reach) if self.shape.kind == "ball" else None
 
     @property
     def half_thickness(self) -> float:
-        """What stands for the radius of a body that is no ball: half its smallest extent,
-        or 3 volume / area where that is less.
+        """The length [m] that replaces the radius for a body that is not a ball.
+
+        It is the smaller of half the smallest extent and 3 volume / area.
         """
         return float(min(self.extent.min() / 2, 3 * self.volume / self.shape.area))
 
@@ -305,35 +312,43 @@ class Solid(outlines.Shape):
         return replace(self, centre=self.centre + centre, rotation=rotation @ self.rotation)
 
     def turned(self, turn: np.ndarray, spin: np.ndarray, t: float) -> np.ndarray:
-        """The matrix at time t of a body that begins with a turn [rad] and a spin [rad/s]."""
+        """The rotation matrix (3, 3) at time t [s], for the initial turn (3,) [rad] and spin (3,).
+
+        `turn` is a rotation vector, `spin` is in rad/s.
+        """
         return tumbling.turned(self.shape.moments, tumbling.rotation(turn), spin, t)
 
     def fastest(self, turn: np.ndarray, spin: np.ndarray) -> float:
-        """No spin [rad/s] is larger that a turned body comes to which begins with this one."""
+        """An upper bound of the angular velocity [rad/s]; arguments as of `turned`."""
         return tumbling.fastest(self.shape.moments, tumbling.rotation(turn), spin)
 
     def carried(self, moved: "Solid", points: np.ndarray) -> np.ndarray:
-        """Points of this solid carried along to where it is moved."""
+        """Points (n, 3) of this solid after the rigid motion that takes it to `moved`."""
         return moved.centre + (points - self.centre) @ self.rotation @ moved.rotation.T
 
     @cached_property
     def points(self) -> np.ndarray:
-        """Points on the surface."""
+        """Points (n, 3) [m] on the surface."""
         return self.sampled(math.sqrt(self.shape.area / SAMPLES))
 
     def sampled(self, spacing: float) -> np.ndarray:
         return self.shape.sampled(spacing) @ self.rotation.T + self.centre
 
     def samples(self, size: float) -> tuple[np.ndarray, float]:
-        """Points on the surface, twice as dense as elements of a size, and their distance [m]."""
+        """Points (n, 3) on the surface and their spacing [m], half an element of a size [m].
+
+        The spacing is limited so that the number of points is about SAMPLES to 20000.
+        """
         spacing = math.sqrt(
             self.shape.area / np.clip(4 * self.shape.area / size**2, SAMPLES, 20000)
         )
         return self.sampled(spacing), spacing
 
     def width(self, points: np.ndarray, spacing: float) -> float:
-        """Of a patch with these of the samples; those of a mesh are denser where its faces
-        are small.
+        """The diameter [m] of a disc with the area of a patch that contains these samples.
+
+        Samples of a mesh are denser where its faces are small, so they are counted once per cube of
+        the spacing.
         """
         count = len(points)
         if self.shape.kind == "surface":
@@ -341,7 +356,7 @@ class Solid(outlines.Shape):
         return 2 * spacing * math.sqrt(max(2, count) / math.pi)
 
     def gap(self, points: np.ndarray) -> np.ndarray:
-        """Signed distances (n,) of points (n, 3), negative inside."""
+        """Signed distances (n,) [m] of points (n, 3), negative inside."""
         return self.shape.gap((points - self.centre) @ self.rotation)
 
 
@@ -349,9 +364,12 @@ class Solid(outlines.Shape):
 
 
 def mesh_of(body, sizes: Sizes | None, folded: tuple[int, ...], accuracy: float) -> SolidMesh:
-    """The mesh of a body (bodies.Body) about its centre of volume, turned as it is at the
-    start: that of its file, or one with sizes, which are of the body not turned; of that what
-    lies on the positive side of the planes across the axes `folded`.
+    """The mesh of a body (bodies.Body) about its centre of volume, turned as at the start.
+
+    The mesh is that of the body's file, or gmsh generates one with the element sizes `sizes`, which
+    refer to the body before its rotation. `folded` contains the axes that are normal to planes of
+    symmetry: only the part on the positive side of these planes is meshed. Raises BadInput if the
+    mesh would have more than MOST_CELLS tetrahedra.
     """
     solid = body.at(0.0, np.zeros(3))
     if body.mesh:
@@ -378,7 +396,7 @@ def mesh_of(body, sizes: Sizes | None, folded: tuple[int, ...], accuracy: float)
 
 
 def _with_curves(made: SolidMesh) -> SolidMesh:
-    """The same with the spheres and cylinders that it has."""
+    """The mesh with the spheres and cylinders on which its faces lie."""
     return replace(made, curved=tuple(one for one, _ in curved.surfaces(made.points, made.faces)))
 
 
@@ -386,7 +404,7 @@ def _with_curves(made: SolidMesh) -> SolidMesh:
 
 
 def shape(body: Body, folder: Path) -> tuple[Solid, SolidMesh | None]:
-    """The solid of a body about its centre of volume, and its mesh where a file brings it."""
+    """The solid of a body about its centre of volume, and the mesh if a file contains one."""
     if isinstance(body, Mesh):
         return _of_file(body, folder)
     return Solid(MADE[body.shape](*body.sizes), np.zeros(3), np.eye(3)), None
@@ -421,8 +439,9 @@ def _of_file(body: Mesh, folder: Path) -> tuple[Solid, SolidMesh | None]:
 
 
 def motion(body: Body) -> dict:
-    """Where a body is at the start and how it moves: position [m], turn [rad], velocity [m/s],
-    spin [rad/s], vectors (3,).
+    """The initial position [m], rotation vector [rad], velocity [m/s] and spin [rad/s], each (3,).
+
+    Raises BadInput if the table contains both `angle` and `turn`.
     """
     if body.angle is not None and body.turn is not None:
         raise BadInput(

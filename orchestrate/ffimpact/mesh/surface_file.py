@@ -1,5 +1,7 @@
-"""Closed surfaces of triangles from files, for rigid obstacles: STL, and meshes of surfaces or of
-volumes in gmsh's and Medit's formats."""
+"""Reads closed surfaces of triangles for rigid obstacles from files.
+
+The files are STL files, and meshes of surfaces or volumes in gmsh's and Medit's formats.
+"""
 
 from functools import cache
 from pathlib import Path
@@ -13,15 +15,17 @@ from .mesh import boundary, elements_of, in_own_process
 __all__ = ["read"]
 
 FILES = (".stl", ".msh", ".mesh")
-TRIANGLES, TETRAHEDRA = {2: 3, 9: 6}, {4: 4, 11: 10}  # gmsh's types: their nodes, corners first
-SAME = 1e-7  # of the size: vertices as near to each other are one
-MOST = 200_000  # triangles
+# Numbers of nodes by gmsh's element types; the first nodes are the corners.
+TRIANGLES, TETRAHEDRA = {2: 3, 9: 6}, {4: 4, 11: 10}
+SAME = 1e-7  # grid relative to the size of the surface; vertices that round to one point are merged
+MOST = 200_000  # largest number of triangles
 
 
 def read(path: Path) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices (n, 3), in the file's units, and triangles (t, 3) of vertices, counter-clockwise
-    from outside. BadInput, by the file's name, where there is no such surface, or it is not
-    closed.
+    """Returns vertices (n, 3), in units of the file, and triangles (t, 3) as numbers of vertices.
+
+    Triangles are counter-clockwise seen from outside. Raises BadInput, with the name of the file,
+    if the file cannot be read or the surface is not closed.
     """
     if path.suffix.lower() not in FILES:
         raise BadInput(f"'{path.name}' is no surface (accepted: {', '.join(FILES)})")
@@ -45,11 +49,11 @@ def _read(path: Path, changed: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _taken(path: Path) -> tuple[np.ndarray, np.ndarray]:
-    """In the process of its own."""
+    """Reads a surface in the separate process; see `read`."""
     with mesh.gmsh_session() as gmsh:
         try:
             gmsh.open(str(path))
-        except Exception as error:  # gmsh knows no other
+        except Exception as error:  # gmsh raises plain exceptions
             raise BadInput(f"gmsh cannot read it: {error}") from None
         if gmsh.model.mesh.getElementTypes(3).size:
             points, cells, _ = elements_of(
@@ -64,7 +68,7 @@ def _taken(path: Path) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _merged(points: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """One vertex for those at the same place, without triangles that are none."""
+    """Merges vertices at the same position and removes degenerate triangles and unused vertices."""
     size = np.ptp(points, axis=0).max()
     if not size > 0:
         raise BadInput("all of its vertices are at one place")
@@ -79,7 +83,10 @@ def _merged(points: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.n
 
 
 def _closed(points: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The same, seen counter-clockwise from outside; BadInput where it has a rim."""
+    """The surface with triangles counter-clockwise seen from outside.
+
+    Raises BadInput if the surface is not closed or its triangles are not oriented consistently.
+    """
     sides = triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
     _, count = np.unique(np.sort(sides, axis=1), axis=0, return_counts=True)
     if (count != 2).any():
