@@ -1,4 +1,5 @@
-"""Contact on a frozen factorisation: by what its systems are solved, and how far, does not change the answer."""
+"""Contact with a factorisation that is kept: the solver of its systems and their tolerance do not
+change the results."""
 
 import shutil
 

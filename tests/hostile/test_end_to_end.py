@@ -1,4 +1,5 @@
-"""disc-normal with the real FreeFem++: what the folder holds, and that both ways in say the same."""
+"""disc-normal with the real FreeFem++: content of the result folder, and agreement of runs with and
+without Python."""
 
 import pytest
 

@@ -1,4 +1,5 @@
-"""Free flights of rigid bodies, whatever their length, to the first touch, and the end of a run: when they meet nothing any more."""
+"""Free flights of rigid bodies of any duration until contact, and the end of a run if no further
+contact follows."""
 
 import numpy as np
 import pytest

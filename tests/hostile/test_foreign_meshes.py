@@ -1,4 +1,5 @@
-"""Meshes of the user's own: what is wrong with a file is named, on both ways in; bodies of any outline; gmsh's files."""
+"""Meshes of the user: reports of errors in a file, with and without Python; bodies of any outline;
+gmsh files."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Scenes with friction: that they load, run, are reported and drawn as the paper's figures 4 to 6 are."""
+"""Scenes with friction: loading, runs, reports and the figures 4 to 6 of the paper."""
 
 import pytest
 

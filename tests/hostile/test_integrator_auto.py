@@ -1,4 +1,5 @@
-"""`integrator = auto`: explicit steps where their count says that they are the cheaper way, the default elsewhere; what was chosen is said."""
+"""`integrator = auto`: explicit steps if they are cheaper by their number, else the default. The
+choice is reported."""
 
 import pytest
 

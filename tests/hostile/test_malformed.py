@@ -1,4 +1,8 @@
-"""Malformed input over all three routes: each is one line on stderr that names what is wrong, exit code 10 or 14, nothing left behind, no hang."""
+"""Malformed input by all three interfaces.
+
+Each gives one line on stderr with the error and exit code 10 or 14, leaves no files and does not
+hang.
+"""
 
 import signal
 from pathlib import Path

@@ -1,4 +1,8 @@
-"""What small obstacles, corners and edges do: elements that resolve them, contact that begins when they touch, penetration that is measured, words that name them."""
+"""Contact with small obstacles, corners and edges.
+
+Tested are the elements that resolve them, the onset of contact, the largest penetration, and
+messages about them.
+"""
 
 import tomllib
 from pathlib import Path

@@ -1,4 +1,5 @@
-"""`until = rest`: bodies bounce under gravity, each time lower, until all rests (edp/core/run/rest.idp)."""
+"""`until = rest`: bodies bounce under gravity with decreasing height until all are at rest
+(edp/core/run/rest.idp)."""
 
 import math
 

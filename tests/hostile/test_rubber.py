@@ -1,4 +1,4 @@
-"""make rubber: the verdict can fail, and two runs make a row each and a figure."""
+"""make rubber: the verdict can fail, and two runs give a row each and a figure."""
 
 import pytest
 

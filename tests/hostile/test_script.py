@@ -1,4 +1,4 @@
-"""The Python interface in an environment that has the program and what it depends on, nothing else."""
+"""The Python interface in an environment that has only the program and its dependencies."""
 
 import shutil
 import subprocess

@@ -1,4 +1,5 @@
-"""Bodies that touch themselves: what makes them, and that nothing is lost when they do."""
+"""Bodies that may come into contact with themselves: when they do, and conservation during this
+contact."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,5 @@
-"""The studies: runs in parallel that survive failures, limits and interruption; hard parameters on top."""
+"""Studies: parallel runs that survive failures, time limits and interruption; and difficult
+parameters."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Rigid obstacles whose surface is that of an STL file or of a mesh."""
+"""Rigid obstacles with the surface of an STL file or of a mesh."""
 
 import pytest
 

@@ -1,4 +1,5 @@
-"""Sweeps: the file and its errors, the table, kills and two drivers at once, Snakemake, trends, maps and histories."""
+"""Sweeps: the file and its errors, the table, killed and simultaneous sweeps, Snakemake, trends,
+maps and histories."""
 
 import fcntl
 import os

@@ -1,4 +1,5 @@
-"""The ball in three dimensions: what its scenes take, leave and say, by either way in."""
+"""The ball in three dimensions: input, output and messages of its scenes, with and without Python.
+"""
 
 import math
 

@@ -1,4 +1,4 @@
-"""The axisymmetric ball: what its scenes take, leave and say, by either way in."""
+"""The axisymmetric ball: input, output and messages of its scenes, with and without Python."""
 
 import math
 

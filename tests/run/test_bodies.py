@@ -1,4 +1,4 @@
-"""Scenes of one's own: what a file says becomes bodies, one mesh and a data file; whatever is wrong in it is named in one line."""
+"""Scenes from files: bodies, one mesh and a data file. Every error is reported in one line."""
 
 import itertools
 import math

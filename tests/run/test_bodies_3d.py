@@ -1,4 +1,5 @@
-"""Scenes of bodies in three dimensions: shapes and their distances, meshes, files, symmetry, what is refused, and runs."""
+"""Scenes of bodies in three dimensions: shapes and distances, meshes, files, symmetry, refused
+input, and runs."""
 
 import math
 import time

@@ -1,4 +1,5 @@
-"""Scenes of bodies of revolution: sections, their meshes and places, what is refused, and two balls against Hertz."""
+"""Scenes of bodies of revolution: sections, meshes and positions, refused input, and two balls
+against Hertz."""
 
 import math
 

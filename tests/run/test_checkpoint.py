@@ -1,4 +1,5 @@
-"""Checkpoint and restart: a run that is killed goes on from its last checkpoint as if nothing had happened."""
+"""Checkpoint and restart: a killed run continues from its last checkpoint with unchanged results.
+"""
 
 import json
 import re

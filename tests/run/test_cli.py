@@ -1,4 +1,5 @@
-"""The command line: exit codes, one-line errors, interruption, and that `make` lists its targets."""
+"""The command line: exit codes, one-line errors, interruption, and the list of targets of `make`.
+"""
 
 import os
 import pty

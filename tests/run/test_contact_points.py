@@ -1,4 +1,5 @@
-"""fields/contact.csv: what bears load along the outlines, against the forces of the history."""
+"""fields/contact.csv: the loaded contact points along the outlines, against the forces of the
+history."""
 
 import numpy as np
 import pandas as pd

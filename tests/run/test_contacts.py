@@ -1,4 +1,5 @@
-"""contacts.csv: every interval of contact in numbers, on scenes whose numbers are known from momenta, energies and the history."""
+"""contacts.csv: the numbers of every contact interval, in scenes with known momenta, energies and
+histories."""
 
 import numpy as np
 import pandas as pd

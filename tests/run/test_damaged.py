@@ -1,4 +1,8 @@
-"""Results that were damaged: one line that names the file, exit code 14, on every command that reads them; never a traceback, never half a table in silence."""
+"""Damaged results: every command that reads them prints one line with the file and ends with exit
+code 14.
+
+There is never a traceback nor an incomplete table without a message.
+"""
 
 import json
 import os

@@ -1,4 +1,7 @@
-"""Kelvin-Voigt damping and a Maxwell branch (edp/core/law/damping.idp, relaxation.idp): exact decays, objective, counted exactly, in scripts and kernels."""
+"""Kelvin-Voigt damping and a Maxwell branch (edp/core/law/damping.idp, relaxation.idp).
+
+Tested are exact decay, objectivity and the exact energy balance, in scripts and kernels.
+"""
 
 import numpy as np
 import pytest

@@ -1,4 +1,5 @@
-"""Restitution, angles and slip of bodies that spin, and which of a run's numbers have no meaning and are not written."""
+"""Restitution, angles and slip of spinning bodies, and results that are omitted because they have
+no meaning."""
 
 import json
 import math

@@ -1,4 +1,5 @@
-"""FreeFem++ without Python: its folder is as safe as Python's, and nothing that the user gives reaches a shell as a command."""
+"""FreeFem++ without Python: its result folder is as safe, and no input reaches a shell as a
+command."""
 
 import os
 import resource

@@ -1,4 +1,5 @@
-"""The disc on the free block with error bars: answers of a summary, bars, checks and comparisons that can fail, the page's text, a coarse real run."""
+"""The disc on the free block with error bars: results, error bars, checks and comparisons that can
+fail, text of the page, a coarse run."""
 
 import math
 

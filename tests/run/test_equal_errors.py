@@ -1,4 +1,5 @@
-"""Who takes how long at equal errors: what counts as reaching a level, references that must agree, the verdict, the page. No other program is needed."""
+"""Run times at equal errors: safe settings, references that must agree, the verdict, the page. No
+other program is needed."""
 
 import pandas as pd
 import pytest

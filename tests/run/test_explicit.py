@@ -1,4 +1,7 @@
-"""Central differences: contact and friction are solved on the lumped mass, so that the bodies' own waves alone set the parts of a step."""
+"""Central differences: contact and friction are solved on the lumped mass.
+
+Hence only waves in the bodies determine the substeps of a step.
+"""
 
 from functools import cache
 

@@ -1,4 +1,5 @@
-"""docs/how-to/extending.md, block by block: what it shows is applied to a copy of the program, runs there, and has the answers that the page names."""
+"""docs/how-to/extending.md: every block is applied to a copy of the program, runs there, and gives
+the results on the page."""
 
 import json
 import os

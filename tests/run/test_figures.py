@@ -1,4 +1,4 @@
-"""Figures and the snapshots they are drawn from."""
+"""Figures and the snapshots from which they are drawn."""
 
 import xml.etree.ElementTree as xml
 

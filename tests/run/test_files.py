@@ -1,5 +1,5 @@
-"""Bodies from files: where they are sought, how they are read, sized, scaled and kept, and what of
-them may touch."""
+"""Bodies from files: search paths, reading, sizes, scaling, copies, and the boundaries that may
+come into contact."""
 
 import math
 import re

@@ -1,4 +1,4 @@
-"""Answers and their stated errors do not depend on the frame that a scene is written in."""
+"""Results and their error estimates do not depend on the reference frame of a scene."""
 
 import math
 from pathlib import Path

@@ -1,4 +1,5 @@
-"""The friction laws of edp/core/contact/friction.idp, tabulated by the real FreeFem++, and their picture."""
+"""The friction laws of edp/core/contact/friction.idp, tabulated by the real FreeFem++, and their
+figure."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Flat strikes: which they are, and what elements, steps and penalty they get (front.py)."""
+"""Flat strikes: their recognition, and their elements, steps and penalty (front.py)."""
 
 import tomllib
 

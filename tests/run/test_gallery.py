@@ -1,4 +1,5 @@
-"""The pages of the gallery run, and their numbers agree with published and exact ones, or say why not."""
+"""The pages of the gallery run. Their numbers agree with published and exact ones, or a note has
+the reason."""
 
 import importlib.util
 

@@ -1,4 +1,4 @@
-"""The compiled kernels: the same as the scripts; without them nothing changes."""
+"""The compiled kernels agree with the scripts. Without them nothing changes."""
 
 import json
 import os

@@ -1,4 +1,5 @@
-"""Runs that are killed: no process is left, nothing looks finished, earlier results stay, and the same command gives the same answer."""
+"""Killed runs: no process is left, no folder looks finished, earlier results stay, and a second
+call gives the same results."""
 
 import contextlib
 import functools

@@ -1,4 +1,4 @@
-"""The measurements: run time against error, savings left out, other units, phases."""
+"""Measurements of runs: run time against error, runs without savings, other units, phases."""
 
 import numpy as np
 import pandas as pd

@@ -1,4 +1,5 @@
-"""Answers do not depend on memory that nobody has written: FreeFEM checks no bounds of slices, and what resize() adds is not zero."""
+"""Results do not depend on uninitialised memory. FreeFEM does not check the bounds of slices, and
+resize() adds values that are not zero."""
 
 import os
 import shutil

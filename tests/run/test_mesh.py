@@ -1,4 +1,4 @@
-"""The meshes that the scenes run on."""
+"""The meshes of the scenes."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,5 @@
-"""The film of a scene: its frames, its file, and what happens without ffmpeg or when the drawing is stopped."""
+"""The film of a scene: its frames, its file, and the cases without ffmpeg and with interrupted
+drawing."""
 
 import os
 import re

@@ -1,4 +1,5 @@
-"""Points inside a body next to one of its vertices: a narrow block between two discs, whose corners press into them."""
+"""Points inside a body near one of its vertices: the corners of a narrow block press into two
+discs."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The Python interface in a notebook: every cell runs, tables and pictures are shown."""
+"""The Python interface in a notebook: every cell runs, and tables and figures are shown."""
 
 import os
 import subprocess

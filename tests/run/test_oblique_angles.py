@@ -1,4 +1,5 @@
-"""make oblique-angles: what theory says in its limits, verdicts that can fail, bad input, and real impacts of a disc."""
+"""make oblique-angles: limits of the theories, verdicts that can fail, wrong input, and impacts of
+a disc."""
 
 import numpy as np
 import pytest

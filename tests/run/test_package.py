@@ -1,4 +1,5 @@
-"""The installed package: what is in it, that it runs from any folder, and what it says where something is missing."""
+"""The installed package: its files, its use from any folder, and its messages if something is
+missing."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""The pages that are written from what the scripts say of themselves: whole, true and up to date."""
+"""The generated pages are complete, correct and up to date."""
 
 import re
 

@@ -1,4 +1,5 @@
-"""The report of the paper: each verdict flips when its numbers do, the page is self-contained, a missing case stops it."""
+"""The report of the paper: verdicts change with their numbers, the page is self-contained, a
+missing case stops it."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""The parameter table and the scenes that are made of it."""
+"""The table of parameters, and scenes made of it."""
 
 import pytest
 

@@ -1,5 +1,5 @@
-"""The contact as a whole: its half-width and largest pressure in the history, where and when in the summary, against fields/contact.csv; its points as
-files for ParaView; its figure."""
+"""The contact area: half-width and largest pressure in the history and the summary against
+fields/contact.csv, ParaView files, the figure."""
 
 import xml.etree.ElementTree as xml
 

@@ -1,4 +1,5 @@
-"""Other programs on our scenes: which script stands beside which scene, and, where NGSolve is installed, its answers beside ours."""
+"""Other programs for our scenes: the script of each scene and, if NGSolve is installed, its results
+beside ours."""
 
 import pytest
 

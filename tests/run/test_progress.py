@@ -1,4 +1,4 @@
-"""What is shown while the program works: one line, nested parts in it, a sentence about a run that will take long."""
+"""The display of progress: one line with nested parts, and a sentence about long runs."""
 
 import re
 import subprocess

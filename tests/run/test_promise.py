@@ -1,4 +1,4 @@
-"""What is promised and how it is checked: scenes drawn at random, the promise; verdicts that can fail."""
+"""Tests of the accuracy and of the error estimates: random scenes, and verdicts that can fail."""
 
 import pandas as pd
 import pytest

@@ -1,4 +1,5 @@
-"""What figures must say: where time begins, when the contact ends, the paper's number, a scale; and the cut of a body in three dimensions."""
+"""Content of figures: start of time, end of contact, the paper's number, a scale; and the section
+of a body in three dimensions."""
 
 import itertools
 from types import SimpleNamespace

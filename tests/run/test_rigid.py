@@ -1,4 +1,4 @@
-"""Rigid bodies: the motions of rigid bodies exactly, and the limit of stiff ones."""
+"""Rigid bodies: exact rigid motions, and the limit of stiff bodies."""
 
 import json
 import math

@@ -1,4 +1,4 @@
-"""The run contract: one scene, one run, one folder; what is kept, reused and refused."""
+"""The contract of runs: one scene, one run, one folder; what is kept, reused and refused."""
 
 import json
 from pathlib import Path

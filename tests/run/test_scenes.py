@@ -1,4 +1,5 @@
-"""Scenes of several bodies through every way in: disc-block, a TOML file of one's own, direct runs, sweeps, figures."""
+"""Scenes of several bodies by every interface: disc-block, a TOML file, direct runs, sweeps,
+figures."""
 
 import hashlib
 import json

@@ -1,4 +1,5 @@
-"""Pictures of a body in three dimensions: the surfaces and the pressure that they show, and what happens without PyVista."""
+"""Pictures of bodies in three dimensions: surfaces and pressure, and the behaviour without PyVista.
+"""
 
 import re
 from importlib.util import find_spec

@@ -1,4 +1,5 @@
-"""Meshes and scene files of edp/bodies-3d.edp: whatever is wrong in them is named in one line, with exit code 10, and nothing is left behind."""
+"""Meshes and scene files of edp/bodies-3d.edp: every error is one line with exit code 10, and no
+files are left."""
 
 import re
 

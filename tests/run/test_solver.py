@@ -1,4 +1,5 @@
-"""The runs of a scene: the one that estimates the error beside the main one where a core is free, and what is left where one of them is lost."""
+"""The runs of a scene: the run for the error estimate uses a second core if one is free; results
+after the loss of a run."""
 
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager

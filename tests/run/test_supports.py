@@ -1,4 +1,4 @@
-"""Supports: parts of a boundary that are held or moved. What beams, rods and pressed discs do on them."""
+"""Supports: parts of a boundary that are held or moved, with beams, rods and pressed discs."""
 
 import math
 

@@ -1,4 +1,5 @@
-"""make verify: the verdicts follow from the numbers, the table names the worst, the exit code says whether all pass."""
+"""make verify: the verdicts follow from the numbers, the table has the worst number, the exit code
+shows whether all pass."""
 
 import json
 import os

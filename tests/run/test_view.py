@@ -1,4 +1,4 @@
-"""The player of a run: one page without a network, looked at in a headless browser."""
+"""The player of a run: one page that needs no network, tested in a headless browser."""
 
 import io
 import re

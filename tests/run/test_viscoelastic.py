@@ -1,4 +1,4 @@
-"""make viscoelastic: what the theory says in its limits, a verdict that can fail, and real impacts."""
+"""make viscoelastic: limits of the theory, a verdict that can fail, and impacts."""
 
 import pytest
 

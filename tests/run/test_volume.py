@@ -1,4 +1,5 @@
-"""nu -> 0.5 (edp/core/law/volume.idp): volume in the mean of an element, without locking, in scripts and kernels."""
+"""nu -> 0.5 (edp/core/law/volume.idp): volume as the mean over an element, without locking, in
+scripts and kernels."""
 
 import pytest
 

@@ -1,4 +1,5 @@
-"""Warnings and notes: each appears where its condition holds, with its number, and not where it does not; tables and reports show them."""
+"""Warnings and notes: each appears if its condition holds, with its number, and not otherwise;
+tables and reports show them."""
 
 import json
 import re

@@ -1,4 +1,5 @@
-"""Supports and loads that cannot be: every wrong entry is named in one line, with what is accepted; the exit code is 10."""
+"""Invalid supports and loads: every wrong entry is reported in one line with what is accepted; exit
+code 10."""
 
 import pytest
 
