@@ -15,7 +15,8 @@ from tests.support.package import packed
 @pytest.mark.robustness
 @pytest.mark.parametrize("how", [[], ["-e"]])
 def test_pip_installs_it(how, tmp_path):
-    """pip install ., and -e, in a fresh environment: the command and the package; of a wheel exactly the files that are promised."""
+    """pip install . and -e in a fresh environment provide the command and the package; a wheel
+    contains exactly the expected files."""
     tree = shutil.copytree(ROOT, tmp_path / "tree", ignore=shutil.ignore_patterns(".venv", ".git", "results", "build"))
     venv.create(tmp_path / "venv", with_pip=True)
     subprocess.run([tmp_path / "venv/bin/pip", "install", "-q", *how, tree], check=True, timeout=600)
