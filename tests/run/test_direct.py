@@ -20,7 +20,8 @@ from ffimpact.output import folder, results
 from ffimpact.running import run
 from tests.support.direct import COARSE, call, start
 
-ODD = "it's; touch pwned #$(touch pwned)`touch pwned`\"\\ *"     # a name that a shell would make something of
+# A name with special characters of shells.
+ODD = "it's; touch pwned #$(touch pwned)`touch pwned`\"\\ *"
 
 
 def names(folder: Path) -> set[str]:
@@ -33,7 +34,8 @@ RESULTS = {"scene.toml", "history.csv", "contacts.csv", "summary.json"}
 @pytest.mark.few(2)
 @pytest.mark.parametrize("name", [ODD, "-out", "-", "--", "a b/c d", "é", "a\nb"])
 def test_any_name_will_do(tmp_path, name):
-    """Folders, meshes and checkpoints may be called what they want: the run works, and no command in a name is run."""
+    """Folders, meshes and checkpoints may have any name: the run works, and no command in a name is
+    executed."""
     flags = ("-checkpoint_every", "5", "-fields", "2")
     given = name if name != "-out" else "./-out"
     assert call(*COARSE, *flags, "-out", given, cwd=tmp_path)[0::2] == (0, "")
@@ -47,13 +49,14 @@ def test_any_name_will_do(tmp_path, name):
 
 
 def test_any_name_will_do_for_python(tmp_path):
-    """The same through Python, which hands its paths to the script."""
+    """The same through Python, which passes its paths to the script."""
     result = run.run(scene.load("disc-normal"), {"accuracy": 0.4, "law": "neohookean", "nu": 0.4, "checkpoint_every": 5}, tmp_path / ODD)
     assert result.summary["status"] == "ok" and not list(tmp_path.rglob("pwned"))
 
 
 def test_second_run_on_a_folder_is_refused(tmp_path):
-    """The lock is the kernel's: the second run is refused with 14 as long as the first one lives, and no longer, even if it was killed."""
+    """The lock belongs to the kernel: the second run is refused with 14 while the first one lives,
+    and no longer, even if it is killed."""
     first = start(*COARSE, "-dt", "1e-6", "-out", "out", cwd=tmp_path)
     end = time.monotonic() + 20
     while not (tmp_path / "out/unfinished/history.csv").exists() and time.monotonic() < end:
@@ -70,7 +73,7 @@ def test_second_run_on_a_folder_is_refused(tmp_path):
 
 
 def test_run_in_a_folder_that_python_is_at_is_refused(tmp_path):
-    """Python makes the files of DIR in DIR.part: as long as that is locked, DIR is taken."""
+    """Python makes the files of DIR in DIR.part. While that is locked, DIR is in use."""
     (tmp_path / "out.part").mkdir()
     lock = folder.lock_folder(tmp_path / "out.part", tmp_path / "out")
     code, _, error = call(*COARSE, "-out", "out", cwd=tmp_path)
@@ -79,7 +82,7 @@ def test_run_in_a_folder_that_python_is_at_is_refused(tmp_path):
 
 
 def test_files_of_others_are_left_alone(tmp_path):
-    """A folder that is not the program's is refused with 14, as it is through Python."""
+    """A folder that the program has not made is refused with 14, as through Python."""
     (tmp_path / "out").mkdir()
     (tmp_path / "out/thesis.tex").write_text("years of work")
     code, _, error = call(*COARSE, "-out", "out", cwd=tmp_path)
@@ -93,7 +96,8 @@ def test_files_of_others_are_left_alone(tmp_path):
 
 @pytest.mark.parametrize("name", ["out/unfinished", "unfinished/", "unfinished/deeper"])
 def test_the_folder_of_a_run_under_way_is_no_folder_of_results(tmp_path, name):
-    """What a run in DIR would take away, DIR/unfinished, is refused as -out and --out with 14: a finished run there would be lost."""
+    """DIR/unfinished, which a run in DIR would remove, is refused as -out and --out with 14: a
+    finished run in it would be lost."""
     code, _, error = call(*COARSE, "-out", name, cwd=tmp_path)
     assert code == 14 and "is in a folder unfinished" in error and error.count("\n") == 1 and not names(tmp_path)
     with pytest.raises(Unreadable, match="is in a folder unfinished"):
@@ -101,7 +105,8 @@ def test_the_folder_of_a_run_under_way_is_no_folder_of_results(tmp_path, name):
 
 
 def test_a_run_killed_while_its_files_took_their_places_goes_on(tmp_path, monkeypatch):
-    """kill -9 when some of its files are in their places and others are not: from the checkpoint it comes to the same end."""
+    """After kill -9 while some files are in their final places and others are not, the run
+    continues from the checkpoint to the same result."""
     assert call(*COARSE, "-fields", "2", "-out", "straight", cwd=tmp_path)[0] == 0
     (tmp_path / "mv").write_text("""#!/bin/sh
 if [ "$2" = scene.toml ]; then PATH=${PATH#*:}; mv "$2" "$3" ..; kill -9 0; fi
@@ -118,7 +123,8 @@ PATH=${PATH#*:}; exec mv "$@"\n""")
 
 
 def test_an_interrupt_while_files_take_their_places_is_no_success(tmp_path, monkeypatch):
-    """Ctrl-C that reaches the commands which FreeFEM waits for, and not itself: exit code 130, no results claimed, none half in place."""
+    """Ctrl-C reaches the commands for which FreeFEM waits, but not FreeFEM: exit code 130, no
+    results reported, none partly in place."""
     (tmp_path / "mv").write_text("#!/bin/sh\nkill -INT 0\n")
     (tmp_path / "mv").chmod(0o755)
     monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
@@ -127,7 +133,8 @@ def test_an_interrupt_while_files_take_their_places_is_no_success(tmp_path, monk
 
 
 def test_an_earlier_run_that_cannot_be_put_aside(tmp_path):
-    """On a mount point, which cannot be renamed, a second run is refused with 14 before it begins, and through Python any run."""
+    """On a mount point, which cannot be renamed, a second run is refused with 14 before it begins,
+    and through Python any run."""
     disk = tmp_path / "disk"
     disk.mkdir()
     if subprocess.run(["mount", "-t", "tmpfs", "none", disk], capture_output=True).returncode:
@@ -143,7 +150,8 @@ def test_an_earlier_run_that_cannot_be_put_aside(tmp_path):
 
 
 def test_earlier_runs(tmp_path):
-    """Another scene, or mesh, puts the folder aside; the same one replaces what the program wrote, and what the user put there stays."""
+    """Another scene or mesh moves the folder aside. The same scene replaces files of the program
+    and keeps files of the user."""
     assert call(*COARSE, "-fields", "4", "-out", "out", cwd=tmp_path)[0] == 0
     for name in ("notes.txt", "fields/mine.txt", ".hidden"):
         (tmp_path / "out" / name).write_text("mine")
@@ -160,7 +168,8 @@ def test_earlier_runs(tmp_path):
 
 
 def test_failure_does_not_cost_an_earlier_result(tmp_path):
-    """A run that fails puts a finished one of the same folder aside, whole; bad input leaves it where it is."""
+    """A failed run moves a finished one of the same folder aside, complete. Bad input does not move
+    it."""
     assert call(*COARSE, "-out", "out", cwd=tmp_path)[0] == 0
     before = (tmp_path / "out/history.csv").read_bytes()
     assert call(*COARSE, "-speed", "0", "-out", "out", cwd=tmp_path)[0] == 10
@@ -172,11 +181,13 @@ def test_failure_does_not_cost_an_earlier_result(tmp_path):
 @pytest.mark.few(1)
 @pytest.mark.parametrize("size", [0, 200, 3000, 6000])
 def test_full_disk(tmp_path, size):
-    """Where files cannot grow as they have to, the exit code is 14 with one line, nothing finished is there, and an earlier result stays."""
+    """If files cannot grow, the exit code is 14 with one line, there are no finished results, and
+    an earlier result stays."""
     assert call(*COARSE, "-out", "out", cwd=tmp_path)[0] == 0
     before = {name: (tmp_path / name).read_bytes() for name in names(tmp_path)}
 
-    def small_files():   # as a full disk: a write fails, without the signal
+    # As on a full disk, a write fails without the signal.
+    def small_files():
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
         resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
     for flags in (("-out", "out", "-speed", "7"), ("-out", "new/out"), ("-out", "new/out", "-fields", "2")):
@@ -188,8 +199,11 @@ def test_full_disk(tmp_path, size):
 @pytest.mark.few(1)
 @pytest.mark.parametrize("files", [2, 3, 4, 5, 6, 8, 10])
 def test_full_disk_of_its_own(tmp_path, files):
-    """On a disk that takes so many files and no more, whichever of them is the first that does not fit: exit code 14 with one line, and
-    with more room the run goes on from its last checkpoint, or from the start."""
+    """On a disk that accepts a limited number of files, whichever file is the first that does not
+    fit: exit code 14 with one line.
+
+    With more space the run continues from its last checkpoint, or from the start.
+    """
     program, disk = freefem.find(), tmp_path / "disk"
     disk.mkdir()
     words = program.words(parameters.ROOT / "edp/disc-plane.edp", *COARSE, "-fields", "4", "-checkpoint_every", "10", "-out", "disk/out")
@@ -211,7 +225,7 @@ def test_full_disk_of_its_own(tmp_path, files):
      "nu": ("00.1234567890123", 0.1234567890123), "checkpoint_every": ("1E3", 1000)},
     {"speed": (".5", 0.5), "spin": ("-00012.3456789", -12.3456789)}, {"speed": ("007", 7)}, {"speed": ("+007.1234567890123", 7.1234567890123)}])
 def test_numbers_are_written_as_toml(tmp_path, given):
-    """However a number is written as a flag, scene.toml has it in TOML's way, to the last digit."""
+    """scene.toml has numbers of flags in TOML's format, to the last digit."""
     assert call("-accuracy", "0.4", "-law", "neohookean", "-end_time", "1e-5", *freefem.words_of({name: text for name, (text, _) in given.items()}), "-out", "out",
                 cwd=tmp_path)[0] == 0
     found = tomllib.loads((tmp_path / "out/scene.toml").read_text())
@@ -220,8 +234,12 @@ def test_numbers_are_written_as_toml(tmp_path, given):
 
 @pytest.mark.parametrize("script, accuracy", [("disc-plane", "0.01"), ("disc-block", "0.03")])
 def test_a_stiff_penalty_does_not_cost(tmp_path, script, accuracy):
-    """Ten and a hundred times the penalty of `auto` take as many steps and at most 1.5 times the iterations: steps do not follow single
-    points that bounce. Impulse and rebound stay within the accuracy, the energy balance closed."""
+    """With ten and a hundred times the automatic penalty there are as many steps and at most 1.5
+    times as many iterations.
+
+    Steps do not follow single points that bounce. Impulse and rebound stay within the accuracy, and
+    the energy balance closes.
+    """
     ends = {}
     for times in (1, 10, 100):
         out = tmp_path / str(times)
